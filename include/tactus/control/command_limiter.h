@@ -1,0 +1,32 @@
+#pragma once
+
+#include "tactus/control/controller_config.h"
+
+namespace tactus {
+
+/// The last gate before the drives. What passes is finite and within the velocity, acceleration and
+/// position limits of every joint, whatever came in.
+///
+/// Velocity and acceleration limits shorten the whole command, so that the arm keeps its direction;
+/// only where no multiple of the command is admissible is each joint clamped by itself. Near a
+/// position limit a joint is slowed by itself, so that it can still brake (|v| <= sqrt(2 a d) -
+/// a period / 2): scaling the others with it would freeze the arm in contact.
+class CommandLimiter {
+ public:
+  explicit CommandLimiter(const JointLimits& limits) : limits_(limits) {}
+
+  /// q: present desired joints, within limits; velocity_before: the previous result. Returns false,
+  /// and lets the arm ramp to rest, if `velocity` is not finite.
+  bool apply(const JointVector& q, const JointVector& velocity_before, double period_s,
+             JointVector& velocity) const noexcept;
+
+ private:
+  void brakeBeforePositionLimits(const JointVector& q, double period_s,
+                                 JointVector& velocity) const noexcept;
+  void shorten(const JointVector& velocity_before, double period_s,
+               JointVector& velocity) const noexcept;
+
+  JointLimits limits_;
+};
+
+}  // namespace tactus

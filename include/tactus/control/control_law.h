@@ -1,0 +1,52 @@
+#pragma once
+
+#include "tactus/control/controller_config.h"
+#include "tactus/math/contact_space.h"
+
+namespace tactus {
+
+struct ControlLawState {
+  double V_m_per_s = 0.0;   ///< integral of (5), stored as int F_p / (T^2 c) dt
+  double It_m_per_s = 0.0;  ///< windowed integral of (7), stored likewise
+};
+
+struct ControlLawInput {
+  double F_p_N = 0.0;
+  double stiffness_N_per_m = 0.0;  ///< c
+  double x_dot_ff_m_per_s = 0.0;   ///< gamma min(x_dot_eff, 0)
+  double integral_decay = 1.0;     ///< of V in this cycle, from the contact transition
+};
+
+/// Scalar controller outputs, 1/(m s) each: u_q = b u moves the contact point by -k u.
+struct ControlLawOutput {
+  double u_n = 0.0, u_j = 0.0, u_t = 0.0;
+};
+
+/// The paper's laws. One space, (5), with 1/k regularised and P = 2 d / (T c):
+///   u = (x_ff - P F_p - V) / k,     dV/dt = F_p / (T^2 c)
+/// Second space of the multi-space variants, (7), one-sided as a sum:
+///   u = -max(0, P (F_p - F_act) + I) / k,   dI/dt = (F_p - F_act) / (T^2 c), I >= 0
+/// First-order target dynamics: P = 1 / (T c), no integrals. The null-space output is limited: b
+/// u_n is scaled as a whole so that no component exceeds its speed, and V holds meanwhile.
+class ControlLaw {
+ public:
+  ControlLaw(const ForceControlConfig& config, const SerialChain& chain,
+             const JointVector& inv_sqrt_weights);
+
+  void update(const ControlLawInput& input, const ContactSpace& space, double period_s,
+              ControlLawState& state, ControlLawOutput& output) const noexcept;
+
+ private:
+  /// x_ff - P F_p - V, m/s.
+  double singleSpace(const ControlLawInput& input, const ControlLawState& state) const noexcept;
+  /// -max(0, P (F_p - F_act) + I), m/s.
+  double secondSpace(const ControlLawInput& input, const ControlLawState& state) const noexcept;
+  double proportionalGain(double stiffness_N_per_m) const noexcept;
+  /// The share of u_n that keeps every component of b u_n within its speed.
+  double nullSpaceShare(double u_n, const ContactSpace& space) const noexcept;
+
+  ForceControlConfig config_;
+  JointVector max_null_speed_scaled_;  ///< W^1/2 times the limit, for comparison with a_scaled u_n
+};
+
+}  // namespace tactus

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "tactus/control/controller_config.h"
+
+namespace tactus {
+
+/// dH/dq of (1), pointing towards the nearer limit (N alpha dH/dq is subtracted):
+///   s_i = max(0, (|q_i - mid_i| - (1 - f) half_i) / (f half_i))
+///   dH/dq_i = gradient_at_limit s_i sign(q_i - mid_i)
+/// Joints without limits get zero.
+class JointLimitAvoidance {
+ public:
+  JointLimitAvoidance(const JointLimitAvoidanceConfig& config, const JointLimits& limits);
+
+  /// alpha dH/dq, m/s or rad/s.
+  void compute(const JointVector& q, JointVector& gradient) const noexcept;
+
+ private:
+  JointVector middle_;       ///< of the range
+  JointVector inner_half_;   ///< half width of the zone without cost
+  JointVector slope_per_s_;  ///< alpha gradient_at_limit / width of the outer zone
+};
+
+}  // namespace tactus

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+#include "tactus/math/types.h"
+
+namespace tactus {
+
+/// One sample of the tactile module: what pushes on the cover, in the module's frame (x along the
+/// link). Forces along x are not felt.
+struct TactileSample {
+  double force_y_N = 0.0;
+  double force_z_N = 0.0;
+  double moment_y_Nm = 0.0;  ///< about the origin of the module's frame
+  double moment_z_Nm = 0.0;
+  std::uint32_t sequence = 0;  ///< counts samples; unchanged: the same sample as before
+};
+
+/// What a cycle reads from the robot.
+struct RobotInput {
+  JointVector q_measured;  ///< m or rad
+  TactileSample tactile;   ///< stays zero on a robot without tactile module
+};
+
+/// The one seam between controller and robot: simulated or real. Called from the cycle only, hence
+/// without allocation, lock or exception.
+class Robot {
+ public:
+  virtual ~Robot() = default;
+  virtual void read(RobotInput& input) noexcept = 0;
+  virtual void write(const JointVector& velocity_setpoint) noexcept = 0;  ///< m/s or rad/s
+};
+
+}  // namespace tactus

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "tactus/control/controller_config.h"
+
+namespace tactus {
+
+struct StiffnessEstimatorState {
+  double stiffness_N_per_m;      ///< c
+  double stiffness_raw_N_per_m;  ///< c_raw
+  double x_int_m = 0.0;
+  double v_prev_m_per_s = 0.0;
+  double F_prev_N = 0.0;
+};
+
+/// Algorithm 1 of the paper, with what it leaves open decided so: the filter is discretised exactly
+/// and frozen while the contact point does not approach; then, and at zero force, the integrator
+/// restarts; a trigger after less than 1e-6 m of approach gives no estimate; c_raw is clamped.
+class StiffnessEstimator {
+ public:
+  StiffnessEstimator(const StiffnessEstimatorConfig& config, double assumed_N_per_m)
+      : config_(config), assumed_N_per_m_(assumed_N_per_m) {}
+
+  StiffnessEstimatorState initialState() const noexcept {
+    return {assumed_N_per_m_, assumed_N_per_m_};
+  }
+
+  /// F_p_N: contact force; approach_m_per_s: v_p,d of (15), positive towards the obstacle, of the
+  /// previous cycle's command.
+  void update(double F_p_N, double approach_m_per_s, double period_s,
+              StiffnessEstimatorState& state) const noexcept;
+
+ private:
+  void trigger(double F_p_N, StiffnessEstimatorState& state) const noexcept;
+
+  StiffnessEstimatorConfig config_;
+  double assumed_N_per_m_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+namespace tactus {
+
+/// Exit codes of all programs.
+enum ExitCode { kExitDone = 0, kExitBadInput = 1, kExitUsage = 2, kExitFault = 3 };
+
+/// Each adds one subcommand of `tactus`. A command that was run leaves its exit code in
+/// `exit_code`; bad input leaves as an InputError, which main() prints.
+void addCheckCommand(CLI::App& app, int& exit_code);
+void addSimulateCommand(CLI::App& app, int& exit_code);
+void addExportCommand(CLI::App& app, int& exit_code);
+void addReplayCommand(CLI::App& app, int& exit_code);
+
+}  // namespace tactus

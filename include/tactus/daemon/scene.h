@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tactus/control/controller_config.h"
+#include "tactus/sim/plant_config.h"
+
+namespace tactus {
+
+/// A file that a scene was made of, as it was read: logged with every run, so that a log alone can
+/// be replayed.
+struct SourceFile {
+  std::string path;  ///< as the scene names it
+  std::string text;
+};
+
+/// A value given on the command line: --set controller.time_constant_s=0.2
+struct Override {
+  std::string key;
+  std::string value;
+};
+
+/// One run: a robot, a task, a controller and, for simulation, a world.
+struct Scene {
+  std::string name;  ///< file name without .yaml
+  ControllerConfig controller;
+  std::string variant;  ///< as the scene spells it; "none" without force control
+  double period_s = 0.001;
+  double duration_s = 0.0;
+  PlantConfig plant;
+  std::vector<std::string> joint_names;
+  std::vector<SourceFile> sources;  ///< the scene first, then what it extends, the robot, the URDF
+  std::vector<Override> overrides;
+};
+
+/// The stages that exist in this scene, in the order of a cycle, by the names of the contract.
+std::vector<std::string> stageNames(const ControllerConfig& config);
+
+}  // namespace tactus

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+
+namespace tactus {
+
+/// 1 - exp(-dt / T): the share of the way to its input that a first-order lag covers in dt, exact
+/// for an input held over the step. T = 0 covers all of it.
+double lagShare(double dt_s, double time_constant_s) noexcept;
+
+/// 3rd-order Butterworth low pass by the bilinear transform with prewarping, direct form II
+/// transposed: the filter of the tactile module (scipy.signal.butter(3, cutoff, fs=rate)).
+class ButterworthLowPass {
+ public:
+  /// Throws std::invalid_argument unless 0 < cutoff_hz < rate_hz / 2.
+  ButterworthLowPass(double cutoff_hz, double rate_hz);
+
+  double update(double input) noexcept;
+
+ private:
+  std::array<double, 4> b_;
+  std::array<double, 4> a_;
+  std::array<double, 3> state_{};
+};
+
+}  // namespace tactus

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "tactus/math/types.h"
+
+namespace tactus {
+
+enum class JointType { kPrismatic, kRevolute };
+
+/// One moving joint of a robot description. At q = 0 the joint frame lies at X_ParentJoint in the
+/// frame of the previous moving joint (of the base for the first); q moves it along or about
+/// `axis`.
+struct Joint {
+  JointType type = JointType::kRevolute;
+  Pose X_ParentJoint;               ///< fixed joints in between are already multiplied in
+  Vector3 axis = Vector3::UnitZ();  ///< unit vector in the joint frame
+};
+
+/// A frame that moves with a joint: `joint` is the index of the last moving joint before it, -1 for
+/// a frame fixed to the base.
+struct AttachedFrame {
+  int joint = -1;
+  Pose X_JointFrame;
+};
+
+/// Where every joint frame of a chain is, in the base frame; scratch of one configuration.
+struct ChainPose {
+  std::array<Matrix3, kMaxJoints> R_BaseJoint;
+  std::array<Vector3, kMaxJoints> p_BaseJoint;  ///< m
+  std::array<Vector3, kMaxJoints> axis_Base;    ///< unit joint axes
+};
+
+/// The moving joints between the base and the tool, base first. A const model: everything that
+/// changes with q lives in a ChainPose.
+class SerialChain {
+ public:
+  /// Throws std::invalid_argument unless there are 2 to kMaxJoints joints with unit axes and
+  /// orthonormal rotations.
+  SerialChain(const std::vector<Joint>& joints, const AttachedFrame& tip);
+
+  int size() const noexcept { return size_; }
+  JointType type(int joint) const noexcept { return joints_[joint].type; }
+  const AttachedFrame& tip() const noexcept { return tip_; }
+
+  /// Forward kinematics: the pose of every joint frame at q (size() entries, finite).
+  void computePose(const JointVector& q, ChainPose& pose) const noexcept;
+
+ private:
+  /// A joint prepared for the cycle: most axes are a coordinate axis and most origins are not
+  /// rotated, which saves two thirds of the work.
+  struct PreparedJoint {
+    JointType type;
+    bool origin_is_rotated;
+    int coordinate_axis;  ///< 0, 1, 2 for +-x, y, z; -1 for any other axis
+    double axis_sign;
+    Vector3 axis;
+    Matrix3 R_ParentJoint;
+    Vector3 p_ParentJoint;
+  };
+
+  int size_;
+  std::array<PreparedJoint, kMaxJoints> joints_;
+  AttachedFrame tip_;
+};
+
+/// Pose of an attached frame in the base frame.
+Pose framePose(const ChainPose& pose, const AttachedFrame& frame) noexcept;
+
+/// Position only, m: what framePose(pose, frame).p_AB would be.
+Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcept;
+
+/// Rows of the geometric Jacobian of the tip in the base frame, for `components` (0, 1, 2: linear
+/// velocity x, y, z of the tip's origin; 3, 4, 5: angular velocity). J has one row a component.
+void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const Vector3& p_BaseTip,
+                        const int* components, int component_count, TaskJacobian& J) noexcept;
+
+/// J_p^T f: the joint-space image of a vector f (base frame) acting at the point p_BasePoint (base
+/// frame, m), which moves with `joint`. Joints beyond `joint` get zero. Equation (16) with f = F^.
+void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
+                                 const Vector3& p_BasePoint, const Vector3& f_Base,
+                                 JointVector& result) noexcept;
+
+}  // namespace tactus

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+
+/// Fixed-capacity types. A robot has 2 to kMaxJoints moving joints, known when it is loaded; the
+/// storage is always that of the largest one, so nothing in the cycle touches the heap.
+namespace tactus {
+
+inline constexpr int kMaxJoints = 16;
+inline constexpr int kMaxTaskSize = 6;
+
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+
+/// One number a moving joint, base to tip; m for prismatic joints, rad for revolute ones.
+using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxJoints, 1>;
+
+/// One number a task component, in the order of the task's components; m or rad.
+using TaskVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxTaskSize, 1>;
+
+/// Task components by joints; row-major, so that a row (one task component) is contiguous.
+using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor,
+                                   kMaxTaskSize, kMaxJoints>;
+
+/// A rigid pose: maps coordinates in frame B to frame A.
+struct Pose {
+  Matrix3 R_AB = Matrix3::Identity();
+  Vector3 p_AB = Vector3::Zero();  ///< origin of B in A, m
+};
+
+inline Pose operator*(const Pose& X_AB, const Pose& X_BC) {
+  return {X_AB.R_AB * X_BC.R_AB, X_AB.p_AB + X_AB.R_AB * X_BC.p_AB};
+}
+
+}  // namespace tactus

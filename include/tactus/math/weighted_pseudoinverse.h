@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+
+#include "tactus/math/types.h"
+
+namespace tactus {
+
+/// The weighted pseudoinverse J# = W^-1 J^T (J W^-1 J^T)^-1 of (1) and its null-space projector
+/// N = I - J# J, kept as the factorisation W^-1/2 J^T = Q R and never formed.
+///
+/// All vectors that enter or leave are scaled: with v^ = W^1/2 v for velocities,
+///   J# w       = W^-1/2 Q R^-T w
+///   N v        = W^-1/2 (I - Q Q^T) v^
+/// so one R^-T, one Q^T for each further vector and one Q at the end make up the motion equation.
+///
+/// Damping: below kDampingThreshold of the smallest singular value s of J W^-1/2 the *task inverse*
+/// is damped with lambda^2 = kMaxDamping^2 (1 - (s / kDampingThreshold)^2); above it is exact. The
+/// projector always uses the undamped Q: null-space motion stays out of the task in any pose.
+class WeightedPseudoinverse {
+ public:
+  static constexpr double kDampingThreshold = 0.02;
+  static constexpr double kMaxDamping = 0.05;
+
+  /// J: m x n with 1 <= m <= 6, m <= n; inv_sqrt_weights: the diagonal of W^-1/2, positive.
+  void factorise(const TaskJacobian& J, const JointVector& inv_sqrt_weights) noexcept;
+
+  /// y = R^-T w (damped near singularities): J# w = W^-1/2 Q y.
+  TaskVector solve(const TaskVector& w) const noexcept;
+
+  /// Q^T v for a scaled joint vector.
+  TaskVector project(const JointVector& v_scaled) const noexcept;
+
+  /// v -= Q y, in place, scaled.
+  void subtractExpanded(const TaskVector& y, JointVector& v_scaled) const noexcept;
+
+  bool damped() const noexcept { return damping_squared_ > 0.0; }
+  double dampingSquared() const noexcept { return damping_squared_; }
+
+ private:
+  void chooseDamping() noexcept;
+
+  int n_ = 0;
+  int m_ = 0;
+  double Q_[kMaxTaskSize][kMaxJoints];    ///< orthonormal columns; zero where J has lost rank
+  double R_[kMaxTaskSize][kMaxTaskSize];  ///< upper triangular, R_[row][column]
+  double inv_diagonal_[kMaxTaskSize];     ///< 1 / R_ii, 0 where J has lost rank
+  double damping_squared_ = 0.0;
+  /// (R^T R + lambda^2 I) as eigenvalues and vectors; only valid while damped().
+  Eigen::Matrix<double, kMaxTaskSize, 1> damped_eigenvalues_;
+  Eigen::Matrix<double, kMaxTaskSize, kMaxTaskSize> eigenvectors_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include "tactus/sim/plant_config.h"
+
+namespace tactus {
+
+/// A piecewise linear spring: force over penetration of the cover.
+class ContactSpring {
+ public:
+  /// Every slope of the obstacle is in series with robot_stiffness_N_per_m (infinite: rigid arm).
+  ContactSpring(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m);
+
+  double force_N(double penetration_m) const noexcept;
+
+ private:
+  struct Piece {
+    double stiffness_N_per_m, start_m, start_N;
+  };
+  std::vector<Piece> pieces_;
+};
+
+/// The axis of the cover as the world sees it.
+struct CoverAxis {
+  Vector3 p_BaseStart;  ///< m
+  Vector3 direction;    ///< unit vector, base frame, start to end
+  double length_m;
+  double radius_m;
+};
+
+/// What one obstacle does to the cover.
+struct ObstacleContact {
+  double force_N = 0.0;
+  double position_m = 0.0;               ///< along the axis
+  Vector3 force_Base = Vector3::Zero();  ///< on the robot, horizontal, N
+};
+
+/// A vertical line with a spring. The side on which it meets the cover is fixed when it appears, so
+/// an arm pushed through more than its radius is still pushed back.
+class Obstacle {
+ public:
+  Obstacle(const ObstacleConfig& config, double robot_stiffness_N_per_m)
+      : config_(config), spring_(config, robot_stiffness_N_per_m) {}
+
+  ObstacleContact touch(const CoverAxis& axis, double t_s) noexcept;
+
+ private:
+  ObstacleConfig config_;
+  ContactSpring spring_;
+  double side_ = 0.0;  ///< +-1 left or right of the axis; 0 before it appeared
+};
+
+}  // namespace tactus

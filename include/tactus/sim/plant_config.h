@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "tactus/control/controller_config.h"
+
+namespace tactus {
+
+/// A layer of foam before the solid part: `stiffness_N_per_m` until the force reaches
+/// `until_force_N`. Every slope is in series with the solid part and the robot.
+struct FoamLayer {
+  double stiffness_N_per_m = 0.0;
+  double until_force_N = 0.0;
+};
+
+/// A vertical line at (x, y) in the base frame that pushes on the cover of the tactile module,
+/// horizontally and without friction, wherever it crosses the cover: a latex band, or a profile
+/// behind foam.
+struct ObstacleConfig {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double stiffness_N_per_m = 0.0;  ///< of the solid part
+  std::vector<FoamLayer> foam;     ///< outermost first, forces rising
+  double appears_s = 0.0;
+  double vanishes_s = kNoLimit;
+};
+
+/// The electronics of a simulated tactile module.
+struct SimulatedModuleConfig {
+  double filter_cutoff_hz = 15.0;  ///< 3rd-order Butterworth
+  double filter_rate_hz = 1000.0;  ///< rate at which the module filters
+  double sample_period_s = 0.004;  ///< a multiple of the filter's period
+  /// (F_y, F_z, M_y, M_z) in the module's frame from the eight channels in N; rank 4.
+  Eigen::Matrix<double, 4, 8> calibration = Eigen::Matrix<double, 4, 8>::Zero();
+  double counts_per_N = 100000.0;  ///< of the 24-bit channels
+  bool quantised = true;
+  double noise_N = 0.0;  ///< standard deviation of one channel
+  std::uint64_t seed = 1;
+};
+
+struct PlantConfig {
+  double drive_lag_s = 0.005;                 ///< first-order lag of position; 0: ideal drives
+  double robot_stiffness_N_per_m = kNoLimit;  ///< of the arm, in series with every obstacle
+  double cover_radius_m = 0.06;
+  SimulatedModuleConfig module;
+  std::vector<ObstacleConfig> obstacles;
+};
+
+}  // namespace tactus

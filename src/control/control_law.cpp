@@ -1,0 +1,85 @@
+#include "tactus/control/control_law.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+
+ControlLaw::ControlLaw(const ForceControlConfig& config, const SerialChain& chain,
+                       const JointVector& inv_sqrt_weights)
+    : config_(config), max_null_speed_scaled_(chain.size()) {
+  for (int i = 0; i < chain.size(); ++i) {
+    const double limit = chain.type(i) == JointType::kPrismatic ? config.max_null_speed_m_per_s
+                                                                : config.max_null_speed_rad_per_s;
+    max_null_speed_scaled_[i] = limit / inv_sqrt_weights[i];
+  }
+}
+
+double ControlLaw::proportionalGain(double stiffness_N_per_m) const noexcept {
+  const double gain = config_.order == 2 ? 2.0 * config_.damping : 1.0;
+  return gain / (config_.time_constant_s * stiffness_N_per_m);
+}
+
+double ControlLaw::singleSpace(const ControlLawInput& input,
+                               const ControlLawState& state) const noexcept {
+  return input.x_dot_ff_m_per_s - proportionalGain(input.stiffness_N_per_m) * input.F_p_N -
+         state.V_m_per_s;
+}
+
+double ControlLaw::secondSpace(const ControlLawInput& input,
+                               const ControlLawState& state) const noexcept {
+  const double excess_N = input.F_p_N - config_.activation_force_N;
+  const double answer = proportionalGain(input.stiffness_N_per_m) * excess_N + state.It_m_per_s;
+  return -std::max(0.0, answer);
+}
+
+double ControlLaw::nullSpaceShare(double u_n, const ContactSpace& space) const noexcept {
+  double share = 1.0;
+  for (int i = 0; i < space.a_scaled.size(); ++i) {
+    const double speed = std::abs(space.a_scaled[i] * u_n);
+    if (speed * share > max_null_speed_scaled_[i]) share = max_null_speed_scaled_[i] / speed;
+  }
+  return share;
+}
+
+void ControlLaw::update(const ControlLawInput& input, const ContactSpace& space, double period_s,
+                        ControlLawState& state, ControlLawOutput& output) const noexcept {
+  state.V_m_per_s *= input.integral_decay;
+  const double single = singleSpace(input, state);
+  const double second = secondSpace(input, state);
+  bool limited = false;
+  output = {};
+  switch (config_.variant) {
+    case Variant::kNone:
+      return;
+    case Variant::kJointSpace:
+      output.u_j = single * invertRegularised(space.k_j, space.k_j);
+      break;
+    case Variant::kTaskSpace:
+      output.u_t = single * invertRegularised(space.k_t, space.k_j);
+      break;
+    case Variant::kNullTask:
+      output.u_t = second * invertRegularised(space.k_t, space.k_j);
+      break;
+    case Variant::kNullJoint:
+      output.u_j = second * invertRegularised(space.k_j, space.k_j);
+      break;
+    case Variant::kNullSpace:
+      break;
+  }
+  if (config_.variant == Variant::kNullSpace || config_.variant == Variant::kNullTask ||
+      config_.variant == Variant::kNullJoint) {
+    output.u_n = single * invertRegularised(space.k_n, space.k_j);
+    const double share = nullSpaceShare(output.u_n, space);
+    output.u_n *= share;
+    limited = share < 1.0;
+  }
+  if (config_.order == 1) return;
+  const double rate =
+      period_s / (config_.time_constant_s * config_.time_constant_s * input.stiffness_N_per_m);
+  if (!limited) state.V_m_per_s += rate * input.F_p_N;
+  state.It_m_per_s =
+      std::max(0.0, state.It_m_per_s + rate * (input.F_p_N - config_.activation_force_N));
+}
+
+}  // namespace tactus

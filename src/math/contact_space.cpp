@@ -1,0 +1,24 @@
+#include "tactus/math/contact_space.h"
+
+#include <algorithm>
+
+namespace tactus {
+
+void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const JointVector& a,
+                         const JointVector& inv_sqrt_weights, const TaskVector& y_eff,
+                         ContactSpace& contact) noexcept {
+  contact.a_scaled = a.cwiseProduct(inv_sqrt_weights);
+  contact.a_task = pseudoinverse.project(contact.a_scaled);
+  JointVector a_null = contact.a_scaled;
+  pseudoinverse.subtractExpanded(contact.a_task, a_null);
+  contact.k_j = contact.a_scaled.squaredNorm();
+  contact.k_t = contact.a_task.squaredNorm();
+  contact.k_n = a_null.squaredNorm();
+  contact.x_dot_eff_m_per_s = contact.a_task.dot(y_eff);
+}
+
+double invertRegularised(double k, double k_j) noexcept {
+  return 1.0 / std::max({k, 1e-3 * k_j, 1e-4});
+}
+
+}  // namespace tactus

@@ -1,0 +1,146 @@
+#include "tactus/math/serial_chain.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <stdexcept>
+
+#include "tactus/math/sin_cos.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kUnitTolerance = 1e-9;
+
+bool isRotation(const Matrix3& R) {
+  return (R * R.transpose()).isIdentity(kUnitTolerance) && R.determinant() > 0.0;
+}
+
+/// 0, 1, 2 where the axis is +-x, y, z to the bit, -1 otherwise.
+int coordinateAxis(const Vector3& axis) {
+  for (int k = 0; k < 3; ++k) {
+    if (axis == Vector3::Unit(k) || axis == -Vector3::Unit(k)) return k;
+  }
+  return -1;
+}
+
+/// R * Rot(e_k, angle): turns two columns in their plane.
+void rotateAboutCoordinateAxis(int k, double sine, double cosine, Matrix3& R) {
+  const int i = k == 2 ? 0 : k + 1;
+  const int j = k == 0 ? 2 : k - 1;
+  double* column_i = R.data() + 3 * i;
+  double* column_j = R.data() + 3 * j;
+  for (int row = 0; row < 3; ++row) {
+    const double a = column_i[row];
+    const double b = column_j[row];
+    column_i[row] = cosine * a + sine * b;
+    column_j[row] = cosine * b - sine * a;
+  }
+}
+
+/// Rot(axis_Base, angle) * R, by Rodrigues' formula on each column.
+void rotateAboutAxis(const Vector3& axis_Base, double sine, double cosine, Matrix3& R) {
+  for (int column = 0; column < 3; ++column) {
+    const Vector3 v = R.col(column);
+    R.col(column) =
+        cosine * v + sine * axis_Base.cross(v) + (1.0 - cosine) * axis_Base.dot(v) * axis_Base;
+  }
+}
+
+}  // namespace
+
+SerialChain::SerialChain(const std::vector<Joint>& joints, const AttachedFrame& tip)
+    : size_(static_cast<int>(joints.size())), tip_(tip) {
+  if (size_ < 2 || size_ > kMaxJoints) throw std::invalid_argument("2 to 16 moving joints needed");
+  if (tip.joint < -1 || tip.joint >= size_ || !isRotation(tip.X_JointFrame.R_AB))
+    throw std::invalid_argument("tip frame is not attached to the chain by a rigid pose");
+  for (int i = 0; i < size_; ++i) {
+    const Joint& joint = joints[i];
+    if (std::abs(joint.axis.norm() - 1.0) > kUnitTolerance)
+      throw std::invalid_argument("joint axis is not a unit vector");
+    if (!isRotation(joint.X_ParentJoint.R_AB))
+      throw std::invalid_argument("joint origin is not a rigid pose");
+    PreparedJoint& prepared = joints_[i];
+    prepared.type = joint.type;
+    prepared.R_ParentJoint = joint.X_ParentJoint.R_AB;
+    prepared.p_ParentJoint = joint.X_ParentJoint.p_AB;
+    prepared.origin_is_rotated = joint.X_ParentJoint.R_AB != Matrix3::Identity();
+    prepared.axis = joint.axis;
+    prepared.coordinate_axis = coordinateAxis(joint.axis);
+    prepared.axis_sign = joint.axis.sum() < 0.0 ? -1.0 : 1.0;
+  }
+}
+
+void SerialChain::computePose(const JointVector& q, ChainPose& pose) const noexcept {
+  double sine[kMaxJoints];
+  double cosine[kMaxJoints];
+  sinCos(q.data(), size_, sine, cosine);
+  Matrix3 R = Matrix3::Identity();
+  Vector3 p = Vector3::Zero();
+  for (int i = 0; i < size_; ++i) {
+    const PreparedJoint& joint = joints_[i];
+    p += R.lazyProduct(joint.p_ParentJoint);
+    if (joint.origin_is_rotated) R = R.lazyProduct(joint.R_ParentJoint).eval();
+    const bool general = joint.coordinate_axis < 0;
+    const Vector3 axis = general ? Vector3(R.lazyProduct(joint.axis))
+                                 : Vector3(joint.axis_sign * R.col(joint.coordinate_axis));
+    if (joint.type == JointType::kPrismatic) {
+      p += q[i] * axis;
+    } else if (general) {
+      rotateAboutAxis(axis, sine[i], cosine[i], R);
+    } else {
+      rotateAboutCoordinateAxis(joint.coordinate_axis, joint.axis_sign * sine[i], cosine[i], R);
+    }
+    pose.axis_Base[i] = axis;
+    pose.R_BaseJoint[i] = R;
+    pose.p_BaseJoint[i] = p;
+  }
+}
+
+Pose framePose(const ChainPose& pose, const AttachedFrame& frame) noexcept {
+  if (frame.joint < 0) return frame.X_JointFrame;
+  return Pose{pose.R_BaseJoint[frame.joint], pose.p_BaseJoint[frame.joint]} * frame.X_JointFrame;
+}
+
+Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcept {
+  if (frame.joint < 0) return frame.X_JointFrame.p_AB;
+  return pose.p_BaseJoint[frame.joint] +
+         pose.R_BaseJoint[frame.joint].lazyProduct(frame.X_JointFrame.p_AB);
+}
+
+void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const Vector3& p_BaseTip,
+                        const int* components, int component_count, TaskJacobian& J) noexcept {
+  J.resize(component_count, chain.size());
+  for (int i = 0; i < chain.size(); ++i) {
+    double column[6] = {0, 0, 0, 0, 0, 0};
+    Eigen::Map<Vector3> linear(column);
+    Eigen::Map<Vector3> angular(column + 3);
+    if (i <= chain.tip().joint) {
+      const Vector3& axis = pose.axis_Base[i];
+      if (chain.type(i) == JointType::kPrismatic) {
+        linear = axis;
+      } else {
+        linear = axis.cross(p_BaseTip - pose.p_BaseJoint[i]);
+        angular = axis;
+      }
+    }
+    for (int row = 0; row < component_count; ++row) J(row, i) = column[components[row]];
+  }
+}
+
+void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
+                                 const Vector3& p_BasePoint, const Vector3& f_Base,
+                                 JointVector& result) noexcept {
+  result.resize(chain.size());
+  for (int i = 0; i < chain.size(); ++i) {
+    if (i > joint) {
+      result[i] = 0.0;
+    } else if (chain.type(i) == JointType::kPrismatic) {
+      result[i] = pose.axis_Base[i].dot(f_Base);
+    } else {
+      // (axis x r) . f = axis . (r x f)
+      result[i] = pose.axis_Base[i].dot((p_BasePoint - pose.p_BaseJoint[i]).cross(f_Base));
+    }
+  }
+}
+
+}  // namespace tactus

@@ -1,0 +1,88 @@
+#include "tactus/math/trajectory.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tactus {
+namespace {
+
+Matrix3 rotationOf(const Vector3& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  if (angle == 0.0) return Matrix3::Identity();
+  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
+}
+
+struct PathPoint {
+  double s, s_dot;
+};
+
+/// Distance of a sin^2 speed ramp of length T from 0 to 1, and its speed, x into the ramp.
+PathPoint ramp(double x, double T) {
+  const double phase = std::numbers::pi * x / T;
+  const double sine = std::sin(0.5 * phase);
+  return {0.5 * x - T / (2.0 * std::numbers::pi) * std::sin(phase), sine * sine};
+}
+
+/// Path parameter 0..1 of a rest-to-rest motion at time t into it.
+PathPoint timeLaw(double t, double duration, double T, double rate) {
+  if (t < T) {
+    const auto [s, speed] = ramp(t, T);
+    return {rate * s, rate * speed};
+  }
+  if (t < duration - T) return {rate * (0.5 * T + (t - T)), rate};
+  const auto [s, speed] = ramp(duration - t, T);
+  return {1.0 - rate * s, rate * speed};
+}
+
+}  // namespace
+
+Trajectory::Trajectory(const TrajectoryConfig& config, const Pose& X_BaseTool_start)
+    : X_start_(X_BaseTool_start) {
+  double time_s = config.start_s;
+  Vector3 p = X_start_.p_AB;
+  Matrix3 R = X_start_.R_AB;
+  for (const Waypoint& waypoint : config.waypoints) {
+    Segment segment;
+    segment.start_s = time_s;
+    segment.p_start = p;
+    segment.R_start = R;
+    p = X_start_.p_AB + waypoint.displacement_m;
+    R = rotationOf(waypoint.rotation_vector_rad) * X_start_.R_AB;
+    segment.displacement = p - segment.p_start;
+    const Eigen::AngleAxisd turn(Matrix3(R * segment.R_start.transpose()));
+    segment.rotation_vector = turn.angle() * turn.axis();
+    // The slower of the two motions sets the pace; short paths never reach their cruise speed.
+    const double cruise_s =
+        std::max(segment.displacement.norm() / waypoint.speed_m_per_s,
+                 segment.rotation_vector.norm() / waypoint.angular_speed_rad_per_s);
+    segment.ramp_s = waypoint.ramp_s;
+    segment.cruise_rate_per_s = 1.0 / std::max(cruise_s, waypoint.ramp_s);
+    segment.duration_s = std::max(cruise_s, waypoint.ramp_s) + waypoint.ramp_s;
+    segments_.push_back(segment);
+    time_s += segment.duration_s + waypoint.pause_s;
+  }
+}
+
+double Trajectory::end_s() const noexcept {
+  return segments_.empty() ? 0.0 : segments_.back().start_s + segments_.back().duration_s;
+}
+
+ToolReference Trajectory::evaluate(double t_s) const noexcept {
+  const auto next =
+      std::upper_bound(segments_.begin(), segments_.end(), t_s,
+                       [](double t, const Segment& segment) { return t < segment.start_s; });
+  if (next == segments_.begin())
+    return {X_start_.p_AB, Vector3::Zero(), X_start_.R_AB, Vector3::Zero()};
+  const Segment& segment = *std::prev(next);
+  const double t = t_s - segment.start_s;
+  const PathPoint path = t < segment.duration_s ? timeLaw(t, segment.duration_s, segment.ramp_s,
+                                                          segment.cruise_rate_per_s)
+                                                : PathPoint{1.0, 0.0};
+  return {segment.p_start + path.s * segment.displacement, path.s_dot * segment.displacement,
+          rotationOf(path.s * segment.rotation_vector) * segment.R_start,
+          path.s_dot * segment.rotation_vector};
+}
+
+}  // namespace tactus

@@ -1,0 +1,50 @@
+#include "tactus/sim/obstacle.h"
+
+#include <cmath>
+
+namespace tactus {
+namespace {
+
+double inSeries(double a, double b) { return 1.0 / (1.0 / a + 1.0 / b); }
+
+}  // namespace
+
+ContactSpring::ContactSpring(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m) {
+  const double solid = inSeries(obstacle.stiffness_N_per_m, robot_stiffness_N_per_m);
+  double penetration_m = 0.0;
+  double force_N = 0.0;
+  for (const FoamLayer& layer : obstacle.foam) {
+    const double stiffness = inSeries(layer.stiffness_N_per_m, solid);
+    pieces_.push_back({stiffness, penetration_m, force_N});
+    penetration_m += (layer.until_force_N - force_N) / stiffness;
+    force_N = layer.until_force_N;
+  }
+  pieces_.push_back({solid, penetration_m, force_N});
+}
+
+double ContactSpring::force_N(double penetration_m) const noexcept {
+  if (penetration_m <= 0.0) return 0.0;
+  auto piece = pieces_.rbegin();
+  while (penetration_m < piece->start_m) ++piece;  // the first one starts at 0
+  return piece->start_N + piece->stiffness_N_per_m * (penetration_m - piece->start_m);
+}
+
+ObstacleContact Obstacle::touch(const CoverAxis& axis, double t_s) noexcept {
+  ObstacleContact contact;
+  if (t_s < config_.appears_s || t_s >= config_.vanishes_s) return contact;
+  const double horizontal = std::hypot(axis.direction.x(), axis.direction.y());
+  if (horizontal < 1e-9) return contact;  // a vertical link has no horizontal side to push on
+  const double h_x = axis.direction.x() / horizontal;
+  const double h_y = axis.direction.y() / horizontal;
+  const double r_x = config_.x_m - axis.p_BaseStart.x();
+  const double r_y = config_.y_m - axis.p_BaseStart.y();
+  const double left_m = h_x * r_y - h_y * r_x;  // distance to the left of the axis
+  if (side_ == 0.0) side_ = left_m < 0.0 ? -1.0 : 1.0;
+  contact.position_m = (h_x * r_x + h_y * r_y) / horizontal;
+  if (contact.position_m < 0.0 || contact.position_m > axis.length_m) return contact;
+  contact.force_N = spring_.force_N(axis.radius_m - side_ * left_m);
+  contact.force_Base = contact.force_N * side_ * Vector3(h_y, -h_x, 0.0);
+  return contact;
+}
+
+}  // namespace tactus

@@ -1,0 +1,45 @@
+#include "tactus/sim/simulated_module.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+namespace {
+constexpr double kMaxCounts = 8388607.0;  // signed 24 bits
+}
+
+SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config)
+    : config_(config),
+      filters_{ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
+               ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
+               ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
+               ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz)},
+      channels_from_wrench_(config.calibration.completeOrthogonalDecomposition().pseudoInverse()),
+      random_(config.seed),
+      steps_a_sample_(
+          static_cast<int>(std::lround(config.sample_period_s * config.filter_rate_hz))) {}
+
+void SimulatedModule::update(const Wrench4& wrench) noexcept {
+  Wrench4 filtered;
+  for (int i = 0; i < 4; ++i) filtered[i] = filters_[i].update(wrench[i]);
+  if (steps_to_sample_-- > 0) return;
+  steps_to_sample_ = steps_a_sample_ - 1;
+  const Wrench4 measured = measure(filtered);
+  sample_ = {measured[0], measured[1], measured[2], measured[3], sample_.sequence + 1};
+}
+
+Wrench4 SimulatedModule::measure(const Wrench4& wrench) noexcept {
+  if (!config_.quantised && config_.noise_N == 0.0) return wrench;
+  Eigen::Matrix<double, 8, 1> channels = channels_from_wrench_ * wrench;
+  for (double& force_N : channels) {
+    if (config_.noise_N > 0.0) force_N += config_.noise_N * normal_(random_);
+    if (!config_.quantised) continue;
+    const double counts =
+        std::clamp(std::round(force_N * config_.counts_per_N), -kMaxCounts, kMaxCounts);
+    force_N = counts / config_.counts_per_N;
+  }
+  return config_.calibration * channels;
+}
+
+}  // namespace tactus
