@@ -1,0 +1,275 @@
+"""tools/report as a user runs it, on made-up runs whose numbers are known."""
+
+import html.parser
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+sys.dont_write_bytecode = True
+
+from tactus_report import comparison, figures, page  # noqa: E402
+
+FAKE_TACTUS = ROOT / "tests/tools/fake_tactus"
+
+
+def summary_of(scene, **changes):
+    summary = {
+        "scene": scene, "variant": "null_task", "outcome": "done", "peak_force_N": 8.0,
+        "final_force_N": 5.0, "tcp_error_max_m": 0.08, "tcp_error_rms_m": 0.04,
+        "tcp_error_final_m": 0.0788, "peak_joint_speed_squared": 0.2, "joints_at_limit_cycles": 0,
+        "stiffness_at_peak_N_per_m": 1618.0, "real_time_factor": 1000.0,
+        "step_time_ns": {"min": 500, "median": 700, "p99": 900, "max": 20000}}
+    summary.update(changes)
+    return summary
+
+
+def write_run(folder, name, text=None, **changes):
+    run = folder / name
+    run.mkdir(parents=True)
+    summary = summary_of(changes.pop("scene", name), **changes)
+    (run / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    (run / "run.ulg").write_text(table_text() if text is None else text, encoding="utf-8")
+    return run
+
+
+def table_text(replace=None):
+    """13 s of a force that peaks between two plotted points; columns beyond those needed."""
+    lines = ["t_s,other,force_sensor_N,stiffness_N_per_m,dq_1,dq_2,"
+             "tool_error_x_m,tool_error_y_m,tool_error_z_m"]
+    for cycle in range(0, 13000, 5):
+        force = 8.0 if cycle == 8335 else cycle / 2600
+        lines.append(f"{cycle / 1000},0,{force},30,0.3,0.4,0.001,0.002,0.002")
+    return "\n".join(lines if replace is None else replace(lines)) + "\n"
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory(prefix="a folder with spaces ")
+        self.addCleanup(scratch.cleanup)
+        self.use(scratch)
+
+    def use(self, scratch):
+        self.scratch = pathlib.Path(scratch.name)
+        self.runs = self.scratch / "runs"
+
+    def report(self, *arguments, tactus=FAKE_TACTUS, environment=None):
+        command = [ROOT / "tools/report", "--tactus", tactus, *(arguments or [self.runs])]
+        return subprocess.run(command, capture_output=True, encoding="utf-8", env=environment)
+
+    def page(self):
+        return (self.runs / "report.html").read_text(encoding="utf-8")
+
+    def refuse(self, expected, **options):
+        """Exit code 1, one line that says what is wrong, and no page."""
+        result = self.report(**options)
+        self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertIn(expected, result.stderr)
+        self.assertFalse((self.runs / "report.html").exists())
+
+
+class WholePage(Report):
+    """All scenes; made once, read by all tests."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.TemporaryDirectory(prefix="a folder with spaces ")
+        cls.addClassCleanup(cls.shared.cleanup)
+        for scene in page.PAPER_SCENES | {"free_motion"}:
+            write_run(pathlib.Path(cls.shared.name) / "runs", scene)
+        cls.first = None
+
+    def setUp(self):
+        self.use(self.shared)
+        if not WholePage.first:
+            WholePage.first = self.report()
+        self.assertEqual((self.first.returncode, self.first.stderr), (0, ""))
+
+    def test_has_every_figure_as_well_formed_svg(self):
+        svgs = re.findall(r"<svg.*?</svg>", self.page(), flags=re.DOTALL)
+        self.assertEqual(len(svgs), 8)
+        for svg in svgs:
+            xml.etree.ElementTree.fromstring(svg)
+        for number in range(2, 9):
+            self.assertIn(f"Figure {number}. ", self.page())
+
+    def test_needs_nothing_from_outside(self):
+        class Links(html.parser.HTMLParser):
+            found = []
+
+            def handle_starttag(self, tag, attributes):
+                self.found += [tag] if tag in ("script", "link", "img", "iframe") else []
+                self.found += [value for name, value in attributes
+                               if name in ("src", "href", "xlink:href") and value[:1] != "#"]
+
+        links = Links()
+        links.feed(self.page())
+        self.assertEqual(links.found, [])
+        self.assertEqual(re.findall(r"url\((?!#)|@import", self.page()), [])
+
+    def test_ids_are_unique_and_references_resolve(self):
+        ids = re.findall(r'\bid="([^"]*)"', self.page())
+        self.assertEqual(len(ids), len(set(ids)))
+        used = re.findall(r'(?:url\(#|href="#)([^)"]*)', self.page())
+        self.assertTrue(used)
+        self.assertEqual(set(used) - set(ids), set())
+
+    def test_colours_come_from_the_page(self):
+        self.assertEqual(re.findall(r"#0000\w\w\b", self.page()), [])
+        self.assertIn("var(--orange", self.page())
+
+    def test_is_the_same_to_the_byte_on_any_machine(self):
+        before = self.page()
+        (self.scratch / "matplotlibrc").write_text("lines.linewidth: 9\nfont.size: 30\n")
+        environment = {"MATPLOTLIBRC": str(self.scratch), "PATH": os.environ["PATH"], "LC_ALL": "C"}
+        result = self.report(environment=environment)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(self.page(), before)
+
+    def test_ends_by_naming_the_page(self):
+        self.assertEqual(self.first.stdout.splitlines()[-1],
+                         f"report: {(self.runs / 'report.html').resolve()}")
+
+    def test_labels_the_peak_between_plotted_points(self):
+        self.assertIn("assumed, peak 8.00 N", self.page())
+
+    def test_scenes_beyond_the_paper_have_their_own_table(self):
+        further = self.page().split("<h2>Further runs</h2>")[1]
+        self.assertEqual(re.findall(r'scope="row">(\w+)<', further), ["free_motion"])
+
+
+class Incomplete(Report):
+    def test_names_the_missing_runs(self):
+        write_run(self.runs, "scenario2_assumed")
+        result = self.report()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("Missing: scenario2_estimated", self.page())
+        self.assertIn("Missing: scenario1_joint_space, scenario1_multi_space", self.page())
+        self.assertIn("scenario1_none missing", result.stdout)
+
+    def test_accepts_what_a_scene_without_contact_leaves_out(self):
+        write_run(self.runs, "free_motion", peak_force_N=None, stiffness_at_peak_N_per_m=None)
+        self.assertEqual(self.report().returncode, 0)
+
+    def test_shows_markup_in_names_as_text(self):
+        write_run(self.runs, "x", scene="<script>", outcome="a & b")
+        self.assertEqual(self.report().returncode, 0)
+        self.assertNotIn("<script>", self.page())
+        self.assertIn("a &amp; b", self.page())
+
+    def test_collects_several_folders(self):
+        for scene in ("scenario2_assumed", "scenario2_estimated"):
+            write_run(self.runs / scene, scene)
+        output = self.scratch / "page.html"
+        folders = [self.runs / "scenario2_assumed", self.runs / "scenario2_estimated"]
+        self.assertEqual(self.report(*folders, "-o", output).returncode, 0)
+        self.assertNotIn("Missing: scenario2", output.read_text(encoding="utf-8"))
+
+
+class Malformed(Report):
+    def test_no_folder(self):
+        self.refuse("no run found")
+
+    def test_no_argument_is_a_usage_error(self):
+        result = subprocess.run([ROOT / "tools/report"], capture_output=True)
+        self.assertEqual(result.returncode, 2)
+
+    def test_summaries(self):
+        run = write_run(self.runs, "scenario1_none")
+        good = summary_of("scenario1_none")
+        broken = {
+            "not readable as JSON": ["", "{", "\x00\x01", "[" * 100000, "9" * 5000],
+            "not an object": ["[]", "3", "null"],
+            "scene: missing": [json.dumps({**good, "scene": 3}), "{}"],
+            "peak_force_N": [json.dumps({**good, "peak_force_N": value})
+                             for value in ("8", True, [], float("nan"), float("inf"), 10**400)],
+            "step_time_ns": [json.dumps({**good, "step_time_ns": 5})],
+            "p99": [json.dumps({**good, "step_time_ns": {"median": 5}})],
+            "tcp_error_rms_m: missing": [
+                json.dumps({key: good[key] for key in good if key != "tcp_error_rms_m"})]}
+        for expected, texts in broken.items():
+            for text in texts:
+                with self.subTest(text=text[:60]):
+                    (run / "summary.json").write_text(text)
+                    self.refuse(expected)
+
+    def test_logs(self):
+        broken = {
+            "column t_s missing": table_text(lambda lines: ["x"] + lines[1:]),
+            "column tool_error_z_m missing": table_text(
+                lambda lines: [line.rsplit(",", 1)[0] for line in lines]),
+            "not readable as a table": table_text(lambda lines: lines[:9] + ["1,2,x"]),
+            "fewer than two rows": table_text(lambda lines: lines[:1]),
+            "not finite": table_text(lambda lines: lines + [lines[1].replace(",30,", ",nan,")])}
+        for expected, text in broken.items():
+            with self.subTest(expected):
+                write_run(self.runs, "scenario1_none", text)
+                self.refuse(expected)
+                shutil.rmtree(self.runs)
+
+    def test_binary_log(self):
+        run = write_run(self.runs, "scenario1_none")
+        (run / "run.ulg").write_bytes(bytes(range(256)) * 20)
+        self.refuse("not readable as a table")
+
+    def test_missing_log(self):
+        (write_run(self.runs, "scenario1_none") / "run.ulg").unlink()
+        self.refuse("run.ulg: missing")
+
+    def test_one_scene_twice(self):
+        write_run(self.runs, "scenario1_none")
+        write_run(self.runs, "copy", scene="scenario1_none")
+        self.refuse("there twice")
+
+    def test_program_that_is_not_there_or_fails(self):
+        write_run(self.runs, "scenario1_none")
+        self.refuse("cannot be run", tactus=self.scratch / "none")
+        self.refuse("tactus export failed", tactus="/bin/false")
+
+
+class Comparison(unittest.TestCase):
+    def test_reduction_and_difference(self):
+        self.assertAlmostEqual(comparison.reduction_percent(17.7, 8.0)[0], 54.802, places=3)
+        self.assertEqual(comparison.differences([9.9, 5.0], [10.0, 5.0]), "-1.0 %, +0.0 %")
+
+    def test_every_row_names_a_scene_of_a_figure(self):
+        for row in comparison.read_data()["rows"]:
+            for key in row["ours"]:
+                self.assertIn(key.split(":")[0], page.PAPER_SCENES, row["quantity"])
+
+
+class Drawing(unittest.TestCase):
+    def test_thinning_keeps_extremes_and_ends(self):
+        x = np.arange(100000.0)
+        y = np.sin(x / 3000)
+        y[[4321, 77777]] = 5, -5
+        thin_x, thin_y = figures.thinned(x, y)
+        self.assertLess(len(thin_x), 2000)
+        self.assertEqual((thin_y.max(), thin_y.min()), (5, -5))
+        self.assertEqual((thin_x[0], thin_x[-1]), (0, 99999))
+        self.assertTrue((np.diff(thin_x) > 0).all())
+
+    def test_labels_keep_their_distance_and_order(self):
+        generator = np.random.default_rng(7)
+        for count in (1, 2, 5, 11):
+            wished = sorted(generator.uniform(0, 1, count) ** 3)
+            heights = figures.spread(wished, 0.075)
+            self.assertEqual(len(heights), count)
+            self.assertTrue((np.diff(heights) >= 0.075 - 1e-12).all(), heights)
+            self.assertLessEqual(max(heights), 1.0 + 1e-12)
+        self.assertEqual(figures.spread([0.2, 0.6], 0.1), [0.2, 0.6])
+
+
+if __name__ == "__main__":
+    unittest.main()

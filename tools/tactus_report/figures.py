@@ -1,0 +1,159 @@
+"""Line figures as SVG text that takes its colours from the page, light or dark."""
+
+import dataclasses
+import io
+import logging
+import re
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no remarks about caches and HOME
+
+# Matplotlib wants colours as numbers; these stand for the page's and are replaced in the SVG.
+INK, GRID, RED, GREEN, BLUE, ORANGE = (f"#0000{number:02x}" for number in range(1, 7))
+PAGE_COLOURS = {INK: "currentColor", GRID: "var(--grid,#ccc)", RED: "var(--red,#c8352b)",
+                GREEN: "var(--green,#157f43)", BLUE: "var(--blue,#2563c9)",
+                ORANGE: "var(--orange,#c96a00)"}
+
+STYLE = {
+    "svg.fonttype": "none", "font.family": "sans-serif", "font.size": 10,
+    "text.color": INK, "axes.labelcolor": INK, "axes.edgecolor": INK,
+    "xtick.color": INK, "ytick.color": INK, "axes.linewidth": 0.7,
+    "axes.spines.top": False, "axes.spines.right": False,
+    "axes.grid": True, "grid.color": GRID, "grid.linewidth": 0.6,
+    "path.simplify_threshold": 0.05,
+}
+SIZE_IN = (7.6, 3.1)
+POINTS_PER_CURVE = 1600
+
+
+@dataclasses.dataclass
+class Curve:
+    label: str
+    colour: str
+    line: object  # matplotlib line style: tells curves apart without colour
+    time_s: np.ndarray
+    value: np.ndarray
+
+
+def line_figure(name, curves, y_label, unit, log_axis=False, label_peak=False):
+    """Curves over time, each labelled at its end with its last or its largest value."""
+    with matplotlib.rc_context():
+        figure, axes = new_figure()
+        for curve in curves:
+            axes.plot(*thinned(curve.time_s, curve.value), color=curve.colour, linewidth=1.6,
+                      linestyle=curve.line)
+        if log_axis:
+            axes.set_yscale("log")
+        else:
+            axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+        axes.set_xlabel("time in s")
+        axes.set_ylabel(y_label)
+        if curves:
+            end_s = max(curve.time_s[-1] for curve in curves)
+            axes.set_xlim(0.0, end_s)
+            label_ends(axes, [(curve.time_s[-1], curve.value[-1],
+                               label_text(curve, unit, label_peak), curve.colour)
+                              for curve in curves])
+        return as_svg(figure, name)
+
+
+def scatter_figure(name, points, x_label, y_label):
+    """Points (x, y, label) on a logarithmic y axis, each named beside the axes."""
+    with matplotlib.rc_context():
+        figure, axes = new_figure()
+        axes.set_yscale("log")
+        axes.set_xlabel(x_label)
+        axes.set_ylabel(y_label)
+        for x, y, _ in points:
+            axes.plot([x], [y], "o", color=BLUE, markersize=5, clip_on=False)
+        axes.set_xlim(0.0, 1.1 * max((x for x, _, _ in points), default=1.0))
+        label_ends(axes, [(x, y, label, INK) for x, y, label in points])
+        return as_svg(figure, name)
+
+
+def new_figure():
+    matplotlib.rcdefaults()  # whatever matplotlibrc this machine has
+    matplotlib.rcParams.update(STYLE)
+    figure = Figure(figsize=SIZE_IN)
+    axes = figure.add_axes((0.085, 0.16, 0.63, 0.8))
+    return figure, axes
+
+
+def thinned(x, y):
+    """Fewer points for the same picture: the extremes of each slice stay."""
+    slice_length = 2 * len(x) // POINTS_PER_CURVE
+    if slice_length < 4:
+        return x, y
+    keep = {0, len(x) - 1}
+    for start in range(0, len(x), slice_length):
+        part = y[start:start + slice_length]
+        keep |= {start + int(part.argmin()), start + int(part.argmax())}
+    indices = sorted(keep)
+    return x[indices], y[indices]
+
+
+def label_ends(axes, labels):
+    """Texts (x, y, text, colour) right of the axes at the height of their points, apart enough to
+    be read, with a thin line to the point."""
+    to_axes = axes.transData + axes.transAxes.inverted()
+    placed = [(*to_axes.transform((x, y)), text, colour) for x, y, text, colour in labels]
+    placed.sort(key=lambda item: item[1])
+    for (x, y, text, colour), height in zip(placed, spread([item[1] for item in placed], 0.075)):
+        axes.plot([x, 1.015, 1.035], [y, height, height], transform=axes.transAxes, clip_on=False,
+                  color=colour, linewidth=0.6, alpha=0.7)
+        axes.text(1.045, height, text, transform=axes.transAxes, color=colour, va="center",
+                  fontsize=9.5)
+
+
+def spread(heights, gap):
+    """The sorted heights, moved as little as it takes to be `gap` apart, within 0..1 if it fits."""
+    groups = []  # [sum of wished first heights, number], merged while they overlap
+    for index, height in enumerate(heights):
+        groups.append([height, 1])
+        while len(groups) > 1 and bottom(groups[-2], gap) + gap * groups[-2][1] > bottom(
+                groups[-1], gap):
+            last = groups.pop()
+            groups[-1][0] += last[0]
+            groups[-1][1] += last[1]
+    result = []
+    for group in groups:
+        lowest = max(bottom(group, gap), result[-1] + gap if result else 0.0)
+        result += [lowest + gap * place for place in range(group[1])]
+    overflow = max(0.0, result[-1] - 1.0) if result else 0.0
+    return [height - overflow for height in result]
+
+
+def bottom(group, gap):
+    """Lowest height of a group of labels that is centred on the mean of its points."""
+    total, count = group
+    return total / count - gap * (count - 1) / 2
+
+
+def label_text(curve, unit, label_peak):
+    value = curve.value.max() if label_peak else curve.value[-1]
+    return f"{curve.label}, {'peak ' if label_peak else ''}{rounded(value)} {unit}".rstrip()
+
+
+def rounded(value):
+    return f"{value:.0f}" if abs(value) >= 100 else f"{value:#.3g}" if abs(value) >= 1e-3 else "0"
+
+
+def as_svg(figure, name):
+    """One <svg> element, the same to the byte for the same data."""
+    matplotlib.rcParams["svg.hashsalt"] = name
+    text = io.StringIO()
+    figure.savefig(text, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    svg = text.getvalue()
+    svg = svg[svg.index("<svg"):]
+    svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)
+    svg = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", svg, count=1)
+    svg = re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", svg, count=1)
+    # Ids must be unique in the page.
+    svg = re.sub(r'\bid="', f'id="{name}-', svg)
+    svg = re.sub(r'(url\(#|href="#)', rf"\1{name}-", svg)
+    for colour, page_colour in PAGE_COLOURS.items():
+        svg = svg.replace(colour, page_colour)
+    return svg

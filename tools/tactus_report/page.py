@@ -1,0 +1,94 @@
+"""The report: one HTML page that needs nothing else."""
+
+import html
+import pathlib
+import re
+
+from . import comparison, paper_figures
+from .figures import scatter_figure
+
+CSS = pathlib.Path(__file__).with_name("page.css")
+PAPER_SCENES = {scene for figure in paper_figures.FIGURES for scene, *_ in figure.curves}
+
+
+def build_page(runs):
+    further = {scene: run for scene, run in runs.items() if scene not in PAPER_SCENES}
+    of_paper = {scene: run for scene, run in runs.items() if scene in PAPER_SCENES}
+    sources = comparison.read_data()["sources"]
+    body = [
+        "<h1>Tactile feedback control: the paper&#8217;s experiments, simulated</h1>",
+        f"<p>{len(runs)} runs of the controller in virtual time, the same code that drives the "
+        "arm. Figures carry the paper&#8217;s numbers.</p>",
+        "<h2>Paper, reference, ours</h2>",
+        "<p>The number in front is the paper&#8217;s scenario: 1 a soft band, 2 a softer band and a stiff "
+        "profile behind it, 3 the profile alone.</p>",
+        comparison_table(comparison.compare(runs)),
+        f'<p class="source">Paper: {html.escape(sources["paper"])}. Reference: '
+        f'{html.escape(sources["reference"])}.</p>',
+        "<h2>Figures</h2>",
+        *(paper_figures.render(figure, runs) for figure in paper_figures.FIGURES),
+        "<h2>Error against run time</h2>",
+        error_figure(runs),
+        runs_table(of_paper),
+    ]
+    if further:
+        body += ["<h2>Further runs</h2>", "<p>Scenes that are not in the paper.</p>",
+                 runs_table(further)]
+    return ('<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+            "<title>Tactus report</title>\n"
+            f"<style>\n{CSS.read_text(encoding='utf-8')}</style>\n</head>\n<body>\n<main>\n"
+            + "\n".join(body) + "\n</main>\n</body>\n</html>\n")
+
+
+def comparison_table(rows):
+    cells = [[row.quantity, row.paper, row.reference, row.ours, row.difference] for row in rows]
+    return table(["Quantity", "Paper", "Reference", "Ours", "Ours to reference"], cells, "compare")
+
+
+def error_figure(runs):
+    points = []
+    for scene, run in sorted(runs.items()):
+        time_ns, error_m = run.summary["step_time_ns"]["median"], run.summary["tcp_error_rms_m"]
+        if time_ns is not None and error_m:
+            points.append((time_ns / 1e3, 1e3 * error_m, scene))
+    drawing = scatter_figure("figure-error", points, "median time of one control step in µs",
+                             "TCP error, rms, in mm")
+    return paper_figures.as_figure(
+        "figure-error", drawing, "Error against run time.",
+        "Each point is a run. The error is the price of a small force, not of a fast step: "
+        "it depends on the control variant, the run time on the stages that the scene names.")
+
+
+def runs_table(runs):
+    heads = ["Scene", "Outcome", "Peak force, N", "Final force, N", "TCP error rms, mm",
+             "TCP error max, mm", "Step median, ns", "Step p99, ns", "Times real time"]
+    rows = []
+    for scene, run in sorted(runs.items()):
+        summary, times = run.summary, run.summary["step_time_ns"]
+        rows.append([scene, summary["outcome"], number(summary["peak_force_N"], 2),
+                     number(summary["final_force_N"], 2),
+                     number(summary["tcp_error_rms_m"], 3, 1e3),
+                     number(summary["tcp_error_max_m"], 3, 1e3), number(times["median"], 0),
+                     number(times["p99"], 0), number(summary["real_time_factor"], 0)])
+    return table(heads, rows, "runs")
+
+
+def number(value, digits, scale=1.0):
+    return "" if value is None else f"{scale * value:.{digits}f}"
+
+
+def table(heads, rows, kind):
+    """First column names the row."""
+    lines = [f'<div class="wide"><table class="{kind}">', "<thead><tr>"]
+    lines += [f'<th scope="col">{html.escape(head)}</th>' for head in heads]
+    lines.append("</tr></thead>\n<tbody>")
+    for first, *rest in rows:
+        cells = "".join(f"<td>{with_units(cell)}</td>" for cell in rest)
+        lines.append(f'<tr><th scope="row">{html.escape(first)}</th>{cells}</tr>')
+    return "\n".join(lines) + "\n</tbody></table></div>"
+
+
+def with_units(text):
+    """Escaped, and no line break between a number and its unit."""
+    return re.sub(r"(\d) (N/m|N|mm|m|%)", r"\1&nbsp;\2", html.escape(text))

@@ -1,0 +1,98 @@
+"""The paper's figures 2 to 8: which runs, what of them, and what to see."""
+
+import dataclasses
+import html
+
+from .figures import BLUE, GREEN, ORANGE, RED, Curve, line_figure
+
+DASHED, DOTTED, SOLID, DASH_DOT = (0, (5, 2)), (0, (1.2, 1.6)), "solid", (0, (6, 2, 1.2, 2))
+
+
+@dataclasses.dataclass
+class PaperFigure:
+    number: int
+    title: str
+    what_to_see: str
+    quantity: str  # attribute of Run
+    y_label: str
+    unit: str
+    curves: list  # (scene, label, colour, line)
+    log_axis: bool = False
+    label_peak: bool = False  # name the largest value beside a curve, not the last one
+
+
+NONE = ("scenario1_none", "no controller", RED, DASH_DOT)
+NULL = ("scenario1_null_space", "null space", GREEN, DASHED)
+JOINT = ("scenario1_joint_space", "joint space", BLUE, SOLID)
+MULTI = ("scenario1_multi_space", "multi-space", ORANGE, SOLID)
+ASSUMED_2 = ("scenario2_assumed", "assumed", BLUE, DASHED)
+ESTIMATED_2 = ("scenario2_estimated", "estimated", ORANGE, SOLID)
+ASSUMED_3 = ("scenario3_assumed", "assumed", BLUE, DASHED)
+ESTIMATED_3 = ("scenario3_estimated", "estimated", ORANGE, SOLID)
+FAST_3 = ("scenario3_estimated_fast", "estimated, fast", GREEN, DASH_DOT)
+
+FORCE = ("force_N", "sensor force in N", "N")
+STIFFNESS = ("stiffness_N_per_m", "stiffness in N/m", "N/m")
+
+FIGURES = [
+    PaperFigure(
+        2, "Scenario 1, soft band: contact force",
+        "Without control the force follows the band. The null space takes off a third and the tool "
+        "stays on its path; multi-space gives way slowly above 5 N; joint space lets go of the "
+        "task and ends below the contact threshold of 1.2 N.",
+        *FORCE, [NONE, NULL, JOINT, MULTI]),
+    PaperFigure(
+        3, "Scenario 1: squared joint velocities",
+        "Joint space pays for the smallest force with the largest joint velocities. The sum mixes "
+        "m/s and rad/s, as in the paper.",
+        "joint_speed_squared", "squared norm of the command", "", [NONE, NULL, JOINT, MULTI],
+        label_peak=True),
+    PaperFigure(
+        4, "Scenario 1: deviation of the tool from its path",
+        "Joint space leaves the path at once and far; multi-space only after the force has passed "
+        "its threshold, and gradually.",
+        "tool_error_m", "TCP error in m", "m", [JOINT, MULTI]),
+    PaperFigure(
+        5, "Scenario 2, soft band then profile: contact force",
+        "The profile is reached at 8 s. With the assumed stiffness of 7000 N/m the reaction is too "
+        "slow; the estimate halves the peak. Both come to rest at 5 N.",
+        *FORCE, [ASSUMED_2, ESTIMATED_2], label_peak=True),
+    PaperFigure(
+        6, "Scenario 2: stiffness",
+        "The estimate finds the band's 30 N/m, then rises within tenths of a second at the "
+        "profile.",
+        *STIFFNESS, [ASSUMED_2, ESTIMATED_2], log_axis=True),
+    PaperFigure(
+        7, "Scenario 3, profile alone: contact force",
+        "Estimation cuts the peak by more than half; even at 2.4 times the speed it stays below "
+        "the peak without estimation.",
+        *FORCE, [ASSUMED_3, ESTIMATED_3, FAST_3], label_peak=True),
+    PaperFigure(
+        8, "Scenario 3: stiffness",
+        "Foam and profile are averaged: the faster the arm, the deeper it goes and the more of the "
+        "profile the estimate holds.",
+        *STIFFNESS, [ASSUMED_3, ESTIMATED_3, FAST_3], log_axis=True),
+]
+
+
+def render(spec, runs):
+    """One <figure> element. It says which runs it lacks."""
+    curves = [Curve(label, colour, line, runs[scene].time_s, getattr(runs[scene], spec.quantity))
+              for scene, label, colour, line in spec.curves if scene in runs]
+    missing = [scene for scene, *_ in spec.curves if scene not in runs]
+    name = f"figure-{spec.number}"
+    drawing = ""
+    if curves:
+        drawing = line_figure(name, curves, spec.y_label, spec.unit, spec.log_axis,
+                              spec.label_peak)
+    note = f'<p class="missing">Missing: {html.escape(", ".join(missing))}</p>' if missing else ""
+    return as_figure(name, drawing + note, f"Figure {spec.number}. {spec.title}.",
+                     spec.what_to_see)
+
+
+def as_figure(name, drawing, title, what_to_see):
+    drawing = drawing.replace(
+        "<svg", f'<svg role="img" aria-labelledby="{name}-title {name}-text"', 1)
+    return (f'<figure id="{name}">\n{drawing}\n<figcaption><b id="{name}-title">'
+            f'{html.escape(title)}</b> <span id="{name}-text">{html.escape(what_to_see)}</span>'
+            "</figcaption>\n</figure>")

@@ -1,0 +1,130 @@
+"""Run folders: DIR/<scene>/{run.ulg,summary.json}, as `tactus simulate -o DIR` writes them."""
+
+import dataclasses
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+
+class InputError(Exception):
+    """Something wrong with what the user gave; the message is one line."""
+
+
+SUMMARY_NUMBERS = ("peak_force_N", "final_force_N", "tcp_error_max_m", "tcp_error_rms_m",
+                   "tcp_error_final_m", "peak_joint_speed_squared", "joints_at_limit_cycles",
+                   "stiffness_at_peak_N_per_m", "real_time_factor")
+STEP_TIMES = ("median", "p99")
+
+
+@dataclasses.dataclass
+class Run:
+    scene: str
+    summary: dict  # checked: every name above is there, a finite number or None
+    time_s: np.ndarray
+    force_N: np.ndarray  # F_sen
+    stiffness_N_per_m: np.ndarray  # c
+    joint_speed_squared: np.ndarray  # of the command; m/s and rad/s mixed, as in the paper
+    tool_error_m: np.ndarray  # |w_d - w| of the real arm
+
+
+def load_runs(folders, tactus):
+    """All runs in the folders, by scene name. Raises InputError."""
+    runs = {}
+    for folder in folders:
+        for summary_path in sorted(pathlib.Path(folder).glob("*/summary.json")):
+            run = load_run(summary_path.parent, tactus)
+            if run.scene in runs:
+                raise InputError(f"{summary_path}: scene {run.scene} is there twice, expected once")
+            runs[run.scene] = run
+    if not runs:
+        raise InputError(f"{', '.join(map(str, folders))}: no run found, expected "
+                         "<scene>/summary.json as `tactus simulate -o` writes it")
+    return runs
+
+
+def load_run(folder, tactus):
+    summary = read_summary(folder / "summary.json")
+    log = folder / "run.ulg"
+    if not log.is_file():
+        raise InputError(f"{log}: missing, expected the log beside summary.json")
+    with tempfile.TemporaryDirectory() as scratch:
+        table = pathlib.Path(scratch) / "run.csv"
+        export(tactus, log, table)
+        names, values = read_table(table, log)
+    column = dict(zip(names, values.T))
+    velocities = [values for name, values in column.items() if name.startswith("dq_")]
+    errors = [column[f"tool_error_{axis}_m"] for axis in "xyz"]
+    return Run(summary["scene"], summary, column["t_s"], column["force_sensor_N"],
+               column["stiffness_N_per_m"], np.sum(np.square(velocities), axis=0),
+               np.sqrt(np.sum(np.square(errors), axis=0)))
+
+
+def read_summary(path):
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not readable as JSON: {first_line(error)}") from error
+    if not isinstance(summary, dict):
+        raise InputError(f"{path}: not an object, expected the summary of a run")
+    for key in ("scene", "outcome"):
+        if not isinstance(summary.get(key), str):
+            raise InputError(f"{path}: {key}: missing or no text, expected a name")
+    for key in SUMMARY_NUMBERS:
+        check_number(path, key, summary)
+    times = summary.get("step_time_ns")
+    if not isinstance(times, dict):
+        raise InputError(f"{path}: step_time_ns: missing or no object, expected min to max")
+    for key in STEP_TIMES:
+        check_number(path, key, times)
+    return summary
+
+
+def check_number(path, key, values):
+    """A number may be null where a scene lacks the stage that would make it."""
+    value = values.get(key, "missing")
+    if value is None:
+        return
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not is_number or not abs(value) <= sys.float_info.max:
+        raise InputError(f"{path}: {key}: {str(value)[:40]}, expected a finite number or null")
+
+
+def export(tactus, log, table):
+    try:
+        subprocess.run([tactus, "export", log, "-o", table], check=True, capture_output=True,
+                       encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise InputError(f"{tactus}: cannot be run ({error.strerror}), expected the tactus program; "
+                         "tools/demo builds it, --tactus names another") from error
+    except subprocess.CalledProcessError as error:
+        raise InputError(first_line(error.stderr) or f"{log}: tactus export failed") from error
+
+
+def read_table(table, log):
+    """Names and values of the columns the report needs."""
+    try:
+        header, *rows = table.read_text(encoding="utf-8").splitlines() or [""]
+        header = header.split(",")
+        wanted = ["t_s", "force_sensor_N", "stiffness_N_per_m"]
+        wanted += [f"tool_error_{axis}_m" for axis in "xyz"]
+        wanted += [name for name in header if name.startswith("dq_")]
+        missing = [name for name in wanted if name not in header]
+        if missing:
+            raise InputError(f"{log}: column {missing[0]} missing, expected it in every log")
+        if len(rows) < 2:
+            raise InputError(f"{log}: fewer than two rows, expected one a cycle")
+        indices = [header.index(name) for name in wanted]
+        values = np.loadtxt(rows, delimiter=",", usecols=indices, ndmin=2)
+    except (OSError, ValueError) as error:
+        raise InputError(f"{log}: not readable as a table: {first_line(error)}") from error
+    if not np.isfinite(values).all():
+        raise InputError(f"{log}: a number that is not finite, expected none in a log")
+    return wanted, values
+
+
+def first_line(text):
+    return next(iter(str(text).strip().splitlines()), "")
