@@ -29,6 +29,7 @@ struct Scene {
   double period_s = 0.001;
   double duration_s = 0.0;
   PlantConfig plant;
+  std::string robot_name;  ///< as the URDF spells it
   std::vector<std::string> joint_names;
   std::vector<SourceFile> sources;  ///< the scene first, then what it extends, the robot, the URDF
   std::vector<Override> overrides;

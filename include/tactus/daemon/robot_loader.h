@@ -1,0 +1,27 @@
+#pragma once
+
+#include "tactus/daemon/config_draft.h"
+#include "tactus/daemon/source_reader.h"
+#include "tactus/daemon/urdf_loader.h"
+#include "tactus/daemon/yaml_tree.h"
+
+namespace tactus {
+
+/// A robot.yaml with its URDF; its other values are in the draft.
+struct LoadedRobot {
+  YamlNode root;  ///< for the places of values
+  UrdfChain chain;
+};
+
+/// Reads a robot.yaml and its URDF and checks their values against each other. Throws InputError.
+LoadedRobot loadRobot(const std::string& path, SourceReader& reader, ConfigDraft& draft);
+
+/// One value a moving joint as a vector. Throws InputError if the count is wrong.
+JointVector toJointVector(const std::vector<double>& values, const YamlNode& root,
+                          const std::string& path, const UrdfChain& chain);
+
+/// Throws InputError unless q is within the position limits.
+void checkWithinLimits(const JointVector& q, const YamlNode& root, const std::string& path,
+                       const UrdfChain& chain);
+
+}  // namespace tactus

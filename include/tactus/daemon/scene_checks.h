@@ -1,0 +1,12 @@
+#pragma once
+
+#include "tactus/daemon/config_draft.h"
+#include "tactus/daemon/robot_loader.h"
+#include "tactus/daemon/yaml_tree.h"
+
+namespace tactus {
+
+/// Checks the values of a scene against each other and against the robot. Throws InputError.
+void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobot& robot);
+
+}  // namespace tactus

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tactus/daemon/input_error.h"
+#include "tactus/daemon/scene.h"
+
+namespace tactus {
+
+/// Loads a scene with everything it names and lays the overrides over it. Every value is checked;
+/// throws InputError at the first that is wrong.
+Scene loadScene(const std::string& path, const std::vector<Override>& overrides);
+
+/// The same from files as Scene::sources holds them; the first one is the scene.
+Scene loadScene(const std::vector<SourceFile>& files, const std::vector<Override>& overrides);
+
+/// Splits `controller.damping=0.7`. Throws InputError.
+Override parseOverride(std::string_view text);
+
+}  // namespace tactus

@@ -1,0 +1,129 @@
+#include "tactus/daemon/scene_loader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tactus/daemon/robot_loader.h"
+#include "tactus/daemon/scene_checks.h"
+#include "tactus/daemon/source_reader.h"
+#include "tactus/daemon/table_reader.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::size_t kMaxExtends = 8;
+
+/// Reads a scene file and lays it over the one it extends. `above` are the files that led here.
+YamlNode readScene(const std::string& path, SourceReader& reader, std::vector<std::string> above) {
+  YamlNode scene = parseYaml(reader.read(path, above.empty() ? "-" : "extends"));
+  const auto extends = std::ranges::find(scene.entries, "extends", &YamlEntry::key);
+  if (extends == scene.entries.end() || extends->value.kind == YamlNode::Kind::kNull) return scene;
+  const YamlNode& base = extends->value;
+  if (base.kind != YamlNode::Kind::kScalar || base.text.empty()) {
+    failAt(base.at, "extends", describe(base), "expected the path of a scene");
+  }
+  above.push_back(path);
+  const std::string base_path = resolvePath(path, base.text);
+  if (std::ranges::count(above, base_path) > 0) {
+    failAt(base.at, "extends", inQuotes(base.text) + " leads back to a file on the way here",
+           "expected no circle");
+  }
+  if (above.size() > kMaxExtends) {
+    failAt(base.at, "extends", "too many files in a row",
+           fmt::format("expected at most {}", kMaxExtends));
+  }
+  scene.entries.erase(extends);
+  YamlNode merged = readScene(base_path, reader, above);
+  mergeYaml(merged, std::move(scene));
+  return merged;
+}
+
+void applyOverrides(YamlNode& root, const std::vector<Override>& overrides) {
+  for (const Override& setting : overrides) {
+    if (setting.key == "extends") {
+      failAt({std::make_shared<std::string>("--set " + setting.key), 1, 1}, setting.key,
+             "cannot be set here", "expected in a file");
+    }
+    applyOverride(root, setting);
+  }
+}
+
+/// The robot's path is meant relative to the file that names it; on the command line, to the scene.
+std::string robotPath(const YamlNode& root, const std::string& scene_path, const std::string& robot,
+                      const std::vector<Override>& overrides) {
+  const bool is_overridden = std::ranges::count(overrides, "robot", &Override::key) > 0;
+  return resolvePath(is_overridden ? scene_path : *locate(root, "robot").file, robot);
+}
+
+ControllerConfig makeController(const YamlNode& root, const ConfigDraft& draft,
+                                const LoadedRobot& robot) {
+  const UrdfChain& chain = robot.chain;
+  const auto joint_count = static_cast<Eigen::Index>(chain.joints.size());
+  ControllerConfig config{.chain = SerialChain(chain.joints, chain.tip), .limits = chain.limits};
+  if (draft.start.empty()) {
+    config.q_start = toJointVector(draft.home, robot.root, "home", chain);
+  } else {
+    config.q_start = toJointVector(draft.start, root, "start", chain);
+    checkWithinLimits(config.q_start, root, "start", chain);
+  }
+  config.task = draft.task;
+  config.task.size = static_cast<int>(draft.components.size());
+  for (int i = 0; i < config.task.size; ++i) {
+    config.task.components[i] = static_cast<int>(
+        std::ranges::find(componentNames(), draft.components[i]) - componentNames().begin());
+  }
+  config.weights = draft.weights.empty()
+                       ? JointVector::Ones(joint_count)
+                       : toJointVector(draft.weights, root, "redundancy.weights", chain);
+  config.joint_limit_avoidance = draft.joint_limit_avoidance;
+  if (!findGiven(root, "controller")) return config;
+  config.tactile_module = draft.module;
+  if (draft.variant == "none") return config;
+  config.force_control = draft.force;
+  config.force_control->variant = static_cast<Variant>(
+      std::ranges::find(variantNames(), draft.variant) - variantNames().begin());
+  return config;
+}
+
+Scene load(const std::string& path, const std::vector<Override>& overrides, FileProvider provider) {
+  SourceReader reader(std::move(provider));
+  YamlNode root = readScene(path, reader, {});
+  applyOverrides(root, overrides);
+  ConfigDraft draft;
+  readSection(root, sceneKeys(), "", draft);
+  const LoadedRobot robot = loadRobot(robotPath(root, path, draft.robot, overrides), reader, draft);
+  checkScene(root, draft, robot);
+  return Scene{.name = std::filesystem::path(path).stem().string(),
+               .controller = makeController(root, draft, robot),
+               .variant = draft.variant,
+               .period_s = draft.period_s,
+               .duration_s = draft.duration_s,
+               .plant = draft.plant,
+               .robot_name = robot.chain.robot_name,
+               .joint_names = robot.chain.joint_names,
+               .sources = reader.files(),
+               .overrides = overrides};
+}
+
+}  // namespace
+
+Scene loadScene(const std::string& path, const std::vector<Override>& overrides) {
+  return load(std::filesystem::path(path).lexically_normal().string(), overrides, readFromDisk);
+}
+
+Scene loadScene(const std::vector<SourceFile>& files, const std::vector<Override>& overrides) {
+  return load(files.empty() ? "-" : files.front().path, overrides, provideFrom(files));
+}
+
+Override parseOverride(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string_view::npos || equals == 0) {
+    failAt({std::make_shared<std::string>("--set"), 1, 1}, "-", inQuotes(text) + " sets nothing",
+           "expected section.key=value");
+  }
+  return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
+}
+
+}  // namespace tactus
