@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace tactus {
 namespace {
@@ -79,8 +80,14 @@ void checkTrajectory(const Checked& c) {
   const std::vector<Waypoint>& waypoints = c.draft.task.trajectory.waypoints;
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const bool is_line = given[0] == "line";
-    checkReach(c, waypoints[i],
-               is_line ? section + ".line" : fmt::format("{}.waypoints[{}]", section, i));
+    const std::string path =
+        is_line ? section + ".line" : fmt::format("{}.waypoints[{}]", section, i);
+    checkReach(c, waypoints[i], path);
+    const double angle = waypoints[i].rotation_vector_rad.norm();
+    if (angle > std::numbers::pi) {
+      c.fail(path + ".rotation_vector_rad", fmt::format("turns by {:.4g} rad", angle),
+             "at most half a turn");
+    }
     if (is_line && waypoints[i].displacement_m.isZero(0.0) &&
         waypoints[i].rotation_vector_rad.isZero(0.0)) {
       c.fail(section + ".line", "does not move", "displacement_m or rotation_vector_rad, or hold");

@@ -21,7 +21,7 @@ std::vector<KeySpec> lineKeys() {
                         "target position relative to the start, base frame",
                         [](Draft& d) -> Vector3& { return waypoint(d).displacement_m; })),
       defaulted("[0, 0, 0]",
-                vector3("rotation_vector_rad", "rad", within(-100, 100),
+                vector3("rotation_vector_rad", "rad", within(-4, 4),
                         "target orientation relative to the start: axis times angle, base frame",
                         [](Draft& d) -> Vector3& { return waypoint(d).rotation_vector_rad; })),
       defaulted("0.1", number("speed_m_per_s", "m/s", above(0, 10), "cruise speed of the position",

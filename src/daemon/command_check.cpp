@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <Eigen/SVD>
+#include <cstdio>
+#include <memory>
+
+#include "tactus/daemon/commands.h"
+#include "tactus/daemon/json.h"
+#include "tactus/daemon/key_table.h"
+#include "tactus/daemon/scene_loader.h"
+
+namespace tactus {
+namespace {
+
+struct Options {
+  std::string scene;
+  std::vector<std::string> settings;
+  bool json = false;
+};
+
+/// Where a run starts.
+struct StartPose {
+  Vector3 p_BaseTool;              ///< m
+  double smallest_singular_value;  ///< of the task's Jacobian; 0: the task cannot be controlled
+};
+
+StartPose computeStart(const ControllerConfig& config) {
+  ChainPose pose;
+  config.chain.computePose(config.q_start, pose);
+  const Vector3 p_BaseTool = framePosition(pose, config.chain.tip());
+  TaskJacobian J;
+  computeTipJacobian(config.chain, pose, p_BaseTool, config.task.components.data(),
+                     config.task.size, J);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J);
+  return {p_BaseTool, svd.singularValues()[config.task.size - 1]};
+}
+
+std::vector<std::string> taskComponents(const TaskConfig& task) {
+  std::vector<std::string> names;
+  for (int i = 0; i < task.size; ++i) names.push_back(componentNames()[task.components[i]]);
+  return names;
+}
+
+void writeNames(JsonWriter& json, const char* key, const std::vector<std::string>& names) {
+  json.key(key).beginArray();
+  for (const std::string& name : names) json.value(name);
+  json.endArray();
+}
+
+void writeJoint(JsonWriter& json, const Scene& scene, int i) {
+  const ControllerConfig& config = scene.controller;
+  const bool is_prismatic = config.chain.type(i) == JointType::kPrismatic;
+  json.beginObject();
+  json.key("name").value(scene.joint_names[i]);
+  json.key("type").value(is_prismatic ? "prismatic" : "revolute");
+  json.key("start").value(config.q_start[i]);
+  json.key("lower").value(config.limits.lower[i]);
+  json.key("upper").value(config.limits.upper[i]);
+  json.key("max_velocity").value(config.limits.max_velocity[i]);
+  json.key("max_acceleration").value(config.limits.max_acceleration[i]);
+  json.endObject();
+}
+
+std::string toJson(const Scene& scene, const StartPose& start) {
+  JsonWriter json;
+  json.beginObject();
+  json.key("scene").value(scene.name);
+  json.key("robot").value(scene.robot_name);
+  json.key("variant").value(scene.variant);
+  writeNames(json, "stages", stageNames(scene.controller));
+  json.key("period_s").value(scene.period_s);
+  json.key("duration_s").value(scene.duration_s);
+  writeNames(json, "task", taskComponents(scene.controller.task));
+  json.key("joints").beginArray();
+  for (int i = 0; i < scene.controller.chain.size(); ++i) writeJoint(json, scene, i);
+  json.endArray();
+  json.key("tool_start_m").beginArray();
+  for (const double x : start.p_BaseTool) json.value(x);
+  json.endArray();
+  json.key("smallest_singular_value_at_start").value(start.smallest_singular_value);
+  json.endObject();
+  return json.text();
+}
+
+std::string toText(const Scene& scene, const StartPose& start) {
+  const TaskConfig& task = scene.controller.task;
+  std::string text;
+  const auto line = [&](const char* name, const std::string& value) {
+    text += fmt::format("{:<9}{}\n", name, value);
+  };
+  line("scene", scene.name);
+  line("robot", fmt::format("{}, {} joints: {}", scene.robot_name, scene.joint_names.size(),
+                            fmt::join(scene.joint_names, " ")));
+  line("variant", scene.variant);
+  line("stages", fmt::format("{}", fmt::join(stageNames(scene.controller), ", ")));
+  line("run", fmt::format("{} s, a cycle every {} s", scene.duration_s, scene.period_s));
+  line("task", fmt::format("{}", fmt::join(taskComponents(task), " ")));
+  line("start", fmt::format("tool at ({:.4f}, {:.4f}, {:.4f}) m, smallest singular value {:.3g}",
+                            start.p_BaseTool.x(), start.p_BaseTool.y(), start.p_BaseTool.z(),
+                            start.smallest_singular_value));
+  return text;
+}
+
+void runCheck(const Options& options) {
+  std::vector<Override> overrides;
+  for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
+  const Scene scene = loadScene(options.scene, overrides);
+  const StartPose start = computeStart(scene.controller);
+  std::fputs((options.json ? toJson(scene, start) : toText(scene, start)).c_str(), stdout);
+}
+
+}  // namespace
+
+void addCheckCommand(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("check", "Validate a scene and show what it consists of");
+  const auto options = std::make_shared<Options>();
+  command->add_option("scene", options->scene, "Scene file")->required();
+  command->add_option("--set", options->settings, "section.key=value, instead of the scene's value")
+      ->allow_extra_args(false);
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &exit_code] {
+    runCheck(*options);
+    exit_code = kExitDone;
+  });
+}
+
+}  // namespace tactus
