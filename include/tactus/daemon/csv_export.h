@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace tactus {
+
+/// Writes every cycle of a log as a line of CSV; `csv_path` "-" is standard output. Throws
+/// InputError if the log is damaged (see checkLog()), RunError if writing fails.
+void exportCsv(const std::string& log_path, const std::string& csv_path);
+
+}  // namespace tactus

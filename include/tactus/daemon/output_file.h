@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace tactus {
+
+/// A file that is written from start to end through one large buffer. Nothing is lost silently:
+/// append(), reserve() and close() throw RunError when the system refuses a byte (disk full).
+class OutputFile {
+ public:
+  static constexpr std::size_t kBufferSize = std::size_t{1} << 20;
+
+  /// Creates or truncates `path`; "-" is standard output. Throws InputError if it cannot be opened.
+  explicit OutputFile(const std::string& path);
+
+  /// Writes what is left, so that an aborted run keeps its log; errors are lost here, hence
+  /// close().
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void append(std::string_view bytes);
+
+  /// Room for `size` <= kBufferSize bytes, to be filled by the caller and then committed.
+  char* reserve(std::size_t size) {
+    if (kBufferSize - used_ < size) flush();
+    return buffer_.get() + used_;
+  }
+  void commit(std::size_t size) noexcept { used_ += size; }
+
+  void close();
+
+ private:
+  void flush();
+
+  std::string path_;
+  int descriptor_;
+  std::unique_ptr<char[]> buffer_;
+  std::size_t used_ = 0;
+};
+
+/// Throws InputError if writing to `output` would destroy the file `input`.
+void refuseOverwriting(const std::string& input, const std::string& output);
+
+}  // namespace tactus

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+/// What writer and reader of a log agree on: the PX4 ULog format, version 1
+/// (https://docs.px4.io/main/en/dev_log/ulog_file_format), with one topic, kCycleTopic.
+///
+/// A file is a header (magic, version, uint64 start time in us) and messages: uint16 size of the
+/// payload, char type, payload; all little-endian. The files a run was made of are stored as pairs
+/// of multi-informations kSourcePathKey, kSourceTextKey, in the order of Scene::sources; values
+/// given by --set as kOverrideKeyKey, kOverrideValueKey.
+namespace tactus {
+
+static_assert(std::endian::native == std::endian::little, "the log is written as memory lies");
+
+inline constexpr std::array<std::uint8_t, 8> kUlogMagic = {0x55, 0x4c, 0x6f, 0x67,
+                                                           0x01, 0x12, 0x35, 0x01};
+inline constexpr std::size_t kUlogHeaderSize = 16;
+inline constexpr std::size_t kMessageHeaderSize = 3;
+inline constexpr std::size_t kMaxMessageSize = 65535;
+inline constexpr std::size_t kFlagBitsSize = 40;
+
+inline constexpr char kCycleTopic[] = "cycle";
+inline constexpr char kSourcePathKey[] = "source_path";
+inline constexpr char kSourceTextKey[] = "source_text";
+inline constexpr char kOverrideKeyKey[] = "override_key";
+inline constexpr char kOverrideValueKey[] = "override_value";
+
+}  // namespace tactus

@@ -1,0 +1,79 @@
+#include "tactus/daemon/output_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "tactus/daemon/input_error.h"
+#include "tactus/daemon/run_error.h"
+
+namespace tactus {
+
+OutputFile::OutputFile(const std::string& path)
+    : path_(path == "-" ? "standard output" : path),
+      descriptor_(path == "-"
+                      ? ::dup(STDOUT_FILENO)
+                      : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
+      buffer_(new char[kBufferSize]) {
+  if (descriptor_ < 0) {
+    throw InputError(
+        fmt::format("{}: cannot be opened for writing: {}, a path that can be written "
+                    "is expected",
+                    path_, std::strerror(errno)));
+  }
+}
+
+OutputFile::~OutputFile() {
+  try {
+    close();
+  } catch (const RunError&) {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+}
+
+void OutputFile::append(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const std::size_t size = std::min(bytes.size(), kBufferSize);
+    std::memcpy(reserve(size), bytes.data(), size);
+    commit(size);
+    bytes.remove_prefix(size);
+  }
+}
+
+void OutputFile::flush() {
+  const char* next = buffer_.get();
+  std::size_t left = std::exchange(used_, 0);
+  while (left > 0) {
+    const ssize_t written = ::write(descriptor_, next, left);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      throw RunError(fmt::format("{}: cannot be written: {}", path_,
+                                 written < 0 ? std::strerror(errno) : "no progress"));
+    }
+    next += written;
+    left -= static_cast<std::size_t>(written);
+  }
+}
+
+void OutputFile::close() {
+  if (descriptor_ < 0) return;
+  flush();
+  if (::close(std::exchange(descriptor_, -1)) != 0) {
+    throw RunError(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
+  }
+}
+
+void refuseOverwriting(const std::string& input, const std::string& output) {
+  std::error_code ignored;  // of an output that does not exist yet
+  if (std::filesystem::equivalent(input, output, ignored)) {
+    throw InputError(fmt::format("{}: is the input itself, another file is expected", output));
+  }
+}
+
+}  // namespace tactus

@@ -1,0 +1,139 @@
+#include "tactus/daemon/run_summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/daemon/json.h"
+#include "tactus/daemon/output_file.h"
+
+namespace tactus {
+namespace {
+
+/// The command limiter lets a joint rest at a T^2 / 8 before its limit, micrometres at most.
+constexpr double kLimitTolerance = 1e-4;  // m or rad
+
+double norm(const double (&vector)[3]) noexcept {
+  return std::sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
+}
+
+/// The smallest value that at least `fraction` of all values do not exceed.
+long long quantile(std::vector<std::int64_t>& values, double fraction) {
+  const double rank = std::ceil(fraction * static_cast<double>(values.size()));
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+RunFigures::StepTime stepTime(std::vector<std::int64_t> values) {
+  if (values.empty()) return {};
+  const auto [min, max] = std::minmax_element(values.begin(), values.end());
+  RunFigures::StepTime result;
+  result.min = *min;
+  result.max = *max;
+  result.median = quantile(values, 0.5);
+  result.p99 = quantile(values, 0.99);
+  return result;
+}
+
+void writeContact(const ContactSummary& contact, JsonWriter& json) {
+  json.beginObject();
+  json.key("start_s").value(contact.start_s);
+  json.key("end_s").value(contact.end_s);
+  json.key("peak_force_N").value(contact.peak_force_N);
+  json.key("settling_s").value(contact.settling_s);
+  json.endObject();
+}
+
+void writeFigures(const RunFigures& figures, JsonWriter& json) {
+  json.key("cycles").value(figures.cycles);
+  json.key("peak_force_N").value(figures.peak_force_N);
+  json.key("final_force_N").value(figures.final_force_N);
+  json.key("tcp_error_max_m").value(figures.tcp_error_max_m);
+  json.key("tcp_error_rms_m").value(figures.tcp_error_rms_m);
+  json.key("tcp_error_final_m").value(figures.tcp_error_final_m);
+  json.key("peak_joint_speed_squared").value(figures.peak_joint_speed_squared);
+  json.key("joints_at_limit_cycles").value(figures.joints_at_limit_cycles);
+  json.key("stiffness_final_N_per_m").value(figures.stiffness_final_N_per_m);
+  json.key("stiffness_at_peak_N_per_m").value(figures.stiffness_at_peak_N_per_m);
+  json.key("contacts").beginArray();
+  for (const ContactSummary& contact : figures.contacts) writeContact(contact, json);
+  json.endArray();
+  json.key("step_time_ns").beginObject();
+  json.key("min").value(figures.step_time_ns.min);
+  json.key("median").value(figures.step_time_ns.median);
+  json.key("p99").value(figures.step_time_ns.p99);
+  json.key("max").value(figures.step_time_ns.max);
+  json.endObject();
+}
+
+}  // namespace
+
+RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
+    : limits_(config.limits), contacts_(config.force_control.has_value(), expected_cycles) {
+  step_times_ns_.reserve(expected_cycles);
+}
+
+void RunSummary::add(const CycleRecord& record) {
+  ++figures_.cycles;
+  if (record.force_sensor_N > figures_.peak_force_N) {
+    figures_.peak_force_N = record.force_sensor_N;
+    figures_.stiffness_at_peak_N_per_m = record.stiffness_N_per_m;
+  }
+  figures_.final_force_N = record.force_sensor_N;
+  figures_.stiffness_final_N_per_m = record.stiffness_N_per_m;
+  figures_.fault = static_cast<Fault>(record.fault);
+  const double error_m = norm(record.tool_error_m);
+  figures_.tcp_error_max_m = std::max(figures_.tcp_error_max_m, error_m);
+  figures_.tcp_error_final_m = error_m;
+  squared_error_sum_m2_ += error_m * error_m;
+  addJoints(record);
+  contacts_.add(record);
+  step_times_ns_.push_back(record.step_ns);
+}
+
+void RunSummary::addJoints(const CycleRecord& record) noexcept {
+  double speed_squared = 0.0;
+  bool is_at_limit = false;
+  for (int i = 0; i < limits_.lower.size(); ++i) {
+    speed_squared += record.dq[i] * record.dq[i];
+    is_at_limit |= record.q[i] <= limits_.lower[i] + kLimitTolerance ||
+                   record.q[i] >= limits_.upper[i] - kLimitTolerance;
+  }
+  figures_.peak_joint_speed_squared = std::max(figures_.peak_joint_speed_squared, speed_squared);
+  figures_.joints_at_limit_cycles += is_at_limit ? 1 : 0;
+}
+
+RunFigures RunSummary::figures() const {
+  RunFigures figures = figures_;
+  if (figures.cycles > 0) {
+    figures.tcp_error_rms_m =
+        std::sqrt(squared_error_sum_m2_ / static_cast<double>(figures.cycles));
+  }
+  figures.contacts = contacts_.contacts();
+  figures.step_time_ns = stepTime(step_times_ns_);
+  return figures;
+}
+
+std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor) {
+  JsonWriter json;
+  json.beginObject();
+  json.key("scene").value(scene.name);
+  json.key("variant").value(scene.variant);
+  json.key("stages").beginArray();
+  for (const std::string& stage : stageNames(scene.controller)) json.value(stage);
+  json.endArray();
+  writeFigures(figures, json);
+  json.key("real_time_factor").value(real_time_factor);
+  json.key("outcome").value(figures.fault == Fault::kNone ? "completed" : faultName(figures.fault));
+  json.endObject();
+  return json.text();
+}
+
+void writeSummary(const std::string& path, const Scene& scene, const RunFigures& figures,
+                  double real_time_factor) {
+  OutputFile file(path);
+  file.append(summaryJson(scene, figures, real_time_factor));
+  file.close();
+}
+
+}  // namespace tactus

@@ -1,0 +1,80 @@
+#include "tactus/daemon/ulog_reader.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "tactus/daemon/located_error.h"
+#include "tactus/daemon/ulog_format.h"
+
+namespace tactus {
+
+UlogReader::UlogReader(std::istream& in, std::string name)
+    : messages_(in, std::move(name)), definitions_(readDefinitions(messages_)) {}
+
+bool UlogReader::next(CycleRecord& record) {
+  UlogMessage message;
+  while (messages_.next(message)) {
+    if (message.type != 'D') {
+      messages_.checkIgnorable(message);
+    } else if (isCycle(message)) {
+      copy(message, record);
+      return true;
+    }
+  }
+  // A run that was interrupted ends within a cycle; anything else is a damaged size.
+  if (message.type != 0 && (message.type != 'D' || message.payload.size() != messageSize())) {
+    messages_.fail(message.offset, "message", "longer than the log, an undamaged log is expected");
+  }
+  return false;
+}
+
+bool UlogReader::isCycle(const UlogMessage& message) const {
+  std::uint16_t id = 0;
+  if (message.payload.size() < sizeof(id)) {
+    messages_.fail(message.offset, "message D", "too short, a message id is expected");
+  }
+  std::memcpy(&id, message.payload.data(), sizeof(id));
+  if (id != definitions_.cycle_id) return false;
+  if (message.payload.size() != messageSize()) {
+    messages_.fail(
+        message.offset, "message D",
+        fmt::format("a cycle in {} bytes, {} are expected", message.payload.size(), messageSize()));
+  }
+  return true;
+}
+
+void UlogReader::copy(const UlogMessage& message, CycleRecord& record) const noexcept {
+  const char* const fields = message.payload.data() + sizeof(definitions_.cycle_id);
+  for (const CopyRun& run : definitions_.topic.runs) {
+    std::memcpy(reinterpret_cast<char*>(&record) + run.record_offset, fields + run.message_offset,
+                run.size);
+  }
+}
+
+std::ifstream openLog(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) {
+    throw InputError(fmt::format("{}:1:1: file: cannot be opened: {}, a log of tactus is expected",
+                                 escaped(path), std::strerror(errno)));
+  }
+  return in;
+}
+
+LogExtent checkLog(const std::string& path) {
+  std::ifstream in = openLog(path);
+  UlogReader reader(in, path);
+  CycleRecord record;
+  LogExtent extent;
+  while (reader.next(record)) ++extent.cycles;
+  extent.cut_off = reader.cutOff();
+  if (extent.cycles == 0) {
+    throw InputError(fmt::format("{}:1:1: {}: the log holds none, at least one is expected",
+                                 escaped(path), kCycleTopic));
+  }
+  return extent;
+}
+
+}  // namespace tactus

@@ -1,0 +1,20 @@
+#include <cstddef>
+#include <cstdint>
+#include <sstream>
+#include <string>
+
+#include "tactus/daemon/input_error.h"
+#include "tactus/daemon/ulog_reader.h"
+
+/// A log of whatever bytes is read or refused.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::istringstream in(std::string(reinterpret_cast<const char*>(data), size));
+  try {
+    tactus::UlogReader reader(in, "fuzz.ulg");
+    tactus::CycleRecord record;
+    while (reader.next(record)) {
+    }
+  } catch (const tactus::InputError&) {
+  }
+  return 0;
+}
