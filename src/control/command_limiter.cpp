@@ -6,68 +6,82 @@
 namespace tactus {
 namespace {
 
-/// Largest speed towards a limit `distance` away from which the joint can still brake.
-double brakingSpeed(double distance, double acceleration, double period_s) {
-  const double within_one_period = std::max(0.0, distance) / period_s;
-  if (!(acceleration < kNoLimit) || !(distance < kNoLimit)) return within_one_period;
-  const double braking =
-      std::sqrt(2.0 * acceleration * std::max(0.0, distance)) - 0.5 * acceleration * period_s;
-  return std::min(within_one_period, std::max(0.0, braking));
-}
+/// m/s^2 or rad/s^2; stands for "no limit" and keeps every product finite.
+constexpr double kUnlimitedAcceleration = 1e12;
 
+/// Velocities that a joint may have in this cycle.
 struct Interval {
   double low, high;
+  bool contains(double v) const { return v >= low && v <= high; }
 };
 
-/// Velocities a joint may have now, given its previous one.
-Interval reachable(double before, double max_velocity, double max_acceleration, double period_s) {
-  const double change = max_acceleration * period_s;
+Interval reachable(double before, double max_velocity, double change) {
   return {std::max(-max_velocity, before - change), std::min(max_velocity, before + change)};
+}
+
+/// Largest speed towards a limit `distance` away from which the joint can still brake. Up to
+/// `change` = a dt it stops within the next period; above, whole periods of braking and the last
+/// part of one cover v dt / 2 + v^2 / (2 a) + a dt^2 / 8 at most.
+double brakingSpeed(double distance, double acceleration, double period_s) {
+  const double change = acceleration * period_s;
+  const double within_one_period = std::max(0.0, distance) / period_s;
+  if (within_one_period <= change) return within_one_period;
+  return std::max(change, std::sqrt(2.0 * acceleration * distance) - 0.5 * change);
+}
+
+double brake(double v, double distance, double acceleration, double period_s) {
+  const double ample = std::abs(v) + acceleration * period_s;
+  if (ample * ample <= 2.0 * acceleration * distance) return v;  // far away: spares the root
+  const double speed = brakingSpeed(distance, acceleration, period_s);
+  return std::clamp(v, -speed, speed);
+}
+
+/// The largest factor of at most 1 that brings every v into its interval; 1 if there is none.
+double commonFactor(const JointVector& velocity, const Interval* intervals) {
+  double low = 0.0;
+  double high = 1.0;
+  for (int i = 0; i < velocity.size(); ++i) {
+    const double v = velocity[i];
+    if (v == 0.0) {
+      if (!intervals[i].contains(0.0)) return 1.0;
+      continue;
+    }
+    const double a = intervals[i].low / v;
+    const double b = intervals[i].high / v;
+    low = std::max(low, std::min(a, b));
+    high = std::min(high, std::max(a, b));
+  }
+  return low <= high ? high : 1.0;
 }
 
 }  // namespace
 
+CommandLimiter::CommandLimiter(const JointLimits& limits) : limits_(limits) {
+  limits_.max_acceleration = limits.max_acceleration.cwiseMin(kUnlimitedAcceleration);
+}
+
 bool CommandLimiter::apply(const JointVector& q, const JointVector& velocity_before,
                            double period_s, JointVector& velocity) const noexcept {
-  const bool finite = std::isfinite(velocity.lpNorm<1>());
+  double sum = 0.0;
+  for (double v : velocity) sum += std::abs(v);
+  const bool finite = std::isfinite(sum);
   if (!finite) velocity.setZero();
-  brakeBeforePositionLimits(q, period_s, velocity);
-  shorten(velocity_before, period_s, velocity);
+
+  Interval intervals[kMaxJoints];
+  bool admissible = true;
+  for (int i = 0; i < velocity.size(); ++i) {
+    double& v = velocity[i];
+    const double acceleration = limits_.max_acceleration[i];
+    const double distance = v > 0.0 ? limits_.upper[i] - q[i] : q[i] - limits_.lower[i];
+    v = brake(v, distance, acceleration, period_s);
+    intervals[i] = reachable(velocity_before[i], limits_.max_velocity[i], acceleration * period_s);
+    admissible = admissible && intervals[i].contains(v);
+  }
+  if (admissible) return finite;
+  const double factor = commonFactor(velocity, intervals);
+  for (int i = 0; i < velocity.size(); ++i)
+    velocity[i] = std::clamp(factor * velocity[i], intervals[i].low, intervals[i].high);
   return finite;
-}
-
-void CommandLimiter::brakeBeforePositionLimits(const JointVector& q, double period_s,
-                                               JointVector& velocity) const noexcept {
-  for (int i = 0; i < q.size(); ++i) {
-    const bool up = velocity[i] > 0.0;
-    const double distance = up ? limits_.upper[i] - q[i] : q[i] - limits_.lower[i];
-    const double speed = brakingSpeed(distance, limits_.max_acceleration[i], period_s);
-    velocity[i] = up ? std::min(velocity[i], speed) : std::max(velocity[i], -speed);
-  }
-}
-
-void CommandLimiter::shorten(const JointVector& velocity_before, double period_s,
-                             JointVector& velocity) const noexcept {
-  double factor_low = 0.0;
-  double factor_high = 1.0;
-  for (int i = 0; i < velocity.size(); ++i) {
-    const auto [low, high] = reachable(velocity_before[i], limits_.max_velocity[i],
-                                       limits_.max_acceleration[i], period_s);
-    const double v = velocity[i];
-    if (v >= low && v <= high && low <= 0.0 && high >= 0.0) continue;
-    if (v == 0.0) {
-      factor_high = -1.0;  // rest is out of reach: no multiple of the command will do
-      continue;
-    }
-    factor_low = std::max(factor_low, std::min(low / v, high / v));
-    factor_high = std::min(factor_high, std::max(low / v, high / v));
-  }
-  const double factor = factor_low <= factor_high ? factor_high : 1.0;
-  for (int i = 0; i < velocity.size(); ++i) {
-    const auto [low, high] = reachable(velocity_before[i], limits_.max_velocity[i],
-                                       limits_.max_acceleration[i], period_s);
-    velocity[i] = std::clamp(factor * velocity[i], low, high);
-  }
 }
 
 }  // namespace tactus

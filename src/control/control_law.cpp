@@ -6,12 +6,12 @@
 namespace tactus {
 
 ControlLaw::ControlLaw(const ForceControlConfig& config, const SerialChain& chain,
-                       const JointVector& inv_sqrt_weights)
-    : config_(config), max_null_speed_scaled_(chain.size()) {
+                       const ScaledVector& inv_sqrt_weights)
+    : config_(config), inv_max_null_speed_(ScaledVector::Zero()) {
   for (int i = 0; i < chain.size(); ++i) {
     const double limit = chain.type(i) == JointType::kPrismatic ? config.max_null_speed_m_per_s
                                                                 : config.max_null_speed_rad_per_s;
-    max_null_speed_scaled_[i] = limit / inv_sqrt_weights[i];
+    inv_max_null_speed_[i] = inv_sqrt_weights[i] / limit;
   }
 }
 
@@ -34,12 +34,9 @@ double ControlLaw::secondSpace(const ControlLawInput& input,
 }
 
 double ControlLaw::nullSpaceShare(double u_n, const ContactSpace& space) const noexcept {
-  double share = 1.0;
-  for (int i = 0; i < space.a_scaled.size(); ++i) {
-    const double speed = std::abs(space.a_scaled[i] * u_n);
-    if (speed * share > max_null_speed_scaled_[i]) share = max_null_speed_scaled_[i] / speed;
-  }
-  return share;
+  const double excess =
+      std::abs(u_n) * space.a_scaled.cwiseAbs().cwiseProduct(inv_max_null_speed_).maxCoeff();
+  return excess > 1.0 ? 1.0 / excess : 1.0;
 }
 
 void ControlLaw::update(const ControlLawInput& input, const ContactSpace& space, double period_s,

@@ -10,6 +10,9 @@
 namespace tactus {
 namespace {
 
+/// All six components of a task: position or linear velocity, then rotation.
+using Twist = Eigen::Matrix<double, 6, 1>;
+
 Pose toolPose(const SerialChain& chain, const JointVector& q) {
   ChainPose pose;
   chain.computePose(q, pose);
@@ -24,11 +27,6 @@ Vector3 rotationVector(const Matrix3& R) {
 bool usesOrientation(const TaskConfig& task) {
   return std::any_of(task.components.begin(), task.components.begin() + task.size,
                      [](int component) { return component >= 3; });
-}
-
-void select(const TaskConfig& task, const Eigen::Matrix<double, 6, 1>& all, TaskVector& selected) {
-  selected.resize(task.size);
-  for (int i = 0; i < task.size; ++i) selected[i] = all[task.components[i]];
 }
 
 void limitNorm(double limit, Eigen::Ref<Vector3> v) {
@@ -49,7 +47,8 @@ struct Controller::Kinematics {
 Controller::Controller(const ControllerConfig& config)
     : config_(config),
       trajectory_(config.task.trajectory, toolPose(config.chain, config.q_start)),
-      inv_sqrt_weights_(config.weights.cwiseSqrt().cwiseInverse()),
+      sqrt_weights_(scaled(config.weights.cwiseSqrt(), ScaledVector::Ones())),
+      inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
       limiter_(config.limits) {
   if (config.joint_limit_avoidance)
     joint_limit_avoidance_.emplace(*config.joint_limit_avoidance, config.limits);
@@ -80,10 +79,11 @@ void Controller::update(const RobotInput& input, double t_s, double period_s,
 
   // (1) in W^1/2 coordinates: Q y + v, with everything that goes through N or J# gathered in y.
   TaskVector y = kinematics.y_eff;
-  JointVector v_scaled = JointVector::Zero(config_.chain.size());
+  ScaledVector v_scaled = ScaledVector::Zero();
   if (joint_limit_avoidance_) {
-    joint_limit_avoidance_->compute(state.q_desired, v_scaled);
-    v_scaled.array() /= -inv_sqrt_weights_.array();
+    JointVector gradient;
+    joint_limit_avoidance_->compute(state.q_desired, gradient);
+    v_scaled = -scaled(gradient, sqrt_weights_);
     y -= kinematics.pseudoinverse.project(v_scaled);
   }
   output.contact = {};
@@ -96,9 +96,9 @@ void Controller::update(const RobotInput& input, double t_s, double period_s,
   }
   if (law_) answerContact(kinematics, period_s, state, output.contact, y, v_scaled);
 
-  y = -y;
-  kinematics.pseudoinverse.subtractExpanded(y, v_scaled);
-  output.velocity = v_scaled.cwiseProduct(inv_sqrt_weights_);
+  v_scaled += kinematics.pseudoinverse.expand(y);
+  v_scaled.array() *= inv_sqrt_weights_.array();
+  output.velocity = v_scaled.head(config_.chain.size());
   if (state.fault != Fault::kNone) output.velocity.setZero();
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
@@ -106,9 +106,11 @@ void Controller::update(const RobotInput& input, double t_s, double period_s,
 
   output.fault = state.fault;
   output.q_desired = state.q_desired;
-  state.velocity_before = output.velocity;
-  state.q_desired += period_s * output.velocity;
-  state.q_desired = state.q_desired.cwiseMax(config_.limits.lower).cwiseMin(config_.limits.upper);
+  for (int i = 0; i < config_.chain.size(); ++i) {
+    const double q = state.q_desired[i] + period_s * output.velocity[i];
+    state.q_desired[i] = std::clamp(q, config_.limits.lower[i], config_.limits.upper[i]);
+    state.velocity_before[i] = output.velocity[i];
+  }
 }
 
 void Controller::computeKinematics(double t_s, const ControllerState& state, Kinematics& kinematics,
@@ -116,9 +118,9 @@ void Controller::computeKinematics(double t_s, const ControllerState& state, Kin
   const TaskConfig& task = config_.task;
   config_.chain.computePose(state.q_desired, kinematics.pose);
   const ToolReference reference = trajectory_.evaluate(t_s);
-  Eigen::Matrix<double, 6, 1> w = Eigen::Matrix<double, 6, 1>::Zero();
-  Eigen::Matrix<double, 6, 1> w_d_dot;
-  Eigen::Matrix<double, 6, 1> error = Eigen::Matrix<double, 6, 1>::Zero();
+  Twist w = Twist::Zero();
+  Twist w_d_dot;
+  Twist error = Twist::Zero();
   w.head<3>() = framePosition(kinematics.pose, config_.chain.tip());
   error.head<3>() = reference.p_BaseTool - w.head<3>();
   w_d_dot << reference.v_BaseTool, reference.omega_BaseTool;
@@ -127,7 +129,7 @@ void Controller::computeKinematics(double t_s, const ControllerState& state, Kin
     w.tail<3>() = rotationVector(R_BaseTool);
     error.tail<3>() = rotationVector(reference.R_BaseTool * R_BaseTool.transpose());
   }
-  Eigen::Matrix<double, 6, 1> drift = task.drift_gain_per_s * error;
+  Twist drift = task.drift_gain_per_s * error;
   limitNorm(task.max_drift_speed, drift.head<3>());
   limitNorm(task.max_drift_speed, drift.tail<3>());
 
@@ -135,12 +137,18 @@ void Controller::computeKinematics(double t_s, const ControllerState& state, Kin
   computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
                      J);
   kinematics.pseudoinverse.factorise(J, inv_sqrt_weights_);
-  TaskVector w_dot_eff;
-  select(task, w_d_dot + drift, w_dot_eff);
+  TaskVector w_dot_eff(task.size);
+  output.w.resize(task.size);
+  output.w_d.resize(task.size);
+  output.w_d_dot.resize(task.size);
+  for (int i = 0; i < task.size; ++i) {
+    const int component = task.components[i];
+    w_dot_eff[i] = w_d_dot[component] + drift[component];
+    output.w[i] = w[component];
+    output.w_d[i] = w[component] + error[component];
+    output.w_d_dot[i] = w_d_dot[component];
+  }
   kinematics.y_eff = kinematics.pseudoinverse.solve(w_dot_eff);
-  select(task, w, output.w);
-  select(task, w + error, output.w_d);
-  select(task, w_d_dot, output.w_d_dot);
 }
 
 Fault Controller::readTactileModule(const RobotInput& input, double period_s,
@@ -159,7 +167,7 @@ Fault Controller::readTactileModule(const RobotInput& input, double period_s,
 
 void Controller::answerContact(const Kinematics& kinematics, double period_s,
                                ControllerState& state, ContactReport& report, TaskVector& y,
-                               JointVector& v_scaled) const noexcept {
+                               ScaledVector& v_scaled) const noexcept {
   const ForceControlConfig& force_control = *config_.force_control;
   const AttachedFrame& link = config_.tactile_module->link;
   const Pose X_BaseModule = framePose(kinematics.pose, link);

@@ -5,15 +5,13 @@
 namespace tactus {
 
 void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const JointVector& a,
-                         const JointVector& inv_sqrt_weights, const TaskVector& y_eff,
+                         const ScaledVector& inv_sqrt_weights, const TaskVector& y_eff,
                          ContactSpace& contact) noexcept {
-  contact.a_scaled = a.cwiseProduct(inv_sqrt_weights);
+  contact.a_scaled = scaled(a, inv_sqrt_weights);
   contact.a_task = pseudoinverse.project(contact.a_scaled);
-  JointVector a_null = contact.a_scaled;
-  pseudoinverse.subtractExpanded(contact.a_task, a_null);
   contact.k_j = contact.a_scaled.squaredNorm();
   contact.k_t = contact.a_task.squaredNorm();
-  contact.k_n = a_null.squaredNorm();
+  contact.k_n = (contact.a_scaled - pseudoinverse.expand(contact.a_task)).squaredNorm();
   contact.x_dot_eff_m_per_s = contact.a_task.dot(y_eff);
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <stdexcept>
 
 #include "tactus/math/sin_cos.h"
@@ -23,18 +24,13 @@ int coordinateAxis(const Vector3& axis) {
   return -1;
 }
 
-/// R * Rot(e_k, angle): turns two columns in their plane.
-void rotateAboutCoordinateAxis(int k, double sine, double cosine, Matrix3& R) {
-  const int i = k == 2 ? 0 : k + 1;
-  const int j = k == 0 ? 2 : k - 1;
-  double* column_i = R.data() + 3 * i;
-  double* column_j = R.data() + 3 * j;
-  for (int row = 0; row < 3; ++row) {
-    const double a = column_i[row];
-    const double b = column_j[row];
-    column_i[row] = cosine * a + sine * b;
-    column_j[row] = cosine * b - sine * a;
-  }
+/// R * Rot(e_K, angle): turns two columns in their plane.
+template <int K>
+void rotateAboutCoordinateAxis(double sine, double cosine, Matrix3& R) {
+  const Vector3 i = R.col((K + 1) % 3);
+  const Vector3 j = R.col((K + 2) % 3);
+  R.col((K + 1) % 3) = cosine * i + sine * j;
+  R.col((K + 2) % 3) = cosine * j - sine * i;
 }
 
 /// Rot(axis_Base, angle) * R, by Rodrigues' formula on each column.
@@ -80,17 +76,29 @@ void SerialChain::computePose(const JointVector& q, ChainPose& pose) const noexc
     const PreparedJoint& joint = joints_[i];
     p += R.lazyProduct(joint.p_ParentJoint);
     if (joint.origin_is_rotated) R = R.lazyProduct(joint.R_ParentJoint).eval();
-    const bool general = joint.coordinate_axis < 0;
-    const Vector3 axis = general ? Vector3(R.lazyProduct(joint.axis))
-                                 : Vector3(joint.axis_sign * R.col(joint.coordinate_axis));
+    Vector3& axis = pose.axis_Base[i];
+    if (joint.coordinate_axis < 0) {
+      axis = R.lazyProduct(joint.axis);
+    } else {
+      axis = joint.axis_sign * R.col(joint.coordinate_axis);
+    }
     if (joint.type == JointType::kPrismatic) {
       p += q[i] * axis;
-    } else if (general) {
-      rotateAboutAxis(axis, sine[i], cosine[i], R);
     } else {
-      rotateAboutCoordinateAxis(joint.coordinate_axis, joint.axis_sign * sine[i], cosine[i], R);
+      switch (joint.coordinate_axis) {
+        case 0:
+          rotateAboutCoordinateAxis<0>(joint.axis_sign * sine[i], cosine[i], R);
+          break;
+        case 1:
+          rotateAboutCoordinateAxis<1>(joint.axis_sign * sine[i], cosine[i], R);
+          break;
+        case 2:
+          rotateAboutCoordinateAxis<2>(joint.axis_sign * sine[i], cosine[i], R);
+          break;
+        default:
+          rotateAboutAxis(axis, sine[i], cosine[i], R);
+      }
     }
-    pose.axis_Base[i] = axis;
     pose.R_BaseJoint[i] = R;
     pose.p_BaseJoint[i] = p;
   }
@@ -109,21 +117,19 @@ Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcep
 
 void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const Vector3& p_BaseTip,
                         const int* components, int component_count, TaskJacobian& J) noexcept {
-  J.resize(component_count, chain.size());
-  for (int i = 0; i < chain.size(); ++i) {
-    double column[6] = {0, 0, 0, 0, 0, 0};
-    Eigen::Map<Vector3> linear(column);
-    Eigen::Map<Vector3> angular(column + 3);
-    if (i <= chain.tip().joint) {
-      const Vector3& axis = pose.axis_Base[i];
-      if (chain.type(i) == JointType::kPrismatic) {
-        linear = axis;
-      } else {
-        linear = axis.cross(p_BaseTip - pose.p_BaseJoint[i]);
-        angular = axis;
-      }
+  J.setZero(component_count, chain.size());
+  double unselected[kMaxJoints];
+  double* row[6];  // where each of the six components goes
+  std::fill(row, row + 6, &unselected[0]);
+  for (int i = 0; i < component_count; ++i) row[components[i]] = &J(i, 0);
+  for (int i = 0; i <= chain.tip().joint; ++i) {
+    const Vector3& axis = pose.axis_Base[i];
+    const bool revolute = chain.type(i) == JointType::kRevolute;
+    const Vector3 linear = revolute ? axis.cross(p_BaseTip - pose.p_BaseJoint[i]) : axis;
+    for (int k = 0; k < 3; ++k) {
+      row[k][i] = linear[k];
+      row[3 + k][i] = revolute ? axis[k] : 0.0;
     }
-    for (int row = 0; row < component_count; ++row) J(row, i) = column[components[row]];
   }
 }
 

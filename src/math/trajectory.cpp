@@ -43,16 +43,21 @@ Trajectory::Trajectory(const TrajectoryConfig& config, const Pose& X_BaseTool_st
   double time_s = config.start_s;
   Vector3 p = X_start_.p_AB;
   Matrix3 R = X_start_.R_AB;
+  Vector3 rotation_vector = Vector3::Zero();
   for (const Waypoint& waypoint : config.waypoints) {
     Segment segment;
     segment.start_s = time_s;
     segment.p_start = p;
     segment.R_start = R;
     p = X_start_.p_AB + waypoint.displacement_m;
-    R = rotationOf(waypoint.rotation_vector_rad) * X_start_.R_AB;
     segment.displacement = p - segment.p_start;
-    const Eigen::AngleAxisd turn(Matrix3(R * segment.R_start.transpose()));
-    segment.rotation_vector = turn.angle() * turn.axis();
+    segment.rotation_vector = Vector3::Zero();
+    if (waypoint.rotation_vector_rad != rotation_vector) {
+      rotation_vector = waypoint.rotation_vector_rad;
+      R = rotationOf(rotation_vector) * X_start_.R_AB;
+      const Eigen::AngleAxisd turn(Matrix3(R * segment.R_start.transpose()));
+      segment.rotation_vector = turn.angle() * turn.axis();
+    }
     // The slower of the two motions sets the pace; short paths never reach their cruise speed.
     const double cruise_s =
         std::max(segment.displacement.norm() / waypoint.speed_m_per_s,
@@ -81,7 +86,7 @@ ToolReference Trajectory::evaluate(double t_s) const noexcept {
                                                           segment.cruise_rate_per_s)
                                                 : PathPoint{1.0, 0.0};
   return {segment.p_start + path.s * segment.displacement, path.s_dot * segment.displacement,
-          rotationOf(path.s * segment.rotation_vector) * segment.R_start,
+          rotationOf(path.s * segment.rotation_vector).lazyProduct(segment.R_start),
           path.s_dot * segment.rotation_vector};
 }
 

@@ -10,43 +10,31 @@ namespace {
 /// it depends on them: what is left is rounding noise, and no direction.
 constexpr double kRankTolerance = 1e-14;
 
-double dot(const double* a, const double* b, int n) {
-  double sum = 0.0;
-  for (int i = 0; i < n; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-/// a -= factor * b
-void subtract(double* a, double factor, const double* b, int n) {
-  for (int i = 0; i < n; ++i) a[i] -= factor * b[i];
-}
-
 }  // namespace
 
 /// Modified Gram-Schmidt, each column orthogonalised twice ("twice is enough"): Q is orthonormal to
 /// machine precision whatever the condition of J.
 void WeightedPseudoinverse::factorise(const TaskJacobian& J,
-                                      const JointVector& inv_sqrt_weights) noexcept {
+                                      const ScaledVector& inv_sqrt_weights) noexcept {
   m_ = static_cast<int>(J.rows());
-  n_ = static_cast<int>(J.cols());
   for (int j = 0; j < m_; ++j) {
-    double* column = Q_[j];
-    for (int i = 0; i < n_; ++i) column[i] = inv_sqrt_weights[i] * J(j, i);
-    const double length = std::sqrt(dot(column, column, n_));
+    ScaledVector column = scaled(J.row(j), inv_sqrt_weights);
+    double explained = 0.0;  // squared length of what the earlier columns take away
     for (int k = 0; k < j; ++k) {
-      R_[k][j] = dot(Q_[k], column, n_);
-      subtract(column, R_[k][j], Q_[k], n_);
+      R_[k][j] = Q_.col(k).dot(column);
+      column -= R_[k][j] * Q_.col(k);
     }
     for (int k = 0; k < j; ++k) {
-      const double correction = dot(Q_[k], column, n_);
+      const double correction = Q_.col(k).dot(column);
       R_[k][j] += correction;
-      subtract(column, correction, Q_[k], n_);
+      column -= correction * Q_.col(k);
+      explained += R_[k][j] * R_[k][j];
     }
-    const double rest = std::sqrt(dot(column, column, n_));
-    const bool independent = rest > kRankTolerance * length;
-    R_[j][j] = independent ? rest : 0.0;
-    inv_diagonal_[j] = independent ? 1.0 / rest : 0.0;
-    for (int i = 0; i < n_; ++i) column[i] *= inv_diagonal_[j];
+    const double rest_squared = column.squaredNorm();
+    const bool independent = rest_squared > kRankTolerance * kRankTolerance * explained;
+    R_[j][j] = independent ? std::sqrt(rest_squared) : 0.0;
+    inv_diagonal_[j] = independent ? 1.0 / R_[j][j] : 0.0;
+    Q_.col(j) = inv_diagonal_[j] * column;
   }
   chooseDamping();
 }
@@ -107,15 +95,16 @@ TaskVector WeightedPseudoinverse::solve(const TaskVector& w) const noexcept {
   return y;
 }
 
-TaskVector WeightedPseudoinverse::project(const JointVector& v_scaled) const noexcept {
+TaskVector WeightedPseudoinverse::project(const ScaledVector& v_scaled) const noexcept {
   TaskVector y(m_);
-  for (int j = 0; j < m_; ++j) y[j] = dot(Q_[j], v_scaled.data(), n_);
+  for (int j = 0; j < m_; ++j) y[j] = Q_.col(j).dot(v_scaled);
   return y;
 }
 
-void WeightedPseudoinverse::subtractExpanded(const TaskVector& y,
-                                             JointVector& v_scaled) const noexcept {
-  for (int j = 0; j < m_; ++j) subtract(v_scaled.data(), y[j], Q_[j], n_);
+ScaledVector WeightedPseudoinverse::expand(const TaskVector& y) const noexcept {
+  ScaledVector v_scaled = y[0] * Q_.col(0);
+  for (int j = 1; j < m_; ++j) v_scaled += y[j] * Q_.col(j);
+  return v_scaled;
 }
 
 }  // namespace tactus

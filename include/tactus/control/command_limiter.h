@@ -13,7 +13,7 @@ namespace tactus {
 /// a period / 2): scaling the others with it would freeze the arm in contact.
 class CommandLimiter {
  public:
-  explicit CommandLimiter(const JointLimits& limits) : limits_(limits) {}
+  explicit CommandLimiter(const JointLimits& limits);
 
   /// q: present desired joints, within limits; velocity_before: the previous result. Returns false,
   /// and lets the arm ramp to rest, if `velocity` is not finite.
@@ -21,11 +21,6 @@ class CommandLimiter {
              JointVector& velocity) const noexcept;
 
  private:
-  void brakeBeforePositionLimits(const JointVector& q, double period_s,
-                                 JointVector& velocity) const noexcept;
-  void shorten(const JointVector& velocity_before, double period_s,
-               JointVector& velocity) const noexcept;
-
   JointLimits limits_;
 };
 

@@ -31,7 +31,7 @@ struct ControlLawOutput {
 class ControlLaw {
  public:
   ControlLaw(const ForceControlConfig& config, const SerialChain& chain,
-             const JointVector& inv_sqrt_weights);
+             const ScaledVector& inv_sqrt_weights);
 
   void update(const ControlLawInput& input, const ContactSpace& space, double period_s,
               ControlLawState& state, ControlLawOutput& output) const noexcept;
@@ -46,7 +46,7 @@ class ControlLaw {
   double nullSpaceShare(double u_n, const ContactSpace& space) const noexcept;
 
   ForceControlConfig config_;
-  JointVector max_null_speed_scaled_;  ///< W^1/2 times the limit, for comparison with a_scaled u_n
+  ScaledVector inv_max_null_speed_;  ///< 1 / (W^1/2 limit), for a_scaled u_n
 };
 
 }  // namespace tactus

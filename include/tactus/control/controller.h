@@ -82,11 +82,11 @@ class Controller {
                           ControllerState& state) const noexcept;
   /// Adds the contact controller's part to the command, in W^1/2 coordinates.
   void answerContact(const Kinematics& kinematics, double period_s, ControllerState& state,
-                     ContactReport& report, TaskVector& y, JointVector& v_scaled) const noexcept;
+                     ContactReport& report, TaskVector& y, ScaledVector& v_scaled) const noexcept;
 
   ControllerConfig config_;
   Trajectory trajectory_;
-  JointVector inv_sqrt_weights_;
+  ScaledVector sqrt_weights_, inv_sqrt_weights_;  ///< diagonals of W^1/2 and W^-1/2
   CommandLimiter limiter_;
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
   std::optional<ControlLaw> law_;

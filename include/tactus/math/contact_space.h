@@ -22,7 +22,7 @@ struct ContactSpace {
 
 /// y_eff: solve(w_dot_d,eff) of the pseudoinverse.
 void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const JointVector& a,
-                         const JointVector& inv_sqrt_weights, const TaskVector& y_eff,
+                         const ScaledVector& inv_sqrt_weights, const TaskVector& y_eff,
                          ContactSpace& contact) noexcept;
 
 /// 1 / max(k, 1e-3 k_j, 1e-4 m^2): where a space hardly moves the contact point, its controller

@@ -22,6 +22,19 @@ using TaskVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMa
 using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor,
                                    kMaxTaskSize, kMaxJoints>;
 
+/// A joint vector in W^1/2 coordinates (v^ = W^1/2 v), where the weighted pseudoinverse is a plain
+/// one. Zero beyond the robot's joints: at its fixed size every operation is unrolled, which is
+/// faster for six joints than loops that know the number.
+using ScaledVector = Eigen::Matrix<double, kMaxJoints, 1>;
+
+/// v^ = factor v, component by component, for any expression v of up to kMaxJoints entries.
+template <typename Derived>
+ScaledVector scaled(const Eigen::MatrixBase<Derived>& v, const ScaledVector& factor) noexcept {
+  ScaledVector result = ScaledVector::Zero();
+  for (int i = 0; i < v.size(); ++i) result[i] = factor[i] * v[i];
+  return result;
+}
+
 /// A rigid pose: maps coordinates in frame B to frame A.
 struct Pose {
   Matrix3 R_AB = Matrix3::Identity();

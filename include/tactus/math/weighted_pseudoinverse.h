@@ -22,17 +22,18 @@ class WeightedPseudoinverse {
   static constexpr double kDampingThreshold = 0.02;
   static constexpr double kMaxDamping = 0.05;
 
-  /// J: m x n with 1 <= m <= 6, m <= n; inv_sqrt_weights: the diagonal of W^-1/2, positive.
-  void factorise(const TaskJacobian& J, const JointVector& inv_sqrt_weights) noexcept;
+  /// J: m x n with 1 <= m <= 6, m <= n; inv_sqrt_weights: the diagonal of W^-1/2, positive for each
+  /// joint and zero beyond.
+  void factorise(const TaskJacobian& J, const ScaledVector& inv_sqrt_weights) noexcept;
 
   /// y = R^-T w (damped near singularities): J# w = W^-1/2 Q y.
   TaskVector solve(const TaskVector& w) const noexcept;
 
   /// Q^T v for a scaled joint vector.
-  TaskVector project(const JointVector& v_scaled) const noexcept;
+  TaskVector project(const ScaledVector& v_scaled) const noexcept;
 
-  /// v -= Q y, in place, scaled.
-  void subtractExpanded(const TaskVector& y, JointVector& v_scaled) const noexcept;
+  /// Q y, scaled.
+  ScaledVector expand(const TaskVector& y) const noexcept;
 
   bool damped() const noexcept { return damping_squared_ > 0.0; }
   double dampingSquared() const noexcept { return damping_squared_; }
@@ -40,9 +41,9 @@ class WeightedPseudoinverse {
  private:
   void chooseDamping() noexcept;
 
-  int n_ = 0;
   int m_ = 0;
-  double Q_[kMaxTaskSize][kMaxJoints];    ///< orthonormal columns; zero where J has lost rank
+  /// Orthonormal columns; zero where J has lost rank.
+  Eigen::Matrix<double, kMaxJoints, kMaxTaskSize> Q_;
   double R_[kMaxTaskSize][kMaxTaskSize];  ///< upper triangular, R_[row][column]
   double inv_diagonal_[kMaxTaskSize];     ///< 1 / R_ii, 0 where J has lost rank
   double damping_squared_ = 0.0;
