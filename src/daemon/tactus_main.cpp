@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "tactus/daemon/commands.h"
-#include "tactus/daemon/input_error.h"
+#include "tactus/daemon/run_error.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"Tactile feedback control of redundant robot arms: the engineer's tool", "tactus"};
@@ -16,6 +16,9 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? tactus::kExitDone : tactus::kExitUsage;
+  } catch (const tactus::RunError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return tactus::kExitFault;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return tactus::kExitBadInput;

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "tactus/daemon/run_summary.h"
+#include "tactus/daemon/scene.h"
+
+namespace tactus {
+
+struct SimulationResult {
+  RunFigures figures;
+  double real_time_factor = 0.0;  ///< simulated time over the time it took, log and plant included
+};
+
+/// Told now and then how far a run has come, 0 to 1.
+using Progress = std::function<void(double share)>;
+
+/// Runs a scene in virtual time and logs every cycle to log_path. A fault ends the run as soon as
+/// the arm is at rest. Throws InputError for a scene that can't be simulated, RunError if the log
+/// can't be written.
+SimulationResult simulate(const Scene& scene, const std::string& log_path,
+                          const Progress& progress);
+
+}  // namespace tactus

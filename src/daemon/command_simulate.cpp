@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tactus/daemon/commands.h"
+#include "tactus/daemon/input_error.h"
+#include "tactus/daemon/run_summary.h"
+#include "tactus/daemon/scene_loader.h"
+#include "tactus/daemon/simulation.h"
+
+namespace tactus {
+namespace {
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::vector<std::string> settings;
+  std::string directory;
+  bool json = false;
+};
+
+/// All scenes are loaded before the first one runs, so that bad input writes nothing.
+std::vector<Scene> loadScenes(const Options& options) {
+  std::vector<Override> overrides;
+  for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
+  std::vector<Scene> scenes;
+  std::set<std::string> names;
+  for (const std::string& path : options.scenes) {
+    scenes.push_back(loadScene(path, overrides));
+    if (!names.insert(scenes.back().name).second)
+      throw InputError(fmt::format("{}:1:1: -: a second scene named {}, names that differ are "
+                                   "expected (each names a folder)",
+                                   path, scenes.back().name));
+  }
+  return scenes;
+}
+
+/// Keeps one line of a terminal up to date; says nothing elsewhere.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::string name) : name_(std::move(name)) {}
+
+  void show(double share) {
+    if (!is_terminal_) return;
+    fmt::print(stderr, "\r{:<32} {:3.0f} %", name_, 100.0 * share);
+    std::fflush(stderr);
+  }
+
+  void clear() {
+    if (is_terminal_) fmt::print(stderr, "\r{:<40}\r", "");
+  }
+
+ private:
+  std::string name_;
+  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
+};
+
+void printHeading() {
+  fmt::print("{:<28} {:>9} {:>9} {:>10} {:>10} {:>8}  {}\n", "scene", "peak", "final", "TCP max",
+             "TCP final", "faster", "outcome");
+  fmt::print("{:<28} {:>9} {:>9} {:>10} {:>10} {:>8}\n", "", "N", "N", "mm", "mm", "than real");
+}
+
+void printRow(const std::string& name, const SimulationResult& result) {
+  const RunFigures& figures = result.figures;
+  fmt::print("{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", name,
+             figures.peak_force_N, figures.final_force_N, 1e3 * figures.tcp_error_max_m,
+             1e3 * figures.tcp_error_final_m, result.real_time_factor,
+             figures.fault == Fault::kNone ? "done" : faultName(figures.fault));
+}
+
+int simulateScenes(const Options& options) {
+  const std::vector<Scene> scenes = loadScenes(options);
+  int exit_code = kExitDone;
+  if (!options.json) printHeading();
+  std::string separator = "[";
+  for (const Scene& scene : scenes) {
+    const std::filesystem::path folder = std::filesystem::path(options.directory) / scene.name;
+    std::filesystem::create_directories(folder);
+    ProgressLine line(scene.name);
+    const SimulationResult result = simulate(scene, (folder / "run.ulg").string(),
+                                             [&line](double share) { line.show(share); });
+    line.clear();
+    writeSummary((folder / "summary.json").string(), scene, result.figures,
+                 result.real_time_factor);
+    if (result.figures.fault != Fault::kNone) exit_code = kExitFault;
+    if (options.json) {
+      fmt::print("{}{}", separator, summaryJson(scene, result.figures, result.real_time_factor));
+      separator = ",";
+    } else {
+      printRow(scene.name, result);
+    }
+    std::fflush(stdout);
+  }
+  if (options.json) fmt::print("]\n");
+  return exit_code;
+}
+
+}  // namespace
+
+void addSimulateCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("simulate", "Run scenes in virtual time; write a log and a summary each");
+  command->add_option("SCENE", options->scenes, "Scene files")->required();
+  command->add_option("-o,--output", options->directory, "Folder for <scene>/run.ulg and "
+                                                         "<scene>/summary.json")
+      ->required();
+  command->add_option("--set", options->settings, "Replace a value: controller.damping=0.7")
+      ->allow_extra_args(false);
+  command->add_flag("--json", options->json, "Print the summaries as one JSON list");
+  command->callback([options, &exit_code] { exit_code = simulateScenes(*options); });
+}
+
+}  // namespace tactus

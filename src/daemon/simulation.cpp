@@ -1,0 +1,72 @@
+#include "tactus/daemon/simulation.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "tactus/control/controller.h"
+#include "tactus/daemon/cycle_record.h"
+#include "tactus/daemon/ulog_writer.h"
+#include "tactus/sim/simulated_robot.h"
+
+namespace tactus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr long long kCyclesBetweenReports = 8192;
+
+std::int64_t nanoseconds(Clock::duration duration) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+/// Desired minus actual tool position, in the directions that belong to the task.
+Vector3 toolError(const TaskConfig& task, const TaskVector& w_d, const Vector3& p_BaseTool) {
+  Vector3 error = Vector3::Zero();
+  for (int i = 0; i < task.size; ++i) {
+    const int component = task.components[i];
+    if (component < 3) error[component] = w_d[i] - p_BaseTool[component];
+  }
+  return error;
+}
+
+bool isOver(const ControllerOutput& output) {
+  return output.fault != Fault::kNone && output.velocity.isZero(0.0);
+}
+
+}  // namespace
+
+SimulationResult simulate(const Scene& scene, const std::string& log_path,
+                          const Progress& progress) {
+  const auto cycles = std::llround(scene.duration_s / scene.period_s);
+  const Controller controller(scene.controller);
+  SimulatedRobot robot(scene.controller, scene.plant, scene.period_s);
+  UlogWriter log(log_path, describeLog(scene, {}));
+  RunSummary summary(scene.controller, static_cast<std::size_t>(cycles));
+  ControllerState state = controller.initialState();
+  RobotInput input;
+  ControllerOutput output;
+  CycleRecord record;
+
+  const Clock::time_point start = Clock::now();
+  long long cycle = 0;
+  for (; cycle < cycles && !isOver(output); ++cycle) {
+    const double t_s = static_cast<double>(cycle) * scene.period_s;
+    robot.read(input);
+    const Clock::time_point before = Clock::now();
+    controller.update(input, t_s, scene.period_s, state, output);
+    record.step_ns = nanoseconds(Clock::now() - before);
+    const Vector3 error = toolError(scene.controller.task, output.w_d, robot.toolPosition());
+    robot.write(output.velocity);
+    fillRecord(t_s, input, output, error, record);
+    log.write(record);
+    summary.add(record);
+    if (cycle % kCyclesBetweenReports == 0)
+      progress(static_cast<double>(cycle) / static_cast<double>(cycles));
+  }
+  log.close();
+  const double wall_s = 1e-9 * static_cast<double>(nanoseconds(Clock::now() - start));
+  const double simulated_s = static_cast<double>(cycle) * scene.period_s;
+  return {summary.figures(), simulated_s / wall_s};
+}
+
+}  // namespace tactus
