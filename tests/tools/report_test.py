@@ -268,8 +268,9 @@ class Drawing(unittest.TestCase):
             heights = figures.spread(wished, 0.075)
             self.assertEqual(len(heights), count)
             self.assertTrue((np.diff(heights) >= 0.075 - 1e-12).all(), heights)
-            self.assertLessEqual(max(heights), 1.0 + 1e-12)
+            self.assertTrue(0.0 <= min(heights) and max(heights) <= 1.0 + 1e-12, heights)
         self.assertEqual(figures.spread([0.2, 0.6], 0.1), [0.2, 0.6])
+        self.assertEqual(figures.spread([0.0, 0.0], 0.1), [0.0, 0.1])
 
 
 if __name__ == "__main__":

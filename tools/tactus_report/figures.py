@@ -8,6 +8,7 @@ import re
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
 
 logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no remarks about caches and HOME
 
@@ -46,7 +47,7 @@ def line_figure(name, curves, y_label, unit, log_axis=False, label_peak=False):
             axes.plot(*thinned(curve.time_s, curve.value), color=curve.colour, linewidth=1.6,
                       linestyle=curve.line)
         if log_axis:
-            axes.set_yscale("log")
+            use_log_axis(axes)
         else:
             axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
         axes.set_xlabel("time in s")
@@ -64,7 +65,7 @@ def scatter_figure(name, points, x_label, y_label):
     """Points (x, y, label) on a logarithmic y axis, each named beside the axes."""
     with matplotlib.rc_context():
         figure, axes = new_figure()
-        axes.set_yscale("log")
+        use_log_axis(axes)
         axes.set_xlabel(x_label)
         axes.set_ylabel(y_label)
         for x, y, _ in points:
@@ -80,6 +81,13 @@ def new_figure():
     figure = Figure(figsize=SIZE_IN)
     axes = figure.add_axes((0.085, 0.16, 0.63, 0.8))
     return figure, axes
+
+
+def use_log_axis(axes):
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_locator(NullLocator())
 
 
 def thinned(x, y):
@@ -109,27 +117,23 @@ def label_ends(axes, labels):
 
 
 def spread(heights, gap):
-    """The sorted heights, moved as little as it takes to be `gap` apart, within 0..1 if it fits."""
-    groups = []  # [sum of wished first heights, number], merged while they overlap
-    for index, height in enumerate(heights):
+    """The sorted heights, moved as little as it takes to be `gap` apart, within 0..1 if they fit."""
+    groups = []  # [sum of the members' wishes, number of members], merged while they overlap
+    for height in heights:
         groups.append([height, 1])
-        while len(groups) > 1 and bottom(groups[-2], gap) + gap * groups[-2][1] > bottom(
+        while len(groups) > 1 and lowest(groups[-2], gap) + gap * groups[-2][1] > lowest(
                 groups[-1], gap):
-            last = groups.pop()
-            groups[-1][0] += last[0]
-            groups[-1][1] += last[1]
-    result = []
-    for group in groups:
-        lowest = max(bottom(group, gap), result[-1] + gap if result else 0.0)
-        result += [lowest + gap * place for place in range(group[1])]
-    overflow = max(0.0, result[-1] - 1.0) if result else 0.0
-    return [height - overflow for height in result]
+            total, count = groups.pop()
+            groups[-1][0] += total
+            groups[-1][1] += count
+    return [lowest(group, gap) + gap * place for group in groups for place in range(group[1])]
 
 
-def bottom(group, gap):
-    """Lowest height of a group of labels that is centred on the mean of its points."""
+def lowest(group, gap):
+    """Lowest height of labels that are centred on the mean of their points."""
     total, count = group
-    return total / count - gap * (count - 1) / 2
+    height = total / count - gap * (count - 1) / 2
+    return max(0.0, min(height, 1.0 - gap * (count - 1)))
 
 
 def label_text(curve, unit, label_peak):

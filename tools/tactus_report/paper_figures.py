@@ -39,12 +39,12 @@ FIGURES = [
         2, "Scenario 1, soft band: contact force",
         "Without control the force follows the band. The null space takes off a third and the tool "
         "stays on its path; multi-space gives way slowly above 5 N; joint space lets go of the "
-        "task and ends below the contact threshold of 1.2 N.",
+        "task for the smallest force.",
         *FORCE, [NONE, NULL, JOINT, MULTI]),
     PaperFigure(
         3, "Scenario 1: squared joint velocities",
-        "Joint space pays for the smallest force with the largest joint velocities. The sum mixes "
-        "m/s and rad/s, as in the paper.",
+        "What a small force costs in motion: in the paper joint space is fastest. The peaks at 7 s "
+        "come with joints near their limits. The sum mixes m/s and rad/s, as in the paper.",
         "joint_speed_squared", "squared norm of the command", "", [NONE, NULL, JOINT, MULTI],
         label_peak=True),
     PaperFigure(
@@ -69,8 +69,8 @@ FIGURES = [
         *FORCE, [ASSUMED_3, ESTIMATED_3, FAST_3], label_peak=True),
     PaperFigure(
         8, "Scenario 3: stiffness",
-        "Foam and profile are averaged: the faster the arm, the deeper it goes and the more of the "
-        "profile the estimate holds.",
+        "Foam and profile are averaged. At its peak force the fast run has gone deeper, and its "
+        "estimate holds more of the profile than the slow one's.",
         *STIFFNESS, [ASSUMED_3, ESTIMATED_3, FAST_3], log_axis=True),
 ]
 
