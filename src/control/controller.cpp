@@ -47,7 +47,6 @@ struct Controller::Kinematics {
 Controller::Controller(const ControllerConfig& config)
     : config_(config),
       trajectory_(config.task.trajectory, toolPose(config.chain, config.q_start)),
-      sqrt_weights_(scaled(config.weights.cwiseSqrt(), ScaledVector::Ones())),
       inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
       limiter_(config.limits) {
   if (config.joint_limit_avoidance)
@@ -83,7 +82,7 @@ void Controller::update(const RobotInput& input, double t_s, double period_s,
   if (joint_limit_avoidance_) {
     JointVector gradient;
     joint_limit_avoidance_->compute(state.q_desired, gradient);
-    v_scaled = -scaled(gradient, sqrt_weights_);
+    v_scaled = -scaled(gradient, inv_sqrt_weights_);
     y -= kinematics.pseudoinverse.project(v_scaled);
   }
   output.contact = {};

@@ -34,9 +34,10 @@ std::vector<Scene> loadScenes(const Options& options) {
   for (const std::string& path : options.scenes) {
     scenes.push_back(loadScene(path, overrides));
     if (!names.insert(scenes.back().name).second)
-      throw InputError(fmt::format("{}:1:1: -: a second scene named {}, names that differ are "
-                                   "expected (each names a folder)",
-                                   path, scenes.back().name));
+      throw InputError(
+          fmt::format("{}:1:1: -: a second scene named {}, names that differ are "
+                      "expected (each names a folder)",
+                      path, scenes.back().name));
   }
   return scenes;
 }
@@ -69,9 +70,9 @@ void printHeading() {
 
 void printRow(const std::string& name, const SimulationResult& result) {
   const RunFigures& figures = result.figures;
-  fmt::print("{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", name,
-             figures.peak_force_N, figures.final_force_N, 1e3 * figures.tcp_error_max_m,
-             1e3 * figures.tcp_error_final_m, result.real_time_factor,
+  fmt::print("{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", name, figures.peak_force_N,
+             figures.final_force_N, 1e3 * figures.tcp_error_max_m, 1e3 * figures.tcp_error_final_m,
+             result.real_time_factor,
              figures.fault == Fault::kNone ? "done" : faultName(figures.fault));
 }
 
@@ -84,8 +85,8 @@ int simulateScenes(const Options& options) {
     const std::filesystem::path folder = std::filesystem::path(options.directory) / scene.name;
     std::filesystem::create_directories(folder);
     ProgressLine line(scene.name);
-    const SimulationResult result = simulate(scene, (folder / "run.ulg").string(),
-                                             [&line](double share) { line.show(share); });
+    const SimulationResult result =
+        simulate(scene, (folder / "run.ulg").string(), [&line](double share) { line.show(share); });
     line.clear();
     writeSummary((folder / "summary.json").string(), scene, result.figures,
                  result.real_time_factor);
@@ -109,8 +110,10 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("simulate", "Run scenes in virtual time; write a log and a summary each");
   command->add_option("SCENE", options->scenes, "Scene files")->required();
-  command->add_option("-o,--output", options->directory, "Folder for <scene>/run.ulg and "
-                                                         "<scene>/summary.json")
+  command
+      ->add_option("-o,--output", options->directory,
+                   "Folder for <scene>/run.ulg and "
+                   "<scene>/summary.json")
       ->required();
   command->add_option("--set", options->settings, "Replace a value: controller.damping=0.7")
       ->allow_extra_args(false);

@@ -86,7 +86,7 @@ class Controller {
 
   ControllerConfig config_;
   Trajectory trajectory_;
-  ScaledVector sqrt_weights_, inv_sqrt_weights_;  ///< diagonals of W^1/2 and W^-1/2
+  ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
   CommandLimiter limiter_;
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
   std::optional<ControlLaw> law_;

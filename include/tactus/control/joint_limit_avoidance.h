@@ -7,7 +7,9 @@ namespace tactus {
 /// dH/dq of (1), pointing towards the nearer limit (N alpha dH/dq is subtracted):
 ///   s_i = max(0, (|q_i - mid_i| - (1 - f) half_i) / (f half_i))
 ///   dH/dq_i = gradient_at_limit s_i sign(q_i - mid_i)
-/// Joints without limits get zero.
+/// Joints without limits get zero. With weights the arm follows W^-1 dH/dq, steepest in the metric
+/// of W like every other controller's b = W^-1 J_p^T F^: where it comes to rest does not depend on
+/// W.
 class JointLimitAvoidance {
  public:
   JointLimitAvoidance(const JointLimitAvoidanceConfig& config, const JointLimits& limits);
