@@ -26,7 +26,8 @@ STYLE = {
     "axes.grid": True, "grid.color": GRID, "grid.linewidth": 0.6,
     "path.simplify_threshold": 0.05,
 }
-SIZE_IN = (7.6, 3.1)
+WIDTH_IN, PLOT_HEIGHT_IN, MARGIN_IN = 7.6, 2.48, (0.12, 0.5)  # margins: top, bottom
+LABEL_GAP_IN = 0.19
 POINTS_PER_CURVE = 1600
 
 
@@ -64,7 +65,7 @@ def line_figure(name, curves, y_label, unit, log_axis=False, label_peak=False):
 def scatter_figure(name, points, x_label, y_label):
     """Points (x, y, label) on a logarithmic y axis, each named beside the axes."""
     with matplotlib.rc_context():
-        figure, axes = new_figure()
+        figure, axes = new_figure(max(PLOT_HEIGHT_IN, LABEL_GAP_IN * len(points)))
         use_log_axis(axes)
         axes.set_xlabel(x_label)
         axes.set_ylabel(y_label)
@@ -75,11 +76,12 @@ def scatter_figure(name, points, x_label, y_label):
         return as_svg(figure, name)
 
 
-def new_figure():
+def new_figure(plot_height_in=PLOT_HEIGHT_IN):
     matplotlib.rcdefaults()  # whatever matplotlibrc this machine has
     matplotlib.rcParams.update(STYLE)
-    figure = Figure(figsize=SIZE_IN)
-    axes = figure.add_axes((0.085, 0.16, 0.63, 0.8))
+    height_in = plot_height_in + sum(MARGIN_IN)
+    figure = Figure(figsize=(WIDTH_IN, height_in))
+    axes = figure.add_axes((0.085, MARGIN_IN[1] / height_in, 0.63, plot_height_in / height_in))
     return figure, axes
 
 
@@ -106,10 +108,11 @@ def thinned(x, y):
 def label_ends(axes, labels):
     """Texts (x, y, text, colour) right of the axes at the height of their points, apart enough to
     be read, with a thin line to the point."""
+    gap = LABEL_GAP_IN / (axes.get_position().height * axes.figure.get_figheight())
     to_axes = axes.transData + axes.transAxes.inverted()
     placed = [(*to_axes.transform((x, y)), text, colour) for x, y, text, colour in labels]
     placed.sort(key=lambda item: item[1])
-    for (x, y, text, colour), height in zip(placed, spread([item[1] for item in placed], 0.075)):
+    for (x, y, text, colour), height in zip(placed, spread([item[1] for item in placed], gap)):
         axes.plot([x, 1.015, 1.035], [y, height, height], transform=axes.transAxes, clip_on=False,
                   color=colour, linewidth=0.6, alpha=0.7)
         axes.text(1.045, height, text, transform=axes.transAxes, color=colour, va="center",
