@@ -1,0 +1,141 @@
+#include "tactus/control/command_limiter.h"
+
+#include <gtest/gtest.h>
+
+#include "support/random_limits.h"
+
+/// Single cycles of the last gate, without position limits in the way.
+namespace tactus {
+namespace {
+
+struct RandomCase {
+  explicit RandomCase(test::Random& random)
+      : n(random.integer(1, kMaxJoints)),
+        limits(test::randomLimits(random, n)),
+        q(JointVector::Zero(n)),
+        before(n),
+        period_s(random.logUniform(2e-4, 0.01)) {
+    limits.lower.setConstant(-kNoLimit);
+    limits.upper.setConstant(kNoLimit);
+    for (int i = 0; i < n; ++i) {
+      const double range = std::min(limits.max_velocity[i], 20.0);
+      before[i] = random.chance(0.3) ? 0.0 : random.uniform(-range, range);
+    }
+  }
+
+  double low(int i) const {
+    return std::max(-limits.max_velocity[i], before[i] - limits.max_acceleration[i] * period_s);
+  }
+  double high(int i) const {
+    return std::min(limits.max_velocity[i], before[i] + limits.max_acceleration[i] * period_s);
+  }
+  bool admissible(const JointVector& v, double tolerance) const {
+    for (int i = 0; i < n; ++i)
+      if (!(v[i] >= low(i) - tolerance && v[i] <= high(i) + tolerance)) return false;
+    return true;
+  }
+
+  int n;
+  JointLimits limits;
+  JointVector q, before;
+  double period_s;
+};
+
+TEST(CommandLimiter, LeavesAdmissibleCommandsAloneToTheBit) {
+  test::Random random(161);
+  for (int i = 0; i < 5000; ++i) {
+    const RandomCase c(random);
+    JointVector wanted(c.n);
+    for (int k = 0; k < c.n; ++k)
+      wanted[k] = random.uniform(std::max(-100.0, c.low(k)), std::min(100.0, c.high(k)));
+    JointVector v = wanted;
+    ASSERT_TRUE(CommandLimiter(c.limits).apply(c.q, c.before, c.period_s, v));
+    ASSERT_EQ(v, wanted) << "case " << i;
+  }
+}
+
+TEST(CommandLimiter, LetsNothingInadmissibleThrough) {
+  test::Random random(162);
+  for (int i = 0; i < 50000; ++i) {
+    const RandomCase c(random);
+    JointVector v(c.n);
+    const bool hostile = random.chance(0.5);
+    for (double& value : v)
+      value = hostile ? test::hostileNumber(random) : random.uniform(-20.0, 20.0);
+    const bool finite = v.allFinite();
+    const double largest = v.lpNorm<Eigen::Infinity>();
+    const bool said_finite = CommandLimiter(c.limits).apply(c.q, c.before, c.period_s, v);
+    ASSERT_TRUE(v.allFinite());
+    ASSERT_TRUE(c.admissible(v, 1e-14)) << "case " << i;
+    if (!finite) {
+      ASSERT_FALSE(said_finite);
+    } else if (largest < 1e300) {
+      ASSERT_TRUE(said_finite);
+    }
+  }
+}
+
+TEST(CommandLimiter, RampsToRestOnNoNumber) {
+  test::Random random(163);
+  for (int i = 0; i < 1000; ++i) {
+    const RandomCase c(random);
+    JointVector v = JointVector::Ones(c.n);
+    v[random.index(c.n)] = std::numeric_limits<double>::quiet_NaN();
+    ASSERT_FALSE(CommandLimiter(c.limits).apply(c.q, c.before, c.period_s, v));
+    for (int k = 0; k < c.n; ++k) {
+      const double step = c.limits.max_acceleration[k] * c.period_s;
+      const double expected =
+          c.before[k] > 0.0 ? std::max(0.0, c.before[k] - step) : std::min(0.0, c.before[k] + step);
+      ASSERT_NEAR(v[k], expected, 1e-14);
+    }
+  }
+}
+
+/// Brute force: is any factor of 0..1 admissible, and which is the largest?
+double largestAdmissibleFactor(const RandomCase& c, const JointVector& wanted, double tolerance) {
+  for (int step = 20000; step >= 0; --step) {
+    const double factor = step / 20000.0;
+    if (c.admissible(factor * wanted, tolerance)) return factor;
+  }
+  return -1.0;
+}
+
+TEST(CommandLimiter, KeepsTheDirectionWhereverAMultipleIsAdmissible) {
+  test::Random random(164);
+  int shortened = 0;
+  int clamped = 0;
+  for (int i = 0; i < 1500; ++i) {
+    RandomCase c(random);
+    // Long enough steps that previous speeds and the command often have multiples in common.
+    c.before *= random.logUniform(1e-4, 1.0);
+    const JointVector wanted = random.vector(c.n, -1.0, 1.0) * random.logUniform(0.01, 100.0);
+    JointVector v = wanted;
+    CommandLimiter(c.limits).apply(c.q, c.before, c.period_s, v);
+    const double factor = largestAdmissibleFactor(c, wanted, 0.0);
+    if (factor < 0.0) {
+      ++clamped;
+      continue;
+    }
+    const double ours = v.dot(wanted) / wanted.squaredNorm();
+    ASSERT_LT((v - ours * wanted).norm(), 1e-12 * wanted.norm()) << "direction lost, case " << i;
+    ASSERT_GE(ours, factor - 1e-12) << "shortened more than necessary";
+    ASSERT_LE(ours, 1.0 + 1e-15);
+    shortened += factor < 1.0;
+  }
+  EXPECT_GT(shortened, 300);
+  EXPECT_GT(clamped, 100);
+}
+
+TEST(CommandLimiter, ComesAsCloseAsItCanWhereNoMultipleIsAdmissible) {
+  JointLimits limits = test::noLimits(2);
+  limits.max_acceleration << 10.0, 10.0;
+  const JointVector before = JointVector::Ones(2);
+  JointVector v(2);
+  v << 1.0, -1.0;  // the second joint needs time to turn round
+  CommandLimiter(limits).apply(JointVector::Zero(2), before, 0.01, v);
+  EXPECT_DOUBLE_EQ(v[0], 1.0);
+  EXPECT_DOUBLE_EQ(v[1], 0.9);
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,82 @@
+#include "tactus/control/contact_point.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "support/random.h"
+#include "support/tactile_samples.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kLength_m = 0.38;
+
+TEST(LocateContact, FindsForcePointAndDirectionOfARandomContact) {
+  test::Random random(141);
+  for (int i = 0; i < 5000; ++i) {
+    const double x_m = random.uniform(0.0, kLength_m);
+    const double force_N = random.logUniform(0.06, 100.0);
+    const double angle_rad = random.uniform(-3.2, 3.2);
+    ContactPointState contact;
+    locateContact(test::touchAt(x_m, force_N, angle_rad, 1), kLength_m, contact);
+    ASSERT_NEAR(contact.force_N, force_N, 1e-13 * force_N);
+    ASSERT_NEAR(contact.position_m, x_m, 1e-12);
+    ASSERT_NEAR(contact.direction.norm(), 1.0, 1e-14);
+    ASSERT_NEAR(contact.direction.y(), std::cos(angle_rad), 1e-13);
+    ASSERT_NEAR(contact.direction.z(), std::sin(angle_rad), 1e-13);
+    ASSERT_EQ(contact.direction.x(), 0.0);
+  }
+}
+
+TEST(LocateContact, KeepsPointAndDirectionWhileTheForceIsTooSmallToTell) {
+  ContactPointState contact;
+  locateContact(test::touchAt(0.2, 5.0, 0.3, 1), kLength_m, contact);
+  const Vector3 direction = contact.direction;
+  for (const double force_N : {0.05, 0.01, 0.0}) {
+    locateContact(test::touchAt(0.1, force_N, 2.0, 2), kLength_m, contact);
+    EXPECT_NEAR(contact.force_N, force_N, 1e-15);
+    EXPECT_NEAR(contact.position_m, 0.2, 1e-12);
+    EXPECT_EQ(contact.direction, direction);
+  }
+}
+
+TEST(LocateContact, KeepsThePointOnTheLink) {
+  ContactPointState contact;
+  locateContact(test::touchAt(-0.3, 5.0, 0.3, 1), kLength_m, contact);
+  EXPECT_EQ(contact.position_m, 0.0);
+  locateContact(test::touchAt(2.0, 5.0, 0.3, 1), kLength_m, contact);
+  EXPECT_EQ(contact.position_m, kLength_m);
+}
+
+TEST(LocateContact, MixesTwoContactsIntoTheOneThatExplainsThem) {
+  // Two parallel forces: one contact at their centre.
+  const TactileSample a = test::touchAt(0.1, 2.0, 0.5, 1);
+  const TactileSample b = test::touchAt(0.3, 6.0, 0.5, 1);
+  ContactPointState contact;
+  locateContact({a.force_y_N + b.force_y_N, a.force_z_N + b.force_z_N,
+                 a.moment_y_Nm + b.moment_y_Nm, a.moment_z_Nm + b.moment_z_Nm, 1},
+                kLength_m, contact);
+  EXPECT_NEAR(contact.force_N, 8.0, 1e-12);
+  EXPECT_NEAR(contact.position_m, 0.25, 1e-12);
+}
+
+TEST(TactileSampleIsValid, RefusesWhatNoModuleCanMean) {
+  TactileModuleConfig config;
+  config.max_force_N = 50.0;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(isValid({}, config));
+  EXPECT_TRUE(isValid({30.0, 40.0, 0.0, 0.0, 1}, config)) << "exactly the range";
+  EXPECT_FALSE(isValid({30.1, 40.0, 0.0, 0.0, 1}, config));
+  for (const double hostile : {nan, inf, -inf}) {
+    EXPECT_FALSE(isValid({hostile, 0.0, 0.0, 0.0, 1}, config));
+    EXPECT_FALSE(isValid({0.0, hostile, 0.0, 0.0, 1}, config));
+    EXPECT_FALSE(isValid({0.0, 0.0, hostile, 0.0, 1}, config));
+    EXPECT_FALSE(isValid({0.0, 0.0, 0.0, hostile, 1}, config));
+    EXPECT_FALSE(isValid({hostile, nan, 0.0, 0.0, 1}, config));
+  }
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include "support/controller_run.h"
+
+/// A stage that a scene leaves out changes nothing for the others.
+namespace tactus {
+namespace {
+
+/// Runs both controllers on the same inputs and expects the same motion to the bit.
+void expectSameMotion(const ControllerConfig& a, const ControllerConfig& b, double force_N) {
+  const Controller controller_a(a);
+  const Controller controller_b(b);
+  ControllerState state_a = controller_a.initialState();
+  ControllerState state_b = controller_b.initialState();
+  ControllerOutput output_a;
+  ControllerOutput output_b;
+  for (int cycle = 0; cycle < 1500; ++cycle) {
+    const RobotInput input{state_a.q_desired, test::touchAt(0.2, force_N, 0.4, cycle + 1)};
+    controller_a.update(input, cycle * 1e-3, 1e-3, state_a, output_a);
+    controller_b.update(input, cycle * 1e-3, 1e-3, state_b, output_b);
+    test::expectSameMotion(output_a, output_b);
+    ASSERT_FALSE(testing::Test::HasFailure()) << "cycle " << cycle;
+  }
+}
+
+TEST(ControllerStages, TactileModuleAloneChangesNoMotion) {
+  test::Random random(241);
+  ControllerConfig with = test::fullController(random, 9, Variant::kNone);
+  with.force_control.reset();
+  ControllerConfig without = with;
+  without.tactile_module.reset();
+  expectSameMotion(with, without, 10.0);
+}
+
+TEST(ControllerStages, LawNoneChangesNoMotion) {
+  test::Random random(242);
+  const ControllerConfig with = test::fullController(random, 9, Variant::kNone);
+  ControllerConfig without = with;
+  without.force_control.reset();
+  expectSameMotion(with, without, 10.0);
+}
+
+TEST(ControllerStages, LawChangesNoMotionWithoutContact) {
+  test::Random random(243);
+  for (const Variant variant : test::kAllVariants) {
+    const ControllerConfig with = test::fullController(random, 7, variant);
+    ControllerConfig without = with;
+    without.force_control.reset();
+    expectSameMotion(with, without, 1.19);  // below the contact threshold
+  }
+}
+
+TEST(ControllerStages, AvoidanceWithoutGainChangesNoMotion) {
+  test::Random random(244);
+  ControllerConfig with = test::fullController(random, 7, Variant::kNullTask);
+  with.joint_limit_avoidance->gain = 0.0;
+  ControllerConfig without = with;
+  without.joint_limit_avoidance.reset();
+  expectSameMotion(with, without, 10.0);
+}
+
+TEST(ControllerStages, EstimatorThatNeverTriggersChangesNoMotion) {
+  test::Random random(245);
+  ControllerConfig with = test::fullController(random, 7, Variant::kNullTask);
+  with.force_control->estimator->min_force_change_N = 1e9;
+  ControllerConfig without = with;
+  without.force_control->estimator.reset();
+  expectSameMotion(with, without, 10.0);
+}
+
+TEST(ControllerStages, AbsentStagesReportZero) {
+  test::Random random(246);
+  ControllerConfig config = test::fullController(random, 7, Variant::kNone);
+  config.force_control.reset();
+  config.tactile_module.reset();
+  const Controller controller(config);
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  controller.update({state.q_desired, test::touchAt(0.2, 10.0, 0.4, 1)}, 0.0, 1e-3, state, output);
+  test::expectSameContact(output.contact, ContactReport{});
+  EXPECT_EQ(output.fault, Fault::kNone);
+}
+
+TEST(ControllerStages, EveryStagePresentDoesChangeTheMotion) {
+  test::Random random(247);
+  const ControllerConfig config = test::fullController(random, 9, Variant::kNullTask);
+  const auto run = test::record(Controller(config), random, 500);
+  for (const int stage : {0, 1}) {
+    ControllerConfig less = config;
+    if (stage == 0) less.joint_limit_avoidance.reset();
+    if (stage == 1) less.force_control.reset();
+    const Controller other(less);
+    ControllerState state = other.initialState();
+    ControllerOutput output;
+    int different = 0;
+    for (const test::RecordedCycle& cycle : run) {
+      other.update(cycle.input, cycle.t_s, cycle.period_s, state, output);
+      different += output.velocity != cycle.output.velocity;
+    }
+    EXPECT_GT(different, 100) << "stage " << stage;
+  }
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include "support/random_robot.h"
+#include "tactus/control/control_law.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kPeriod_s = 0.001;
+
+struct RandomCase {
+  explicit RandomCase(test::Random& random)
+      : n(random.integer(2, kMaxJoints)),
+        chain(test::randomChain(random, n)),
+        inv_sqrt(scaled(test::randomWeights(random, n).cwiseSqrt().cwiseInverse(),
+                        ScaledVector::Ones())) {
+    config.max_null_speed_m_per_s = random.logUniform(0.1, 5.0);
+    config.max_null_speed_rad_per_s = random.logUniform(0.1, 5.0);
+    config.variant = random.chance(0.5)   ? Variant::kNullSpace
+                     : random.chance(0.5) ? Variant::kNullTask
+                                          : Variant::kNullJoint;
+    space.a_scaled = scaled(random.vector(n, -1.0, 1.0), inv_sqrt);
+    space.k_j = space.a_scaled.squaredNorm();
+    space.k_n = space.k_j * random.logUniform(1e-4, 1.0);
+    space.k_t = space.k_j - space.k_n;
+    input.F_p_N = random.logUniform(0.01, 100.0);
+    input.stiffness_N_per_m = random.logUniform(50.0, 1e4);
+  }
+
+  /// Largest component of u_n,q = b u_n against its limit.
+  double excess(double u_n) const {
+    double largest = 0.0;
+    for (int i = 0; i < n; ++i) {
+      const double b = inv_sqrt[i] * space.a_scaled[i];
+      const double limit = chain.type(i) == JointType::kPrismatic ? config.max_null_speed_m_per_s
+                                                                  : config.max_null_speed_rad_per_s;
+      largest = std::max(largest, std::abs(b * u_n) / limit);
+    }
+    return largest;
+  }
+
+  int n;
+  SerialChain chain;
+  ScaledVector inv_sqrt;
+  ForceControlConfig config;
+  ContactSpace space;
+  ControlLawInput input;
+};
+
+TEST(NullSpaceLimit, ScalesTheWholeVectorAndOnlyWhenNeeded) {
+  test::Random random(111);
+  int limited = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const RandomCase c(random);
+    const ControlLaw law(c.config, c.chain, c.inv_sqrt);
+    ControlLawState state;
+    ControlLawOutput u;
+    law.update(c.input, c.space, kPeriod_s, state, u);
+    const double wanted = -2.0 * c.config.damping * c.input.F_p_N /
+                          (c.config.time_constant_s * c.input.stiffness_N_per_m) *
+                          invertRegularised(c.space.k_n, c.space.k_j);
+    if (c.excess(wanted) <= 1.0) {
+      ASSERT_NEAR(u.u_n, wanted, 1e-12 * std::abs(wanted));
+    } else {
+      ASSERT_NEAR(c.excess(u.u_n), 1.0, 1e-12) << "the fastest joint shall be at its limit";
+      ASSERT_LT(u.u_n, 0.0) << "direction lost";
+      ++limited;
+    }
+  }
+  EXPECT_GT(limited, 500);
+  EXPECT_LT(limited, 4500);
+}
+
+TEST(NullSpaceLimit, HoldsTheIntegralWhileLimited) {
+  test::Random random(112);
+  int held = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const RandomCase c(random);
+    const ControlLaw law(c.config, c.chain, c.inv_sqrt);
+    ControlLawState state;
+    ControlLawOutput u;
+    law.update(c.input, c.space, kPeriod_s, state, u);
+    if (c.excess(u.u_n) > 1.0 - 1e-9) {
+      ASSERT_EQ(state.V_m_per_s, 0.0);
+      ++held;
+    } else {
+      ASSERT_GT(state.V_m_per_s, 0.0);
+    }
+  }
+  EXPECT_GT(held, 200);
+}
+
+TEST(NullSpaceLimit, LeavesOtherSpacesAlone) {
+  test::Random random(113);
+  RandomCase c(random);
+  c.config.max_null_speed_m_per_s = c.config.max_null_speed_rad_per_s = 1e-6;
+  for (const Variant variant : {Variant::kJointSpace, Variant::kTaskSpace}) {
+    c.config.variant = variant;
+    const ControlLaw law(c.config, c.chain, c.inv_sqrt);
+    ControlLawState state;
+    ControlLawOutput u;
+    law.update(c.input, c.space, kPeriod_s, state, u);
+    EXPECT_GT(std::abs(u.u_j + u.u_t), 1e-3);
+    EXPECT_GT(state.V_m_per_s, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace tactus

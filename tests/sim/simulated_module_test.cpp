@@ -1,0 +1,129 @@
+#include "tactus/sim/simulated_module.h"
+
+#include <gtest/gtest.h>
+
+#include "support/crops9.h"
+#include "support/random.h"
+#include "tactus/control/contact_point.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kFullScale_N = 8388607.0 / 100000.0;
+
+SimulatedModuleConfig moduleConfig() { return test::crops9Plant({}).module; }
+
+Wrench4 wrenchOf(double x_m, double F_y, double F_z) { return {F_y, F_z, -x_m * F_z, x_m * F_y}; }
+
+TactileSample settle(SimulatedModule& module, const Wrench4& wrench) {
+  for (int i = 0; i < 2000; ++i) module.update(wrench);
+  return module.sample();
+}
+
+Wrench4 readings(const TactileSample& s) {
+  return {s.force_y_N, s.force_z_N, s.moment_y_Nm, s.moment_z_Nm};
+}
+
+TEST(SimulatedModule, GivesTheContactBackThroughTwentyFourBits) {
+  SimulatedModuleConfig config = moduleConfig();
+  config.quantised = true;
+  test::Random random(321);
+  for (int i = 0; i < 100; ++i) {
+    SimulatedModule module(config);
+    const double x_m = random.uniform(0.0, 0.38);
+    const double force_N = random.logUniform(0.5, 50.0);
+    const double angle = random.uniform(-3.1, 3.1);
+    const TactileSample sample =
+        settle(module, wrenchOf(x_m, force_N * std::cos(angle), force_N * std::sin(angle)));
+    ContactPointState contact;
+    locateContact(sample, 0.38, contact);
+    const double quantum_N = 1.0 / config.counts_per_N;
+    EXPECT_NEAR(contact.force_N, force_N, 4.0 * quantum_N);
+    EXPECT_NEAR(contact.position_m, x_m, 4.0 * 0.34 * quantum_N / force_N);
+    EXPECT_NEAR(contact.direction.z(), std::sin(angle), 4.0 * quantum_N / force_N);
+  }
+}
+
+TEST(SimulatedModule, QuantisesEachChannel) {
+  SimulatedModuleConfig config = moduleConfig();
+  config.quantised = true;
+  config.counts_per_N = 10.0;
+  SimulatedModule module(config);
+  // 1 N at the cells' middle: 0.25 N a cell, between 2 and 3 counts.
+  const TactileSample sample = settle(module, wrenchOf(0.19, 1.0, 0.0));
+  EXPECT_NEAR(std::remainder(sample.force_y_N, 0.1), 0.0, 1e-12);
+  EXPECT_NE(sample.force_y_N, 1.0);
+  EXPECT_NEAR(sample.force_y_N, 1.0, 0.2 + 1e-12);
+}
+
+TEST(SimulatedModule, SaturatesItsChannels) {
+  SimulatedModuleConfig config = moduleConfig();
+  config.quantised = true;
+  for (const double sign : {1.0, -1.0}) {
+    SimulatedModule module(config);
+    const TactileSample sample = settle(module, wrenchOf(0.19, sign * 1e5, 0.0));
+    EXPECT_NEAR(sample.force_y_N, sign * 4.0 * kFullScale_N, 1e-9);
+    EXPECT_NEAR(sample.moment_z_Nm, sign * 4.0 * kFullScale_N * 0.19, 1e-9);
+    EXPECT_NEAR(sample.force_z_N, 0.0, 1e-9);
+  }
+}
+
+TEST(SimulatedModule, IsTransparentWithoutNoiseAndQuantisation) {
+  SimulatedModule module(moduleConfig());
+  const Wrench4 wrench = wrenchOf(0.1, 3.0, -2.0);
+  EXPECT_LT((readings(settle(module, wrench)) - wrench).norm(), 1e-9);
+}
+
+TEST(SimulatedModule, SamplesAtItsPeriodAndHoldsBetween) {
+  SimulatedModule module(moduleConfig());
+  EXPECT_EQ(module.sample().sequence, 0u);
+  TactileSample before = module.sample();
+  for (int step = 0; step < 400; ++step) {
+    module.update(wrenchOf(0.1, 0.01 * step, 0.0));
+    const TactileSample now = module.sample();
+    if (step % 4 == 0) {
+      EXPECT_EQ(now.sequence, before.sequence + 1);
+    } else {
+      EXPECT_EQ(now.sequence, before.sequence);
+      EXPECT_EQ(now.force_y_N, before.force_y_N);
+    }
+    before = now;
+  }
+}
+
+std::vector<Wrench4> noise(std::uint64_t seed, double noise_N, int count) {
+  SimulatedModuleConfig config = moduleConfig();
+  config.noise_N = noise_N;
+  config.seed = seed;
+  config.sample_period_s = 0.001;
+  SimulatedModule module(config);
+  std::vector<Wrench4> samples;
+  for (int i = 0; i < count; ++i) {
+    module.update(Wrench4::Zero());
+    samples.push_back(readings(module.sample()));
+  }
+  return samples;
+}
+
+TEST(SimulatedModule, NoiseRepeatsWithItsSeed) {
+  EXPECT_EQ(noise(7, 0.02, 200), noise(7, 0.02, 200));
+  EXPECT_NE(noise(7, 0.02, 200), noise(8, 0.02, 200));
+}
+
+TEST(SimulatedModule, NoiseHasTheStandardDeviationOfEachChannel) {
+  constexpr double kNoise_N = 0.03;
+  constexpr int kCount = 20000;
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  Wrench4 mean = Wrench4::Zero();
+  for (const Wrench4& sample : noise(3, kNoise_N, kCount)) {
+    covariance += sample * sample.transpose() / kCount;
+    mean += sample / kCount;
+  }
+  const Eigen::Matrix<double, 4, 8> C = moduleConfig().calibration;
+  const Eigen::Matrix4d expected = kNoise_N * kNoise_N * C * C.transpose();
+  EXPECT_LT((covariance - expected).norm(), 0.03 * expected.norm());
+  EXPECT_LT(mean.norm(), 4.0 * std::sqrt(expected.trace() / kCount));
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,140 @@
+#include "tactus/sim/simulated_robot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "support/closed_loop.h"
+
+namespace tactus {
+namespace {
+
+JointVector measured(SimulatedRobot& robot) {
+  RobotInput input;
+  robot.read(input);
+  return input.q_measured;
+}
+
+TEST(SimulatedRobot, StartsAtRestAtItsStartPose) {
+  const ControllerConfig config = test::crops9Controller();
+  SimulatedRobot robot(config, test::crops9Plant({}), 0.001);
+  EXPECT_EQ(measured(robot), config.q_start);
+  for (int i = 0; i < 100; ++i) robot.write(JointVector::Zero(9));
+  EXPECT_EQ(measured(robot), config.q_start);
+}
+
+TEST(SimulatedRobot, IdealDrivesFollowAtOnce) {
+  const ControllerConfig config = test::crops9Controller();
+  PlantConfig plant = test::crops9Plant({});
+  plant.drive_lag_s = 0.0;
+  SimulatedRobot robot(config, plant, 0.001);
+  const JointVector v = JointVector::LinSpaced(9, -0.4, 0.5);
+  for (int i = 0; i < 100; ++i) robot.write(v);
+  EXPECT_LT((measured(robot) - config.q_start - 0.1 * v).norm(), 1e-13);
+}
+
+TEST(SimulatedRobot, DrivesLagBehindByTheirTimeConstant) {
+  const ControllerConfig config = test::crops9Controller();
+  for (const double period_s : {0.00025, 0.001, 0.004}) {
+    SimulatedRobot robot(config, test::crops9Plant({}), period_s);
+    const JointVector v = JointVector::Constant(9, 0.5);
+    const int cycles = static_cast<int>(std::lround(0.2 / period_s));
+    for (int i = 0; i < cycles; ++i) robot.write(v);
+    // The steady error e of an exact lag behind steps of v period: e = (e + v period) exp(-T/lag).
+    const double behind = 0.2 * 0.5 - (measured(robot)[0] - config.q_start[0]);
+    const double rest = std::exp(-period_s / 0.005);
+    EXPECT_NEAR(behind, 0.5 * period_s * rest / (1.0 - rest), 1e-12) << period_s;
+  }
+}
+
+TEST(SimulatedRobot, StaysWithinItsJointLimits) {
+  const ControllerConfig config = test::crops9Controller();
+  SimulatedRobot robot(config, test::crops9Plant({}), 0.001);
+  for (int i = 0; i < 3000; ++i) robot.write(JointVector::Constant(9, i < 1500 ? 5.0 : -5.0));
+  EXPECT_LE((measured(robot) - config.limits.upper).maxCoeff(), 0.0);
+  EXPECT_GE((measured(robot) - config.limits.lower).minCoeff(), 0.0);
+}
+
+TEST(SimulatedRobot, FeelsNothingWithoutAModule) {
+  const ControllerConfig config = test::crops9Controller();
+  SimulatedRobot robot(config, test::crops9Plant(test::scenario1()), 0.001);
+  RobotInput input;
+  robot.write(JointVector::Zero(9));
+  robot.read(input);
+  EXPECT_EQ(input.tactile.sequence, 0u);
+}
+
+TEST(SimulatedRobot, RefusesPeriodsThatDoNotFitTheModule) {
+  const ControllerConfig config = test::crops9Controller(Variant::kNullSpace);
+  for (const double bad_s : {0.0015, 0.0007})
+    EXPECT_THROW(SimulatedRobot(config, test::crops9Plant({}), bad_s), std::invalid_argument)
+        << bad_s;
+  for (const double good_s : {0.000125, 0.00025, 0.0005, 0.001, 0.002, 0.004})
+    EXPECT_NO_THROW(SimulatedRobot(config, test::crops9Plant({}), good_s)) << good_s;
+}
+
+class CyclePeriod : public testing::TestWithParam<std::tuple<double, Variant>> {};
+
+TEST_P(CyclePeriod, GivesTheResultOfOneMillisecond) {
+  const auto [period_s, variant] = GetParam();
+  const ControllerConfig config = test::crops9Controller(variant);
+  const PlantConfig plant = test::crops9Plant(test::scenario1());
+  test::ClosedLoop loop(config, plant, period_s);
+  test::ClosedLoop reference(config, plant, 0.001);
+  double largest_N = 0.0;
+  for (double t_s = 0.1; t_s < 9.0; t_s += 0.1) {
+    loop.runUntil(t_s);
+    reference.runUntil(t_s);
+    ASSERT_EQ(loop.output().fault, Fault::kNone);
+    EXPECT_NEAR(loop.output().contact.force_sensor_N, reference.output().contact.force_sensor_N,
+                0.05)
+        << "at " << t_s;
+    EXPECT_LT((loop.robot().toolPosition() - reference.robot().toolPosition()).norm(), 1e-3);
+    largest_N = std::max(largest_N, loop.output().contact.force_sensor_N);
+  }
+  EXPECT_GT(largest_N, 5.0) << "no contact, nothing compared";
+}
+
+INSTANTIATE_TEST_SUITE_P(Milliseconds, CyclePeriod,
+                         testing::Combine(testing::Values(0.00025, 0.0005, 0.002, 0.004),
+                                          testing::Values(Variant::kNullSpace,
+                                                          Variant::kNullTask)));
+
+TEST(SimulatedRobot, ObstaclesAppearAndVanishDuringTheRun) {
+  const ControllerConfig config = test::crops9Controller(Variant::kNone);
+  std::vector<ObstacleConfig> obstacles = test::scenario1();
+  obstacles[0].appears_s = 3.0;
+  obstacles[0].vanishes_s = 6.0;
+  test::ClosedLoop loop(config, test::crops9Plant(obstacles), 0.001);
+  test::ClosedLoop always(config, test::crops9Plant(test::scenario1()), 0.001);
+  loop.runUntil(2.99);
+  always.runUntil(2.99);
+  EXPECT_EQ(loop.robot().trueForce_N(), 0.0);
+  loop.runUntil(5.5);
+  always.runUntil(5.5);
+  EXPECT_GT(loop.robot().trueForce_N(), 1.0);
+  EXPECT_NEAR(loop.robot().trueForce_N(), always.robot().trueForce_N(), 1e-12);
+  loop.runUntil(6.01);
+  EXPECT_EQ(loop.robot().trueForce_N(), 0.0);
+}
+
+TEST(SimulatedRobot, RunsRepeatToTheBit) {
+  const ControllerConfig config = test::crops9Controller(Variant::kNullTask, true);
+  PlantConfig plant = test::crops9Plant(test::scenario2());
+  plant.module.quantised = true;
+  plant.module.noise_N = 0.02;
+  test::ClosedLoop first(config, plant, 0.001);
+  test::ClosedLoop second(config, plant, 0.001);
+  for (double t_s = 0.05; t_s < 10.0; t_s += 0.05) {
+    first.runUntil(t_s);
+    second.runUntil(t_s);
+    ASSERT_EQ(first.input().q_measured, second.input().q_measured);
+    ASSERT_EQ(first.output().velocity, second.output().velocity);
+    ASSERT_EQ(first.input().tactile.force_y_N, second.input().tactile.force_y_N);
+  }
+}
+
+}  // namespace
+}  // namespace tactus
