@@ -26,6 +26,15 @@ bool isHarmless(std::uint32_t code) noexcept {
   return !is_control && !is_separator_or_mark;
 }
 
+/// A key as part of a line whose parts end at colons.
+std::string escapedKey(std::string_view key) {
+  std::string result = escaped(key);
+  for (std::size_t at = 0; (at = result.find(':', at)) != std::string::npos;) {
+    result.replace(at, 1, "\\x3a");
+  }
+  return result;
+}
+
 std::string shortened(std::string_view text, std::size_t max_bytes) {
   if (text.size() <= max_bytes) return std::string(text);
   std::size_t end = 0;
@@ -90,7 +99,7 @@ std::string inQuotes(std::string_view user_text) {
 void failAt(const SourcePosition& at, std::string_view key, std::string_view problem,
             std::string_view expectation) {
   throw InputError(fmt::format("{}:{}:{}: {}: {}, {}", at.file ? escaped(*at.file) : "-", at.line,
-                               at.column, escaped(shortened(key, kMaxShownKeyBytes)),
+                               at.column, escapedKey(shortened(key, kMaxShownKeyBytes)),
                                escaped(problem), escaped(expectation)));
 }
 
@@ -107,7 +116,9 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& c
   std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
   if (word.size() > kMaxShownBytes) return nearest;
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = editDistance(word, candidate);
+    // A forgotten unit is the most likely mistake, and a long one.
+    const bool is_start = word.size() >= 4 && candidate.starts_with(word);
+    const std::size_t distance = is_start ? 1 : editDistance(word, candidate);
     if (distance >= best || distance >= candidate.size()) continue;
     best = distance;
     nearest = candidate;

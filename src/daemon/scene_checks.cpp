@@ -111,6 +111,19 @@ void checkController(const Checked& c) {
   }
 }
 
+/// The simulated module filters a whole number of times a cycle, or once in a whole number of them.
+void checkPeriod(const Checked& c) {
+  if (!findGiven(c.root, "controller")) return;
+  const double filter_steps = c.draft.period_s * c.draft.plant.module.filter_rate_hz;
+  const double ratio = std::max(filter_steps, 1.0 / filter_steps);
+  constexpr double kTolerance = 1e-7;
+  if (std::abs(ratio - std::round(ratio)) > kTolerance) {
+    c.fail("period_s", fmt::format("{} s does not fit the tactile module", c.draft.period_s),
+           fmt::format("a multiple or a whole part of its filter period of {} s",
+                       1.0 / c.draft.plant.module.filter_rate_hz));
+  }
+}
+
 void checkStiffness(const Checked& c) {
   const auto& estimator = c.draft.force.estimator;
   if (estimator && estimator->min_N_per_m >= estimator->max_N_per_m) {
@@ -144,6 +157,7 @@ void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobo
   checkTask(checked);
   checkTrajectory(checked);
   checkController(checked);
+  checkPeriod(checked);
   checkStiffness(checked);
   checkObstacles(checked);
 }

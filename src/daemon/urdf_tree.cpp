@@ -125,7 +125,7 @@ void checkNoCircle(const UrdfTree& tree) {
   for (std::size_t link = 0; link < reached.size(); ++link) {
     if (reached[link]) continue;
     const UrdfJoint& joint = tree.joints[tree.joint_above[link]];
-    failAt(tree.position(joint.node), "joint." + joint.name, "is part of a circle of joints",
+    failAt(tree.position(joint.node), "joint." + joint.name, "hangs on a circle of joints",
            "expected every link to hang on the root");
   }
 }

@@ -56,6 +56,9 @@ bool isNothing(const YamlNode& node) {
 
 }  // namespace
 
+YamlNode::YamlNode(Kind kind_, SourcePosition at_, std::string text_)
+    : kind(kind_), at(std::move(at_)), text(std::move(text_)) {}
+
 const YamlNode* YamlNode::find(std::string_view key) const {
   for (const YamlEntry& entry : entries) {
     if (entry.key == key) return &entry.value;

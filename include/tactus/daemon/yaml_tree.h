@@ -16,12 +16,15 @@ struct YamlEntry;
 struct YamlNode {
   enum class Kind { kEmpty, kNull, kScalar, kList, kMap };
 
+  YamlNode() = default;
+  YamlNode(Kind kind, SourcePosition at, std::string text = {});
+
   Kind kind = Kind::kEmpty;  ///< kNull: `~` or `null` was written; kEmpty: nothing was
-  SourcePosition at = {};
-  std::string text = {};  ///< of a scalar
-  bool quoted = false;    ///< a quoted scalar is text, whatever it looks like
-  std::vector<YamlNode> items = {};
-  std::vector<YamlEntry> entries = {};
+  SourcePosition at;
+  std::string text;     ///< of a scalar
+  bool quoted = false;  ///< a quoted scalar is text, whatever it looks like
+  std::vector<YamlNode> items;
+  std::vector<YamlEntry> entries;
 
   /// The value of a key of a map; null if there is none.
   const YamlNode* find(std::string_view key) const;
