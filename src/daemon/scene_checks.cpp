@@ -14,6 +14,7 @@ struct Checked {
   const YamlNode& root;
   const ConfigDraft& draft;
   const LoadedRobot& robot;
+  const JointVector& q_start;
 
   [[noreturn]] void fail(const std::string& path, const std::string& problem,
                          const std::string& expectation) const {
@@ -49,10 +50,8 @@ double largestReach_m(const UrdfChain& chain) {
 void checkReach(const Checked& c, const Waypoint& waypoint, const std::string& path) {
   const UrdfChain& chain = c.robot.chain;
   const SerialChain kinematics(chain.joints, chain.tip);
-  const std::vector<double>& start = c.draft.start.empty() ? c.draft.home : c.draft.start;
-  if (start.size() != chain.joints.size()) return;  // reported later, at its own place
   ChainPose pose;
-  kinematics.computePose(Eigen::Map<const JointVector>(start.data(), kinematics.size()), pose);
+  kinematics.computePose(c.q_start, pose);
   const Vector3 target = framePosition(pose, chain.tip) + waypoint.displacement_m;
   double squared_distance = 0.0;
   for (const std::string& component : c.draft.components) {
@@ -152,8 +151,9 @@ void checkObstacles(const Checked& c) {
 
 }  // namespace
 
-void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobot& robot) {
-  const Checked checked{root, draft, robot};
+void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobot& robot,
+                const JointVector& q_start) {
+  const Checked checked{root, draft, robot, q_start};
   checkTask(checked);
   checkTrajectory(checked);
   checkController(checked);

@@ -57,17 +57,19 @@ std::string robotPath(const YamlNode& root, const std::string& scene_path, const
   return resolvePath(is_overridden ? scene_path : *locate(root, "robot").file, robot);
 }
 
+JointVector readStart(const YamlNode& root, const ConfigDraft& draft, const LoadedRobot& robot) {
+  if (draft.start.empty()) return toJointVector(draft.home, robot.root, "home", robot.chain);
+  const JointVector q_start = toJointVector(draft.start, root, "start", robot.chain);
+  checkWithinLimits(q_start, root, "start", robot.chain);
+  return q_start;
+}
+
 ControllerConfig makeController(const YamlNode& root, const ConfigDraft& draft,
-                                const LoadedRobot& robot) {
+                                const LoadedRobot& robot, const JointVector& q_start) {
   const UrdfChain& chain = robot.chain;
   const auto joint_count = static_cast<Eigen::Index>(chain.joints.size());
-  ControllerConfig config{.chain = SerialChain(chain.joints, chain.tip), .limits = chain.limits};
-  if (draft.start.empty()) {
-    config.q_start = toJointVector(draft.home, robot.root, "home", chain);
-  } else {
-    config.q_start = toJointVector(draft.start, root, "start", chain);
-    checkWithinLimits(config.q_start, root, "start", chain);
-  }
+  ControllerConfig config{
+      .chain = SerialChain(chain.joints, chain.tip), .q_start = q_start, .limits = chain.limits};
   config.task = draft.task;
   config.task.size = static_cast<int>(draft.components.size());
   for (int i = 0; i < config.task.size; ++i) {
@@ -94,9 +96,10 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, File
   ConfigDraft draft;
   readSection(root, sceneKeys(), "", draft);
   const LoadedRobot robot = loadRobot(robotPath(root, path, draft.robot, overrides), reader, draft);
-  checkScene(root, draft, robot);
+  const JointVector q_start = readStart(root, draft, robot);
+  checkScene(root, draft, robot, q_start);
   return Scene{.name = std::filesystem::path(path).stem().string(),
-               .controller = makeController(root, draft, robot),
+               .controller = makeController(root, draft, robot, q_start),
                .variant = draft.variant,
                .period_s = draft.period_s,
                .duration_s = draft.duration_s,

@@ -7,6 +7,7 @@
 namespace tactus {
 
 /// Checks the values of a scene against each other and against the robot. Throws InputError.
-void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobot& robot);
+void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobot& robot,
+                const JointVector& q_start);
 
 }  // namespace tactus
