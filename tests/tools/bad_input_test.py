@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Bad input to the program itself: exit code 1, one line on stderr, nothing written.
+
+usage: bad_input_test.py TACTUS
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TACTUS = pathlib.Path(sys.argv.pop(1)).resolve()
+CONFIG = pathlib.Path(__file__).resolve().parents[2] / "config"
+GOOD = CONFIG / "scenes/scenario1_null_space.yaml"
+ONE_LINE = re.compile(r"\A[^\n]+:[1-9]\d*:[1-9]\d*: [^:\n]+: [^\n]+, expected [^\n]+\n\Z")
+
+
+class BadInput(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def run_tactus(self, *arguments):
+        return subprocess.run(
+            [TACTUS, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=60
+        )
+
+    def expect_refused(self, scene, start, *settings):
+        """`check` and `simulate` both refuse the scene, with a line that starts like this."""
+        before = sorted(self.folder.rglob("*"))
+        sets = [argument for setting in settings for argument in ("--set", setting)]
+        for command in (["check", scene], ["check", "--json", scene], ["simulate", scene, "-o", "out"]):
+            result = self.run_tactus(*command, *sets)
+            self.assertEqual(result.returncode, 1, result)
+            self.assertEqual(result.stdout, "")
+            self.assertRegex(result.stderr, ONE_LINE)
+            self.assertTrue(result.stderr.startswith(start), result.stderr)
+        self.assertEqual(sorted(self.folder.rglob("*")), before, "something was written")
+
+    def write(self, text):
+        (self.folder / "scene.yaml").write_text(f"extends: {GOOD}\n{text}")
+        return "scene.yaml"
+
+    def test_good_scene_passes(self):
+        result = self.run_tactus("check", self.write(""))
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_unknown_key(self):
+        self.expect_refused(self.write("tasks: {}\n"), "scene.yaml:2:1: tasks: ")
+
+    def test_wrong_type(self):
+        scene = self.write("controller:\n  damping: much\n")
+        self.expect_refused(scene, "scene.yaml:3:12: controller.damping: ")
+
+    def test_start_outside_limits(self):
+        scene = self.write("start: [9, 0, 0, 0, 0, 0, 0, 0, 0]\n")
+        self.expect_refused(scene, "scene.yaml:2:9: start[0]: ")
+
+    def test_broken_yaml(self):
+        self.expect_refused(self.write("start: [1, 2\n"), "scene.yaml:")
+
+    def test_setting(self):
+        start = "--set controller.damping:1:1: controller.damping: "
+        self.expect_refused(GOOD, start, "controller.damping=-1")
+
+    def test_setting_without_value(self):
+        self.expect_refused(GOOD, "--set:1:1: ", "controller.damping")
+
+    def test_missing_file(self):
+        self.expect_refused("gone.yaml", "gone.yaml:1:1: -: ")
+
+    def test_folder(self):
+        (self.folder / "scene.yaml").mkdir()
+        self.expect_refused("scene.yaml", "scene.yaml:1:1: -: ")
+
+    def test_fifo(self):
+        os.mkfifo(self.folder / "scene.yaml")
+        self.expect_refused("scene.yaml", "scene.yaml:1:1: -: ")
+
+    def test_binary(self):
+        (self.folder / "scene.yaml").write_bytes(bytes(range(256)))
+        self.expect_refused("scene.yaml", "scene.yaml:1:1: -: ")
+
+    def test_one_bad_scene_stops_all(self):
+        result = self.run_tactus("simulate", GOOD, "gone.yaml", "-o", "out")
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
+unittest.main()
