@@ -23,7 +23,7 @@ double ControlLaw::proportionalGain(double stiffness_N_per_m) const noexcept {
 double ControlLaw::singleSpace(const ControlLawInput& input,
                                const ControlLawState& state) const noexcept {
   return input.x_dot_ff_m_per_s - proportionalGain(input.stiffness_N_per_m) * input.F_p_N -
-         state.V_m_per_s;
+         input.integral_share * state.V_m_per_s;
 }
 
 double ControlLaw::secondSpace(const ControlLawInput& input,
@@ -33,9 +33,8 @@ double ControlLaw::secondSpace(const ControlLawInput& input,
   return -std::max(0.0, answer);
 }
 
-double ControlLaw::nullSpaceShare(double u_n, const ContactSpace& space) const noexcept {
-  const double excess =
-      std::abs(u_n) * space.a_scaled.cwiseAbs().cwiseProduct(inv_max_null_speed_).maxCoeff();
+double ControlLaw::speedShare(const ScaledVector& v_scaled) const noexcept {
+  const double excess = v_scaled.cwiseAbs().cwiseProduct(inv_max_null_speed_).maxCoeff();
   return excess > 1.0 ? 1.0 / excess : 1.0;
 }
 
@@ -67,7 +66,7 @@ void ControlLaw::update(const ControlLawInput& input, const ContactSpace& space,
   if (config_.variant == Variant::kNullSpace || config_.variant == Variant::kNullTask ||
       config_.variant == Variant::kNullJoint) {
     output.u_n = single * invertRegularised(space.k_n, space.k_j);
-    const double share = nullSpaceShare(output.u_n, space);
+    const double share = speedShare(output.u_n * space.a_scaled);
     output.u_n *= share;
     limited = share < 1.0;
   }

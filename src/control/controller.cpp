@@ -29,19 +29,29 @@ bool usesOrientation(const TaskConfig& task) {
                      [](int component) { return component >= 3; });
 }
 
-void limitNorm(double limit, Eigen::Ref<Vector3> v) {
-  if (!(limit < kNoLimit)) return;
-  const double norm = v.norm();
-  if (norm > limit) v *= limit / norm;
-}
-
 }  // namespace
 
 /// What depends on the desired configuration alone, and not on the contact.
 struct Controller::Kinematics {
   ChainPose pose;
   WeightedPseudoinverse pseudoinverse;
-  TaskVector y_eff;  ///< solve(w_dot_d,eff), (2)
+  TaskVector y_eff;   ///< solve(w_dot_d,eff), (2)
+  TaskVector y_pull;  ///< solve(beta_pull (w_d - w)), joint space only
+};
+
+/// The motion equation (1) as it comes together: q_dot = W^-1/2 (Q y + v_scaled), with everything
+/// that goes through N or J# gathered in y.
+struct Controller::Motion {
+  TaskVector y;
+  ScaledVector v_scaled = ScaledVector::Zero();
+  double limit_nearness = 0.0;  ///< s_max of the joint-limit cost, 0 to 1
+};
+
+/// A contact as the joints see it.
+struct Controller::Contact {
+  Vector3 p_Base;
+  JointVector a;  ///< J_p^T F^
+  ContactSpace space;
 };
 
 Controller::Controller(const ControllerConfig& config)
@@ -53,7 +63,11 @@ Controller::Controller(const ControllerConfig& config)
     joint_limit_avoidance_.emplace(*config.joint_limit_avoidance, config.limits);
   if (!config.force_control) return;
   law_.emplace(*config.force_control, config.chain, inv_sqrt_weights_);
-  transition_.emplace(config.force_control->transition);
+  if (config.force_control->variant == Variant::kJointSpace) {
+    joint_space_transition_.emplace(*config.force_control);
+  } else {
+    transition_.emplace(config.force_control->transition);
+  }
   if (config.force_control->estimator)
     estimator_.emplace(*config.force_control->estimator,
                        config.force_control->assumed_stiffness_N_per_m);
@@ -64,7 +78,8 @@ ControllerState Controller::initialState() const {
   state.q_desired = config_.q_start;
   state.velocity_before = JointVector::Zero(config_.chain.size());
   if (config_.tactile_module)
-    state.contact_point.position_m = 0.5 * config_.tactile_module->length_m;
+    state.contact_point.position_m = state.joint_space_transition.contact.position_m =
+        0.5 * config_.tactile_module->length_m;
   if (config_.force_control)
     state.estimator.stiffness_N_per_m = state.estimator.stiffness_raw_N_per_m =
         config_.force_control->assumed_stiffness_N_per_m;
@@ -76,15 +91,9 @@ void Controller::update(const RobotInput& input, double t_s, double period_s,
   Kinematics kinematics;
   computeKinematics(t_s, state, kinematics, output);
 
-  // (1) in W^1/2 coordinates: Q y + v, with everything that goes through N or J# gathered in y.
-  TaskVector y = kinematics.y_eff;
-  ScaledVector v_scaled = ScaledVector::Zero();
-  if (joint_limit_avoidance_) {
-    JointVector gradient;
-    joint_limit_avoidance_->compute(state.q_desired, gradient);
-    v_scaled = -scaled(gradient, inv_sqrt_weights_);
-    y -= kinematics.pseudoinverse.project(v_scaled);
-  }
+  Motion motion;
+  motion.y = kinematics.y_eff;
+  if (joint_limit_avoidance_) avoidJointLimits(kinematics, state, motion);
   output.contact = {};
   if (config_.tactile_module) {
     const Fault fault = readTactileModule(input, period_s, state);
@@ -93,11 +102,16 @@ void Controller::update(const RobotInput& input, double t_s, double period_s,
     output.contact.contact_position_m = state.contact_point.position_m;
     output.contact.contact_direction = state.contact_point.direction;
   }
-  if (law_) answerContact(kinematics, period_s, state, output.contact, y, v_scaled);
+  if (law_) answerContact(kinematics, period_s, state, output.contact, motion);
 
-  v_scaled += kinematics.pseudoinverse.expand(y);
-  v_scaled.array() *= inv_sqrt_weights_.array();
-  output.velocity = v_scaled.head(config_.chain.size());
+  motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
+  motion.v_scaled.array() *= inv_sqrt_weights_.array();
+  output.velocity = motion.v_scaled.head(config_.chain.size());
+  limit(period_s, state, output);
+}
+
+void Controller::limit(double period_s, ControllerState& state,
+                       ControllerOutput& output) const noexcept {
   if (state.fault != Fault::kNone) output.velocity.setZero();
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
@@ -110,6 +124,14 @@ void Controller::update(const RobotInput& input, double t_s, double period_s,
     state.q_desired[i] = std::clamp(q, config_.limits.lower[i], config_.limits.upper[i]);
     state.velocity_before[i] = output.velocity[i];
   }
+}
+
+void Controller::avoidJointLimits(const Kinematics& kinematics, const ControllerState& state,
+                                  Motion& motion) const noexcept {
+  JointVector gradient;
+  motion.limit_nearness = joint_limit_avoidance_->compute(state.q_desired, gradient);
+  motion.v_scaled = -scaled(gradient, inv_sqrt_weights_);
+  motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 
 void Controller::computeKinematics(double t_s, const ControllerState& state, Kinematics& kinematics,
@@ -128,26 +150,25 @@ void Controller::computeKinematics(double t_s, const ControllerState& state, Kin
     w.tail<3>() = rotationVector(R_BaseTool);
     error.tail<3>() = rotationVector(reference.R_BaseTool * R_BaseTool.transpose());
   }
-  Twist drift = task.drift_gain_per_s * error;
-  limitNorm(task.max_drift_speed, drift.head<3>());
-  limitNorm(task.max_drift_speed, drift.tail<3>());
-
   TaskJacobian J;
   computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
                      J);
   kinematics.pseudoinverse.factorise(J, inv_sqrt_weights_);
-  TaskVector w_dot_eff(task.size);
+  TaskVector task_error(task.size);
   output.w.resize(task.size);
-  output.w_d.resize(task.size);
   output.w_d_dot.resize(task.size);
   for (int i = 0; i < task.size; ++i) {
     const int component = task.components[i];
-    w_dot_eff[i] = w_d_dot[component] + drift[component];
+    task_error[i] = error[component];
     output.w[i] = w[component];
-    output.w_d[i] = w[component] + error[component];
     output.w_d_dot[i] = w_d_dot[component];
   }
-  kinematics.y_eff = kinematics.pseudoinverse.solve(w_dot_eff);
+  output.w_d = output.w + task_error;
+  kinematics.y_eff =
+      kinematics.pseudoinverse.solve(output.w_d_dot + task.drift_gain_per_s * task_error);
+  if (joint_space_transition_)
+    kinematics.y_pull =
+        kinematics.pseudoinverse.solve(config_.force_control->pull_gain_per_s * task_error);
 }
 
 Fault Controller::readTactileModule(const RobotInput& input, double period_s,
@@ -164,46 +185,88 @@ Fault Controller::readTactileModule(const RobotInput& input, double period_s,
   return Fault::kNone;
 }
 
-void Controller::answerContact(const Kinematics& kinematics, double period_s,
-                               ControllerState& state, ContactReport& report, TaskVector& y,
-                               ScaledVector& v_scaled) const noexcept {
-  const ForceControlConfig& force_control = *config_.force_control;
+void Controller::locate(const Kinematics& kinematics, const ContactPointState& point,
+                        Contact& contact) const noexcept {
   const AttachedFrame& link = config_.tactile_module->link;
   const Pose X_BaseModule = framePose(kinematics.pose, link);
-  const Vector3 p_BaseContact =
-      X_BaseModule.p_AB + state.contact_point.position_m * X_BaseModule.R_AB.col(0);
-  const Vector3 F_Base = X_BaseModule.R_AB.lazyProduct(state.contact_point.direction);
-  JointVector a;
-  applyPointJacobianTranspose(config_.chain, kinematics.pose, link.joint, p_BaseContact, F_Base, a);
-  ContactSpace space;
-  computeContactSpace(kinematics.pseudoinverse, a, inv_sqrt_weights_, kinematics.y_eff, space);
+  const Vector3 F_Base = X_BaseModule.R_AB.lazyProduct(point.direction);
+  contact.p_Base = X_BaseModule.p_AB + point.position_m * X_BaseModule.R_AB.col(0);
+  applyPointJacobianTranspose(config_.chain, kinematics.pose, link.joint, contact.p_Base, F_Base,
+                              contact.a);
+  computeContactSpace(kinematics.pseudoinverse, contact.a, inv_sqrt_weights_, kinematics.y_eff,
+                      contact.space);
+}
+
+void Controller::answerContact(const Kinematics& kinematics, double period_s,
+                               ControllerState& state, ContactReport& report,
+                               Motion& motion) const noexcept {
+  if (joint_space_transition_)
+    joint_space_transition_->follow(state.contact_point, period_s, state.joint_space_transition);
+  Contact contact;
+  locate(kinematics,
+         joint_space_transition_ ? state.joint_space_transition.contact : state.contact_point,
+         contact);
 
   ControlLawInput law_input;
-  law_input.F_p_N = std::max(0.0, state.contact_point.force_N - force_control.contact_threshold_N);
-  if (estimator_)
-    estimator_->update(law_input.F_p_N, -a.dot(state.velocity_before), period_s, state.estimator);
+  law_input.F_p_N =
+      std::max(0.0, state.contact_point.force_N - config_.force_control->contact_threshold_N);
+  if (estimator_) {
+    const double approach_m_per_s = -contact.a.dot(state.velocity_before);  // (15)
+    estimator_->update(law_input.F_p_N, approach_m_per_s, period_s, state.estimator);
+  }
   law_input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
-  law_input.integral_decay =
-      transition_->update(law_input.F_p_N, p_BaseContact, period_s, state.transition);
-  law_input.x_dot_ff_m_per_s = state.transition.gamma * std::min(space.x_dot_eff_m_per_s, 0.0);
+  if (joint_space_transition_) {
+    passJointSpaceTransition(kinematics, contact, period_s, state, report, law_input, motion);
+  } else {
+    passTransition(contact, period_s, state, report, law_input);
+  }
   ControlLawOutput u;
-  law_->update(law_input, space, period_s, state.law, u);
+  law_->update(law_input, contact.space, period_s, state.law, u);
 
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
-  y += (u.u_n - u.u_t) * space.a_task;
-  v_scaled -= (u.u_n + u.u_j) * space.a_scaled;
+  motion.y += (u.u_n - u.u_t) * contact.space.a_task;
+  motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
 
   report.force_contact_N = law_input.F_p_N;
   report.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
   report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
-  report.gamma = state.transition.gamma;
-  report.k_n = space.k_n;
-  report.k_j = space.k_j;
-  report.k_t = space.k_t;
-  report.x_dot_eff_m_per_s = space.x_dot_eff_m_per_s;
+  report.k_n = contact.space.k_n;
+  report.k_j = contact.space.k_j;
+  report.k_t = contact.space.k_t;
   report.u_n = u.u_n;
   report.u_j = u.u_j;
   report.u_t = u.u_t;
+}
+
+void Controller::passTransition(const Contact& contact, double period_s, ControllerState& state,
+                                ContactReport& report, ControlLawInput& law_input) const noexcept {
+  const double x_dot_eff = contact.space.x_dot_eff_m_per_s;
+  law_input.integral_decay =
+      transition_->update(law_input.F_p_N, contact.p_Base, period_s, state.transition);
+  law_input.x_dot_ff_m_per_s = state.transition.gamma * std::min(x_dot_eff, 0.0);
+  report.gamma = state.transition.gamma;
+  report.x_dot_eff_m_per_s = x_dot_eff;
+}
+
+void Controller::passJointSpaceTransition(const Kinematics& kinematics, const Contact& contact,
+                                          double period_s, ControllerState& state,
+                                          ContactReport& report, ControlLawInput& law_input,
+                                          Motion& motion) const noexcept {
+  JointSpaceTransitionState& transition = state.joint_space_transition;
+  const ContactSpace& space = contact.space;
+  const double x_free = space.a_task.dot(motion.y) + space.a_scaled.dot(motion.v_scaled);
+  const double share = law_->speedShare(kinematics.pseudoinverse.expand(kinematics.y_pull)) *
+                       (1.0 - motion.limit_nearness * motion.limit_nearness);
+  const TaskVector y_pull = share * kinematics.y_pull;
+  const IntegralShare integral = joint_space_transition_->update(
+      {law_input.F_p_N, contact.p_Base, x_free}, period_s, transition);
+  const double x_pull = space.a_task.dot(y_pull);
+  law_input.integral_decay = integral.decay;
+  law_input.integral_share = integral.share;
+  law_input.x_dot_ff_m_per_s = std::min(0.0, transition.gamma * x_free + transition.kappa * x_pull);
+  motion.y += transition.kappa * y_pull;
+  report.gamma = transition.gamma;
+  report.x_dot_eff_m_per_s = x_free + transition.kappa * x_pull;
 }
 
 const char* faultName(Fault fault) noexcept {

@@ -94,6 +94,19 @@ void checkTrajectory(const Checked& c) {
   }
 }
 
+void checkJointSpace(const Checked& c) {
+  const ForceControlConfig& force = c.draft.force;
+  if (force.transition.release_force_N >= force.contact_threshold_N) {
+    c.fail("controller.transition.release_force_N",
+           fmt::format("{} N is not below the contact threshold", force.transition.release_force_N),
+           fmt::format("less than contact_threshold_N = {}", force.contact_threshold_N));
+  }
+  if (force.pull_gain_per_s * c.draft.period_s > 1.0) {
+    c.fail("controller.pull_gain_per_s", fmt::format("{} is too high", force.pull_gain_per_s),
+           fmt::format("at most 1 / period_s = {}", 1.0 / c.draft.period_s));
+  }
+}
+
 void checkController(const Checked& c) {
   if (!findGiven(c.root, "controller")) return;
   if (!findGiven(c.robot.root, "tactile_module")) {
@@ -104,6 +117,7 @@ void checkController(const Checked& c) {
     c.fail("controller.activation_force_N", "is missing",
            fmt::format("a number > 0 in N with the variant {}", c.draft.variant));
   }
+  if (c.draft.variant == "joint_space") checkJointSpace(c);
   if (c.draft.variant != "none" && !findGiven(c.root, "stiffness")) {
     c.fail("stiffness", "is missing",
            fmt::format("a section with the variant {}", c.draft.variant));

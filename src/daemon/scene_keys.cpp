@@ -56,9 +56,6 @@ KeySpec taskSection() {
           defaulted("5", number("drift_gain_per_s", "1/s", within(0, 1e4),
                                 "beta of (2): pulls the tool back to its reference",
                                 [](Draft& d) -> double& { return d.task.drift_gain_per_s; })),
-          optional(number("max_drift_speed_m_per_s", "m/s", above(0, 100),
-                          "limit of |beta (w_d - w)|; rad/s for rotations",
-                          [](Draft& d) -> double& { return d.task.max_drift_speed; })),
           section("trajectory", "the reference w_d; exactly one of line, waypoints, hold",
                   {
                       defaulted("0", number("start_s", "s", within(0, kMaxTime_s),
@@ -122,6 +119,16 @@ KeySpec transitionSection() {
                     number("engage_force_N", "N", within(0, 1000),
                            "force range over which the feedforward engages; 0: at once",
                            [](Draft& d) -> double& { return d.force.transition.engage_force_N; })),
+          defaulted("0.3",
+                    number("release_force_N", "N", above(0, 1000),
+                           "F_rel, joint_space only: reading below which contact is lost",
+                           [](Draft& d) -> double& { return d.force.transition.release_force_N; })),
+          defaulted("0.01", number("search_speed_m_per_s", "m/s", within(0, 10),
+                                   "v_search, joint_space only: speed of the return to a lost "
+                                   "contact",
+                                   [](Draft& d) -> double& {
+                                     return d.force.transition.search_speed_m_per_s;
+                                   })),
       });
 }
 
@@ -156,6 +163,10 @@ KeySpec controllerSection() {
                     number("max_null_speed_rad_per_s", "rad/s", above(0, 1000),
                            "limit of the null-space reaction of a revolute joint",
                            [](Draft& d) -> double& { return d.force.max_null_speed_rad_per_s; })),
+          defaulted("500", number("pull_gain_per_s", "1/s", within(0, 1e4),
+                                  "beta of joint_space in contact; drift_gain_per_s holds "
+                                  "elsewhere",
+                                  [](Draft& d) -> double& { return d.force.pull_gain_per_s; })),
           defaulted("", transitionSection()),
       });
 }

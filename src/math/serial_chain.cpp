@@ -12,8 +12,9 @@ namespace {
 
 constexpr double kUnitTolerance = 1e-9;
 
-bool isRotation(const Matrix3& R) {
-  return (R * R.transpose()).isIdentity(kUnitTolerance) && R.determinant() > 0.0;
+bool isRigid(const Pose& X) {
+  return (X.R_AB * X.R_AB.transpose()).isIdentity(kUnitTolerance) && X.R_AB.determinant() > 0.0 &&
+         X.p_AB.allFinite();
 }
 
 /// 0, 1, 2 where the axis is +-x, y, z to the bit, -1 otherwise.
@@ -47,20 +48,20 @@ void rotateAboutAxis(const Vector3& axis_Base, double sine, double cosine, Matri
 SerialChain::SerialChain(const std::vector<Joint>& joints, const AttachedFrame& tip)
     : size_(static_cast<int>(joints.size())), tip_(tip) {
   if (size_ < 2 || size_ > kMaxJoints) throw std::invalid_argument("2 to 16 moving joints needed");
-  if (tip.joint < -1 || tip.joint >= size_ || !isRotation(tip.X_JointFrame.R_AB))
+  if (tip.joint < -1 || tip.joint >= size_ || !isRigid(tip.X_JointFrame))
     throw std::invalid_argument("tip frame is not attached to the chain by a rigid pose");
   for (int i = 0; i < size_; ++i) {
     const Joint& joint = joints[i];
-    if (std::abs(joint.axis.norm() - 1.0) > kUnitTolerance)
+    if (!(std::abs(joint.axis.norm() - 1.0) <= kUnitTolerance))
       throw std::invalid_argument("joint axis is not a unit vector");
-    if (!isRotation(joint.X_ParentJoint.R_AB))
+    if (!isRigid(joint.X_ParentJoint))
       throw std::invalid_argument("joint origin is not a rigid pose");
     PreparedJoint& prepared = joints_[i];
     prepared.type = joint.type;
     prepared.R_ParentJoint = joint.X_ParentJoint.R_AB;
     prepared.p_ParentJoint = joint.X_ParentJoint.p_AB;
     prepared.origin_is_rotated = joint.X_ParentJoint.R_AB != Matrix3::Identity();
-    prepared.axis = joint.axis;
+    prepared.axis = joint.axis.normalized();
     prepared.coordinate_axis = coordinateAxis(joint.axis);
     prepared.axis_sign = joint.axis.sum() < 0.0 ? -1.0 : 1.0;
   }

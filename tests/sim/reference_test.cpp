@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(ReferenceCase{"s1_null", Variant::kNullSpace, false, test::scenario1()},
                     ReferenceCase{"s1_multi", Variant::kNullTask, false, test::scenario1()},
                     ReferenceCase{"s2_multi_est", Variant::kNullTask, true, test::scenario2()}),
-    [](const auto& info) { return info.param.file; });
+    [](const auto& test) { return test.param.file; });
 
 }  // namespace
 }  // namespace tactus

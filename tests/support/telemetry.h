@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -23,7 +24,9 @@ class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& suffix = "") {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = ::testing::TempDir() + test->test_suite_name() + "." + test->name() + suffix;
+    std::string name = std::string(test->test_suite_name()) + "." + test->name() + suffix;
+    std::replace(name.begin(), name.end(), '/', '_');  // of parameterised tests
+    path_ = ::testing::TempDir() + name;
   }
   ~TemporaryFile() { std::filesystem::remove(path_); }
   TemporaryFile(const TemporaryFile&) = delete;
@@ -73,7 +76,7 @@ inline LogDescription smallDescription() {
   LogDescription description;
   description.shape = {2, 1};
   description.infos = {{"ver_sw", "1.2.3"}, {"scene", "small"}};
-  description.parameters = {{"controller.time_constant_s", 0.1}};
+  description.parameters = {{"controller.time_constant_s", 0.1}, {"a.b[0][12]", -2.5}};
   description.sources = {{"scenes/small.yaml", "robot: r\n"}, {"r.yaml", ""}};
   description.overrides = {{"controller.damping", "0.7"}};
   return description;

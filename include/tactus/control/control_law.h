@@ -15,6 +15,7 @@ struct ControlLawInput {
   double stiffness_N_per_m = 0.0;  ///< c
   double x_dot_ff_m_per_s = 0.0;   ///< gamma min(x_dot_eff, 0)
   double integral_decay = 1.0;     ///< of V in this cycle, from the contact transition
+  double integral_share = 1.0;     ///< of V that acts, likewise
 };
 
 /// Scalar controller outputs, 1/(m s) each: u_q = b u moves the contact point by -k u.
@@ -36,14 +37,16 @@ class ControlLaw {
   void update(const ControlLawInput& input, const ContactSpace& space, double period_s,
               ControlLawState& state, ControlLawOutput& output) const noexcept;
 
+  /// The factor of at most 1 that keeps every component of a scaled velocity within the null-space
+  /// speed limits.
+  double speedShare(const ScaledVector& v_scaled) const noexcept;
+
  private:
   /// x_ff - P F_p - V, m/s.
   double singleSpace(const ControlLawInput& input, const ControlLawState& state) const noexcept;
   /// -max(0, P (F_p - F_act) + I), m/s.
   double secondSpace(const ControlLawInput& input, const ControlLawState& state) const noexcept;
   double proportionalGain(double stiffness_N_per_m) const noexcept;
-  /// The share of u_n that keeps every component of b u_n within its speed.
-  double nullSpaceShare(double u_n, const ContactSpace& space) const noexcept;
 
   ForceControlConfig config_;
   ScaledVector inv_max_null_speed_;  ///< 1 / (W^1/2 limit), for a_scaled u_n

@@ -9,6 +9,7 @@
 #include "tactus/control/control_law.h"
 #include "tactus/control/controller_config.h"
 #include "tactus/control/joint_limit_avoidance.h"
+#include "tactus/control/joint_space_transition.h"
 #include "tactus/control/robot.h"
 #include "tactus/control/stiffness_estimator.h"
 
@@ -57,6 +58,7 @@ struct ControllerState {
   double sample_age_s = 0.0;
   ContactPointState contact_point;
   ContactTransitionState transition;
+  JointSpaceTransitionState joint_space_transition;  ///< instead, for joint space
   StiffnessEstimatorState estimator;
   ControlLawState law;
 };
@@ -75,14 +77,26 @@ class Controller {
 
  private:
   struct Kinematics;
+  struct Motion;
+  struct Contact;
 
   void computeKinematics(double t_s, const ControllerState& state, Kinematics& kinematics,
                          ControllerOutput& output) const noexcept;
+  void avoidJointLimits(const Kinematics& kinematics, const ControllerState& state,
+                        Motion& motion) const noexcept;
   Fault readTactileModule(const RobotInput& input, double period_s,
                           ControllerState& state) const noexcept;
-  /// Adds the contact controller's part to the command, in W^1/2 coordinates.
+  void locate(const Kinematics& kinematics, const ContactPointState& point,
+              Contact& contact) const noexcept;
+  /// Adds the contact controller's part to the motion.
   void answerContact(const Kinematics& kinematics, double period_s, ControllerState& state,
-                     ContactReport& report, TaskVector& y, ScaledVector& v_scaled) const noexcept;
+                     ContactReport& report, Motion& motion) const noexcept;
+  void passTransition(const Contact& contact, double period_s, ControllerState& state,
+                      ContactReport& report, ControlLawInput& law_input) const noexcept;
+  void passJointSpaceTransition(const Kinematics& kinematics, const Contact& contact,
+                                double period_s, ControllerState& state, ContactReport& report,
+                                ControlLawInput& law_input, Motion& motion) const noexcept;
+  void limit(double period_s, ControllerState& state, ControllerOutput& output) const noexcept;
 
   ControllerConfig config_;
   Trajectory trajectory_;
@@ -91,6 +105,7 @@ class Controller {
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
   std::optional<ControlLaw> law_;
   std::optional<ContactTransition> transition_;
+  std::optional<JointSpaceTransition> joint_space_transition_;
   std::optional<StiffnessEstimator> estimator_;
 };
 

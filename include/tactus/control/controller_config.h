@@ -24,8 +24,7 @@ struct JointLimits {
 struct TaskConfig {
   std::array<int, kMaxTaskSize> components{};  ///< 0..5: x, y, z, rx, ry, rz of the tool
   int size = 0;
-  double drift_gain_per_s = 5.0;      ///< beta in (2)
-  double max_drift_speed = kNoLimit;  ///< limit of |beta (w_d - w)|, m/s (rad/s for rotations)
+  double drift_gain_per_s = 5.0;  ///< beta in (2)
   TrajectoryConfig trajectory;
 };
 
@@ -47,11 +46,13 @@ struct TactileModuleConfig {
 enum class Variant { kNone, kNullSpace, kJointSpace, kTaskSpace, kNullTask, kNullJoint };
 
 /// What happens to feedforward and integral when contact is lost and found; see
-/// contact_transition.h for the equations.
+/// contact_transition.h, and for joint space joint_space_transition.h, for the equations.
 struct ContactTransitionConfig {
   double max_time_constant_s = 1.0;  ///< T_t,max
   double distance_m = 0.05;          ///< d_t
-  double engage_force_N = 0.0;       ///< F_p over which the feedforward engages; 0: at once
+  double engage_force_N = 0.0;       ///< F_eng: F_p over which the feedforward engages; 0: at once
+  double release_force_N = 0.3;      ///< F_rel: joint space only, F_sen at which contact is lost
+  double search_speed_m_per_s = 0.01;  ///< v_search: joint space only, speed of the return
 };
 
 /// Algorithm 1; see stiffness_estimator.h.
@@ -71,6 +72,7 @@ struct ForceControlConfig {
   double activation_force_N = 3.8;          ///< F_act, multi-space variants only
   double max_null_speed_m_per_s = 5.0;      ///< limit of u_n,q for prismatic joints
   double max_null_speed_rad_per_s = 5.0;    ///< and for revolute joints
+  double pull_gain_per_s = 500.0;           ///< beta of the pull, joint space only
   double assumed_stiffness_N_per_m = 7000;  ///< c_0
   ContactTransitionConfig transition;
   std::optional<StiffnessEstimatorConfig> estimator;

@@ -14,13 +14,15 @@ class JointLimitAvoidance {
  public:
   JointLimitAvoidance(const JointLimitAvoidanceConfig& config, const JointLimits& limits);
 
-  /// alpha dH/dq, m/s or rad/s.
-  void compute(const JointVector& q, JointVector& gradient) const noexcept;
+  /// alpha dH/dq, m/s or rad/s. Returns s_max, 0 to 1: how far the joint nearest to a limit has
+  /// come through its outer zone.
+  double compute(const JointVector& q, JointVector& gradient) const noexcept;
 
  private:
-  JointVector middle_;       ///< of the range
-  JointVector inner_half_;   ///< half width of the zone without cost
-  JointVector slope_per_s_;  ///< alpha gradient_at_limit / width of the outer zone
+  JointVector middle_;        ///< of the range
+  JointVector inner_half_;    ///< half width of the zone without cost
+  double gradient_at_limit_;  ///< alpha gradient_at_limit
+  JointVector slope_per_s_;   ///< alpha gradient_at_limit / width of the outer zone
 };
 
 }  // namespace tactus

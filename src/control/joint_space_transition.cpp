@@ -1,0 +1,78 @@
+#include "tactus/control/joint_space_transition.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/math/filter.h"
+
+namespace tactus {
+namespace {
+constexpr double kReleased = 1e-6;  ///< a smaller gamma is none
+}
+
+void JointSpaceTransition::follow(const ContactPointState& sensor, double period_s,
+                                  JointSpaceTransitionState& state) const noexcept {
+  ContactPointState& contact = state.contact;
+  contact.force_N = sensor.force_N;
+  if (sensor.force_N <= config_.transition.release_force_N) return;
+  const double share = state.gamma > 0.0 ? lagShare(period_s, config_.time_constant_s) : 1.0;
+  contact.position_m += share * (sensor.position_m - contact.position_m);
+  contact.direction += share * (sensor.direction - contact.direction);
+  const double length = contact.direction.norm();
+  if (length > 0.0) contact.direction /= length;
+}
+
+IntegralShare JointSpaceTransition::update(const JointSpaceTransitionInput& input, double period_s,
+                                           JointSpaceTransitionState& state) const noexcept {
+  const ContactTransitionConfig& transition = config_.transition;
+  const double F_sen_N = state.contact.force_N;
+  IntegralShare integral;
+  if (input.F_p_N > 0.0) {
+    state.touching = true;
+    engage(input.F_p_N, period_s, state);
+  } else {
+    integral.decay = 1.0 - lagShare(period_s, transition.max_time_constant_s);
+    integral.share = std::clamp((F_sen_N - transition.release_force_N) /
+                                    (config_.contact_threshold_N - transition.release_force_N),
+                                0.0, 1.0);
+    if (F_sen_N < transition.release_force_N) {
+      state.touching = false;
+      integral.decay = 0.0;
+    }
+  }
+  if (state.touching) {
+    state.p_BaseLost = input.p_BaseContact;
+  } else if (state.gamma > 0.0) {
+    release(input, period_s, state);
+  }
+  const double goal = state.touching ? state.gamma : 0.0;
+  const double time_constant_s =
+      goal > state.kappa ? config_.time_constant_s : transition.max_time_constant_s;
+  state.kappa += lagShare(period_s, time_constant_s) * (goal - state.kappa);
+  return integral;
+}
+
+void JointSpaceTransition::engage(double F_p_N, double period_s,
+                                  JointSpaceTransitionState& state) const noexcept {
+  if (config_.transition.engage_force_N == 0.0) {
+    state.gamma = 1.0;
+    return;
+  }
+  const double ratio = F_p_N / config_.transition.engage_force_N;
+  state.gamma += lagShare(period_s * ratio * ratio, config_.time_constant_s) * (1.0 - state.gamma);
+}
+
+void JointSpaceTransition::release(const JointSpaceTransitionInput& input, double period_s,
+                                   JointSpaceTransitionState& state) const noexcept {
+  const ContactTransitionConfig& transition = config_.transition;
+  const double delta_m = (input.p_BaseContact - state.p_BaseLost).norm();
+  const double v_search = transition.search_speed_m_per_s;
+  const double speed = std::max(std::abs(input.x_dot_free_m_per_s), v_search);
+  const double goal =
+      std::max(0.0, 1.0 - delta_m / transition.distance_m - (speed > 0.0 ? v_search / speed : 0.0));
+  if (goal < state.gamma)
+    state.gamma += lagShare(period_s, config_.time_constant_s) * (goal - state.gamma);
+  if (state.gamma < kReleased) state.gamma = 0.0;
+}
+
+}  // namespace tactus
