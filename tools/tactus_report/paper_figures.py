@@ -16,7 +16,7 @@ class PaperFigure:
     quantity: str  # attribute of Run
     y_label: str
     unit: str
-    curves: list  # (scene, label, colour, line)
+    curves: list  # (scene, label, colour, line); broken lines last, to show what lies below
     log_axis: bool = False
     label_peak: bool = False  # name the largest value beside a curve, not the last one
 
@@ -40,12 +40,13 @@ FIGURES = [
         "Without control the force follows the band. The null space takes off a third and the tool "
         "stays on its path; multi-space gives way slowly above 5 N; joint space lets go of the "
         "task for the smallest force.",
-        *FORCE, [NONE, NULL, JOINT, MULTI]),
+        *FORCE, [NONE, MULTI, NULL, JOINT]),
     PaperFigure(
         3, "Scenario 1: squared joint velocities",
-        "What a small force costs in motion: in the paper joint space is fastest. The peaks at 7 s "
-        "come with joints near their limits. The sum mixes m/s and rad/s, as in the paper.",
-        "joint_speed_squared", "squared norm of the command", "", [NONE, NULL, JOINT, MULTI],
+        "The price of a small force is joint motion, highest in joint space. Null space and "
+        "multi-space are the same until the force threshold. The sum mixes m/s and rad/s, as in "
+        "the paper.",
+        "joint_speed_squared", "squared norm of the command", "", [NONE, MULTI, NULL, JOINT],
         label_peak=True),
     PaperFigure(
         4, "Scenario 1: deviation of the tool from its path",
@@ -56,22 +57,22 @@ FIGURES = [
         5, "Scenario 2, soft band then profile: contact force",
         "The profile is reached at 8 s. With the assumed stiffness of 7000 N/m the reaction is too "
         "slow; the estimate halves the peak. Both come to rest at 5 N.",
-        *FORCE, [ASSUMED_2, ESTIMATED_2], label_peak=True),
+        *FORCE, [ESTIMATED_2, ASSUMED_2], label_peak=True),
     PaperFigure(
         6, "Scenario 2: stiffness",
         "The estimate finds the band's 30 N/m, then rises within tenths of a second at the "
         "profile.",
-        *STIFFNESS, [ASSUMED_2, ESTIMATED_2], log_axis=True),
+        *STIFFNESS, [ESTIMATED_2, ASSUMED_2], log_axis=True),
     PaperFigure(
         7, "Scenario 3, profile alone: contact force",
         "Estimation cuts the peak by more than half; even at 2.4 times the speed it stays below "
         "the peak without estimation.",
-        *FORCE, [ASSUMED_3, ESTIMATED_3, FAST_3], label_peak=True),
+        *FORCE, [ESTIMATED_3, ASSUMED_3, FAST_3], label_peak=True),
     PaperFigure(
         8, "Scenario 3: stiffness",
         "Foam and profile are averaged. At its peak force the fast run has gone deeper, and its "
         "estimate holds more of the profile than the slow one's.",
-        *STIFFNESS, [ASSUMED_3, ESTIMATED_3, FAST_3], log_axis=True),
+        *STIFFNESS, [ESTIMATED_3, ASSUMED_3, FAST_3], log_axis=True),
 ]
 
 
