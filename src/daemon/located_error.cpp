@@ -98,7 +98,8 @@ std::string inQuotes(std::string_view user_text) {
 
 void failAt(const SourcePosition& at, std::string_view key, std::string_view problem,
             std::string_view expectation) {
-  throw InputError(fmt::format("{}:{}:{}: {}: {}, {}", at.file ? escaped(*at.file) : "-", at.line,
+  throw InputError(fmt::format("{}:{}:{}: {}: {}, {}",
+                               at.file && !at.file->empty() ? escaped(*at.file) : "-", at.line,
                                at.column, escapedKey(shortened(key, kMaxShownKeyBytes)),
                                escaped(problem), escaped(expectation)));
 }

@@ -89,6 +89,16 @@ ControllerConfig makeController(const YamlNode& root, const ConfigDraft& draft,
   return config;
 }
 
+/// A scene's name is that of its file, and the name of a folder with its results.
+std::string sceneName(const std::string& path) {
+  std::string name = std::filesystem::path(path).stem().string();
+  if (name.find_first_not_of('.') == std::string::npos) {
+    failAt({std::make_shared<std::string>(path), 1, 1}, "-", "the file has no name of its own",
+           "expected name.yaml");
+  }
+  return name;
+}
+
 Scene load(const std::string& path, const std::vector<Override>& overrides, FileProvider provider) {
   SourceReader reader(std::move(provider));
   YamlNode root = readScene(path, reader, {});
@@ -98,7 +108,7 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, File
   const LoadedRobot robot = loadRobot(robotPath(root, path, draft.robot, overrides), reader, draft);
   const JointVector q_start = readStart(root, draft, robot);
   checkScene(root, draft, robot, q_start);
-  return Scene{.name = std::filesystem::path(path).stem().string(),
+  return Scene{.name = sceneName(path),
                .controller = makeController(root, draft, robot, q_start),
                .variant = draft.variant,
                .period_s = draft.period_s,

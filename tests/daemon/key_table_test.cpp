@@ -89,6 +89,9 @@ TEST(KeyTable, DefaultsEqualThoseOfTheStructs) {
   EXPECT_EQ(force.transition.max_time_constant_s, force_default.transition.max_time_constant_s);
   EXPECT_EQ(force.transition.distance_m, force_default.transition.distance_m);
   EXPECT_EQ(force.transition.engage_force_N, force_default.transition.engage_force_N);
+  EXPECT_EQ(force.transition.release_force_N, force_default.transition.release_force_N);
+  EXPECT_EQ(force.transition.search_speed_m_per_s, force_default.transition.search_speed_m_per_s);
+  EXPECT_EQ(force.pull_gain_per_s, force_default.pull_gain_per_s);
   const StiffnessEstimatorConfig estimator_default;
   EXPECT_EQ(force.estimator->min_force_change_N, estimator_default.min_force_change_N);
   EXPECT_EQ(force.estimator->filter_time_constant_s, estimator_default.filter_time_constant_s);

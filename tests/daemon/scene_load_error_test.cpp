@@ -250,6 +250,13 @@ TEST(BrokenSceneFile, TooManyObstacles) {
                     {"", "", "scene.yaml:20:5: simulation.obstacles: ", "a list of 65", "0 to 64"});
 }
 
+TEST(BrokenSceneFile, WithoutNameOfItsOwn) {
+  std::vector<SourceFile> sources = SceneFiles{}.sources();
+  sources[0].path = "...yaml";
+  test::expectError(test::loadError(sources),
+                    {"", "", "...yaml:1:1: -: ", "no name of its own", "name.yaml"});
+}
+
 TEST(BrokenSceneFile, NoFiles) {
   test::expectError(test::loadError({}),
                     {"", "", "-:1:1: -: ", "not among the recorded files", "a readable file"});
