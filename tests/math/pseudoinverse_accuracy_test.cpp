@@ -52,6 +52,23 @@ TEST_P(PseudoinverseAccuracy, IsThatOfTheSingularValueDecomposition) {
   EXPECT_LT(largest, kErrorAllowed);
 }
 
+TEST_P(PseudoinverseAccuracy, ResidualDoesNotGrowWithTheConditionOfTheTask) {
+  // J (J# w) = w to rounding of J times the length of J# w, whatever the singular values are.
+  test::Random random(45 + GetParam());
+  for (int i = 0; i < 200; ++i) {
+    const int m = GetParam();
+    const int n = random.integer(std::max(2, m), kMaxJoints);
+    const JointVector weights = JointVector::Ones(n);
+    const TaskJacobian J =
+        test::randomJacobian(random, test::randomSpectrum(random, m, 0.021, 2.1e4), weights);
+    const test::Matrix J_sharp = test::expandPseudoinverse(J, weights).J_sharp;
+    const LongMatrix residual =
+        J.cast<long double>() * J_sharp.cast<long double>() - LongMatrix::Identity(m, m);
+    for (int column = 0; column < m; ++column)
+      ASSERT_LT(residual.col(column).norm(), 4e-15L * J.norm() * J_sharp.col(column).norm());
+  }
+}
+
 TEST_P(PseudoinverseAccuracy, DampedInverseIsThatOfTheDampedSingularValues) {
   test::Random random(50 + GetParam());
   for (int i = 0; i < 60; ++i) {
@@ -61,9 +78,8 @@ TEST_P(PseudoinverseAccuracy, DampedInverseIsThatOfTheDampedSingularValues) {
     const double smallest = random.logUniform(1e-9, 0.0199);
     const TaskJacobian J =
         test::randomJacobian(random, test::randomSpectrum(random, m, smallest, 2.0), weights);
-    if (m == 1 && smallest > 0.02) continue;
     const test::ExpandedPseudoinverse ours = test::expandPseudoinverse(J, weights);
-    const double s = m == 1 ? smallest : smallest;
+    const double s = smallest;
     const double lambda_squared = 0.05 * 0.05 * (1.0 - (s / 0.02) * (s / 0.02));
     ASSERT_TRUE(ours.factors.damped()) << "smallest singular value " << s;
     ASSERT_NEAR(ours.factors.dampingSquared(), lambda_squared, 1e-9);

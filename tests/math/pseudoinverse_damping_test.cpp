@@ -27,6 +27,17 @@ TEST(Damping, StaysOffAboveItsThreshold) {
   }
 }
 
+TEST(Damping, StaysOffWhereItsCheapBoundCanNotTell) {
+  // |R^-1|_F alone suspects three singular values of 0.021 to hide one below 0.02.
+  test::Random random(65);
+  const JointVector weights = test::randomWeights(random, 7);
+  const TaskJacobian J = test::randomJacobian(random, {0.021, 0.021, 0.021}, weights);
+  const auto inverse = test::expandPseudoinverse(J, weights);
+  EXPECT_FALSE(inverse.factors.damped());
+  EXPECT_EQ(inverse.factors.dampingSquared(), 0.0);
+  EXPECT_LT((J * inverse.J_sharp - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+}
+
 TEST(Damping, FollowsItsFormulaBelow) {
   test::Random random(62);
   for (int i = 0; i < 200; ++i) {

@@ -49,11 +49,10 @@ TEST(SimulatedModule, QuantisesEachChannel) {
   config.quantised = true;
   config.counts_per_N = 10.0;
   SimulatedModule module(config);
-  // 1 N at the cells' middle: 0.25 N a cell, between 2 and 3 counts.
-  const TactileSample sample = settle(module, wrenchOf(0.19, 1.0, 0.0));
-  EXPECT_NEAR(std::remainder(sample.force_y_N, 0.1), 0.0, 1e-12);
-  EXPECT_NE(sample.force_y_N, 1.0);
-  EXPECT_NEAR(sample.force_y_N, 1.0, 0.2 + 1e-12);
+  // 1.04 N in the middle of four cells: 2.6 counts each, which make 3.
+  EXPECT_NEAR(settle(module, wrenchOf(0.19, 1.04, 0.0)).force_y_N, 1.2, 1e-12);
+  EXPECT_NEAR(settle(module, wrenchOf(0.19, 0.96, 0.0)).force_y_N, 0.8, 1e-12);
+  EXPECT_NEAR(settle(module, wrenchOf(0.19, -1.04, 0.0)).force_y_N, -1.2, 1e-12);
 }
 
 TEST(SimulatedModule, SaturatesItsChannels) {

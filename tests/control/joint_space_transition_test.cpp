@@ -1,0 +1,158 @@
+#include "tactus/control/joint_space_transition.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+/// The equations of the header by hand: T = 0.1 s, F_th = 1.2 N, F_rel = 0.3 N, F_eng = 0.5 N,
+/// v_search = 0.01 m/s, d_t = 0.05 m, T_t,max = 1 s.
+namespace tactus {
+namespace {
+
+constexpr double kPeriod_s = 0.001;
+const Vector3 kPoint(0.3, -0.2, 1.1);
+
+ForceControlConfig config() {
+  ForceControlConfig config;
+  config.variant = Variant::kJointSpace;
+  config.transition.engage_force_N = 0.5;
+  config.transition.release_force_N = 0.3;
+  config.transition.search_speed_m_per_s = 0.01;
+  return config;
+}
+
+class JointSpace : public testing::Test {
+ protected:
+  explicit JointSpace(const ForceControlConfig& with = config())
+      : config_(with), transition_(with) {}
+
+  /// One cycle at a sensed force, `away_m` from kPoint, x_0 as given.
+  IntegralShare update(double F_sen_N, double away_m = 0.0, double x_0 = 0.0) {
+    transition_.follow({F_sen_N, 0.2, Vector3::UnitY()}, kPeriod_s, state_);
+    const double F_p_N = std::max(0.0, F_sen_N - config_.contact_threshold_N);
+    return transition_.update({F_p_N, kPoint + Vector3(away_m, 0.0, 0.0), x_0}, kPeriod_s, state_);
+  }
+
+  IntegralShare updateFor(double duration_s, double F_sen_N, double away_m = 0.0,
+                          double x_0 = 0.0) {
+    IntegralShare last;
+    for (int i = 0; i < std::lround(duration_s / kPeriod_s); ++i)
+      last = update(F_sen_N, away_m, x_0);
+    return last;
+  }
+
+  ForceControlConfig config_;
+  JointSpaceTransition transition_;
+  JointSpaceTransitionState state_;
+};
+
+TEST_F(JointSpace, DoesNothingBeforeTheFirstContact) {
+  updateFor(0.5, 1.19);
+  EXPECT_EQ(state_.gamma, 0.0);
+  EXPECT_EQ(state_.kappa, 0.0);
+  EXPECT_FALSE(state_.touching);
+}
+
+TEST_F(JointSpace, EngagesFasterWithMoreForce) {
+  updateFor(0.1, 1.2 + 0.5);  // F_p = F_eng: time constant T
+  EXPECT_NEAR(state_.gamma, 1.0 - std::exp(-1.0), 1e-9);
+  state_ = {};
+  updateFor(0.1, 1.2 + 0.25);  // half: a quarter of the rate
+  EXPECT_NEAR(state_.gamma, 1.0 - std::exp(-0.25), 1e-9);
+}
+
+TEST_F(JointSpace, KeepsItsFeedforwardBetweenReleaseAndThreshold) {
+  updateFor(0.1, 1.7);
+  const double gamma = state_.gamma;
+  const IntegralShare integral = updateFor(2.0, 0.75);
+  EXPECT_EQ(state_.gamma, gamma);
+  EXPECT_TRUE(state_.touching);
+  EXPECT_NEAR(integral.decay, std::exp(-0.001), 1e-12) << "V leaks with T_t,max";
+  EXPECT_NEAR(integral.share, 0.5, 1e-12) << "halfway between 0.3 and 1.2 N";
+}
+
+TEST_F(JointSpace, UsesTheWholeIntegralInContact) {
+  const IntegralShare integral = updateFor(0.1, 1.7);
+  EXPECT_EQ(integral.decay, 1.0);
+  EXPECT_EQ(integral.share, 1.0);
+}
+
+TEST_F(JointSpace, DropsTheIntegralWhenNothingIsFelt) {
+  updateFor(0.5, 3.0);
+  const IntegralShare integral = update(0.29);
+  EXPECT_EQ(integral.decay, 0.0);
+  EXPECT_EQ(integral.share, 0.0);
+  EXPECT_FALSE(state_.touching);
+}
+
+TEST_F(JointSpace, ReturnsToWhereContactWasLost) {
+  updateFor(2.0, 3.0);
+  const double engaged = state_.gamma;
+  ASSERT_NEAR(engaged, 1.0, 1e-9);
+  // At |x_0| = 0.05 m/s and delta = d_t / 4: g = 1 - 1/4 - 0.2.
+  updateFor(0.1, 0.0, 0.0125, -0.05);
+  EXPECT_NEAR(state_.gamma, 0.55 + (engaged - 0.55) * std::exp(-1.0), 1e-9);
+  updateFor(2.0, 0.0, 0.0125, -0.05);
+  EXPECT_NEAR(state_.gamma, 0.55, 1e-8);
+  updateFor(2.0, 0.0, 0.0, -0.05);
+  EXPECT_NEAR(state_.gamma, 0.55, 1e-8) << "only falls";
+}
+
+TEST_F(JointSpace, LetsGoWhereTheArmWouldNotMoveOrIsFarAway) {
+  for (const double x_0 : {0.0, -0.009, -10.0}) {
+    state_ = {};
+    updateFor(2.0, 3.0);
+    updateFor(3.0, 0.0, 0.0501, x_0);
+    EXPECT_EQ(state_.gamma, 0.0) << x_0;
+    EXPECT_LT(state_.kappa, 0.051) << "three times T_t,max later";
+  }
+}
+
+TEST_F(JointSpace, PullComesWithTheFeedforwardAndGoesGently) {
+  updateFor(0.1, 3.0);
+  EXPECT_NEAR(state_.kappa, 1.0 - std::exp(-1.0), 0.1)
+      << "with T, behind a gamma that rises faster";
+  updateFor(2.0, 3.0);
+  EXPECT_NEAR(state_.kappa, 1.0, 1e-6);
+  const double kappa = state_.kappa;
+  updateFor(0.1, 0.0, 0.0, -0.05);
+  EXPECT_NEAR(state_.kappa, kappa * std::exp(-0.1), 1e-9) << "with T_t,max";
+}
+
+TEST_F(JointSpace, TakesThePointAtOnceFirstAndSmoothlyLater) {
+  transition_.follow({2.0, 0.1, Vector3::UnitY()}, kPeriod_s, state_);
+  EXPECT_EQ(state_.contact.position_m, 0.1);
+  EXPECT_EQ(state_.contact.direction, Vector3(Vector3::UnitY()));
+  state_.gamma = 0.5;
+  for (int i = 0; i < 100; ++i) transition_.follow({2.0, 0.2, Vector3::UnitZ()}, kPeriod_s, state_);
+  EXPECT_NEAR(state_.contact.position_m, 0.2 - 0.1 * std::exp(-1.0), 1e-9);
+  EXPECT_NEAR(state_.contact.direction.norm(), 1.0, 1e-12);
+  EXPECT_GT(state_.contact.direction.y(), 0.1);
+  EXPECT_GT(state_.contact.direction.z(), 0.5);
+}
+
+TEST_F(JointSpace, FreezesThePointWhenNothingIsFelt) {
+  transition_.follow({2.0, 0.1, Vector3::UnitY()}, kPeriod_s, state_);
+  transition_.follow({0.3, 0.3, Vector3::UnitZ()}, kPeriod_s, state_);
+  EXPECT_EQ(state_.contact.force_N, 0.3);
+  EXPECT_EQ(state_.contact.position_m, 0.1);
+  EXPECT_EQ(state_.contact.direction, Vector3(Vector3::UnitY()));
+}
+
+class JointSpaceAtOnce : public JointSpace {
+ protected:
+  JointSpaceAtOnce()
+      : JointSpace([] {
+          ForceControlConfig at_once = config();
+          at_once.transition.engage_force_N = 0.0;
+          return at_once;
+        }()) {}
+};
+
+TEST_F(JointSpaceAtOnce, EngagesAtOnceWithoutARange) {
+  update(1.2001);
+  EXPECT_EQ(state_.gamma, 1.0);
+}
+
+}  // namespace
+}  // namespace tactus
