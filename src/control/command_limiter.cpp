@@ -62,22 +62,21 @@ CommandLimiter::CommandLimiter(const JointLimits& limits) : limits_(limits) {
 
 bool CommandLimiter::apply(const JointVector& q, const JointVector& velocity_before,
                            double period_s, JointVector& velocity) const noexcept {
-  double sum = 0.0;
-  for (double v : velocity) sum += std::abs(v);
-  const bool finite = std::isfinite(sum);
-  if (!finite) velocity.setZero();
-
   Interval intervals[kMaxJoints];
   bool admissible = true;
+  double sum = 0.0;  // not finite as soon as one velocity is not
   for (int i = 0; i < velocity.size(); ++i) {
     double& v = velocity[i];
+    sum += std::abs(v);
     const double acceleration = limits_.max_acceleration[i];
     const double distance = v > 0.0 ? limits_.upper[i] - q[i] : q[i] - limits_.lower[i];
     v = brake(v, distance, acceleration, period_s);
     intervals[i] = reachable(velocity_before[i], limits_.max_velocity[i], acceleration * period_s);
     admissible = admissible && intervals[i].contains(v);
   }
-  if (admissible) return finite;
+  const bool finite = std::isfinite(sum);
+  if (!finite) velocity.setZero();
+  if (admissible && finite) return true;
   const double factor = commonFactor(velocity, intervals);
   for (int i = 0; i < velocity.size(); ++i)
     velocity[i] = std::clamp(factor * velocity[i], intervals[i].low, intervals[i].high);

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tactus/math/contact_space.h"
-#include "tactus/math/weighted_pseudoinverse.h"
-
 namespace tactus {
 namespace {
 
@@ -31,29 +28,6 @@ bool usesOrientation(const TaskConfig& task) {
 
 }  // namespace
 
-/// What depends on the desired configuration alone, and not on the contact.
-struct Controller::Kinematics {
-  ChainPose pose;
-  WeightedPseudoinverse pseudoinverse;
-  TaskVector y_eff;   ///< solve(w_dot_d,eff), (2)
-  TaskVector y_pull;  ///< solve(beta_pull (w_d - w)), joint space only
-};
-
-/// The motion equation (1) as it comes together: q_dot = W^-1/2 (Q y + v_scaled), with everything
-/// that goes through N or J# gathered in y.
-struct Controller::Motion {
-  TaskVector y;
-  ScaledVector v_scaled = ScaledVector::Zero();
-  double limit_nearness = 0.0;  ///< s_max of the joint-limit cost, 0 to 1
-};
-
-/// A contact as the joints see it.
-struct Controller::Contact {
-  Vector3 p_Base;
-  JointVector a;  ///< J_p^T F^
-  ContactSpace space;
-};
-
 Controller::Controller(const ControllerConfig& config)
     : config_(config),
       trajectory_(config.task.trajectory, toolPose(config.chain, config.q_start)),
@@ -61,16 +35,7 @@ Controller::Controller(const ControllerConfig& config)
       limiter_(config.limits) {
   if (config.joint_limit_avoidance)
     joint_limit_avoidance_.emplace(*config.joint_limit_avoidance, config.limits);
-  if (!config.force_control) return;
-  law_.emplace(*config.force_control, config.chain, inv_sqrt_weights_);
-  if (config.force_control->variant == Variant::kJointSpace) {
-    joint_space_transition_.emplace(*config.force_control);
-  } else {
-    transition_.emplace(config.force_control->transition);
-  }
-  if (config.force_control->estimator)
-    estimator_.emplace(*config.force_control->estimator,
-                       config.force_control->assumed_stiffness_N_per_m);
+  if (config.force_control) contact_controller_.emplace(config, inv_sqrt_weights_);
 }
 
 ControllerState Controller::initialState() const {
@@ -78,17 +43,14 @@ ControllerState Controller::initialState() const {
   state.q_desired = config_.q_start;
   state.velocity_before = JointVector::Zero(config_.chain.size());
   if (config_.tactile_module)
-    state.contact_point.position_m = state.joint_space_transition.contact.position_m =
-        0.5 * config_.tactile_module->length_m;
-  if (config_.force_control)
-    state.estimator.stiffness_N_per_m = state.estimator.stiffness_raw_N_per_m =
-        config_.force_control->assumed_stiffness_N_per_m;
+    state.contact_point.position_m = 0.5 * config_.tactile_module->length_m;
+  if (contact_controller_) state.contact = contact_controller_->initialState();
   return state;
 }
 
 void Controller::update(const RobotInput& input, double t_s, double period_s,
                         ControllerState& state, ControllerOutput& output) const noexcept {
-  Kinematics kinematics;
+  TaskKinematics kinematics;
   computeKinematics(t_s, state, kinematics, output);
 
   Motion motion;
@@ -102,7 +64,9 @@ void Controller::update(const RobotInput& input, double t_s, double period_s,
     output.contact.contact_position_m = state.contact_point.position_m;
     output.contact.contact_direction = state.contact_point.direction;
   }
-  if (law_) answerContact(kinematics, period_s, state, output.contact, motion);
+  if (contact_controller_)
+    contact_controller_->update(kinematics, state.contact_point, state.velocity_before, period_s,
+                                state.contact, output.contact, motion);
 
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
@@ -118,15 +82,16 @@ void Controller::limit(double period_s, ControllerState& state,
   if (!finite) state.fault = Fault::kCommandNotFinite;
 
   output.fault = state.fault;
-  output.q_desired = state.q_desired;
+  output.q_desired.resize(config_.chain.size());
   for (int i = 0; i < config_.chain.size(); ++i) {
+    output.q_desired[i] = state.q_desired[i];
     const double q = state.q_desired[i] + period_s * output.velocity[i];
     state.q_desired[i] = std::clamp(q, config_.limits.lower[i], config_.limits.upper[i]);
     state.velocity_before[i] = output.velocity[i];
   }
 }
 
-void Controller::avoidJointLimits(const Kinematics& kinematics, const ControllerState& state,
+void Controller::avoidJointLimits(const TaskKinematics& kinematics, const ControllerState& state,
                                   Motion& motion) const noexcept {
   JointVector gradient;
   motion.limit_nearness = joint_limit_avoidance_->compute(state.q_desired, gradient);
@@ -134,7 +99,8 @@ void Controller::avoidJointLimits(const Kinematics& kinematics, const Controller
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 
-void Controller::computeKinematics(double t_s, const ControllerState& state, Kinematics& kinematics,
+void Controller::computeKinematics(double t_s, const ControllerState& state,
+                                   TaskKinematics& kinematics,
                                    ControllerOutput& output) const noexcept {
   const TaskConfig& task = config_.task;
   config_.chain.computePose(state.q_desired, kinematics.pose);
@@ -154,21 +120,18 @@ void Controller::computeKinematics(double t_s, const ControllerState& state, Kin
   computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
                      J);
   kinematics.pseudoinverse.factorise(J, inv_sqrt_weights_);
-  TaskVector task_error(task.size);
+  kinematics.error.resize(task.size);
   output.w.resize(task.size);
   output.w_d_dot.resize(task.size);
   for (int i = 0; i < task.size; ++i) {
     const int component = task.components[i];
-    task_error[i] = error[component];
+    kinematics.error[i] = error[component];
     output.w[i] = w[component];
     output.w_d_dot[i] = w_d_dot[component];
   }
-  output.w_d = output.w + task_error;
+  output.w_d = output.w + kinematics.error;
   kinematics.y_eff =
-      kinematics.pseudoinverse.solve(output.w_d_dot + task.drift_gain_per_s * task_error);
-  if (joint_space_transition_)
-    kinematics.y_pull =
-        kinematics.pseudoinverse.solve(config_.force_control->pull_gain_per_s * task_error);
+      kinematics.pseudoinverse.solve(output.w_d_dot + task.drift_gain_per_s * kinematics.error);
 }
 
 Fault Controller::readTactileModule(const RobotInput& input, double period_s,
@@ -183,90 +146,6 @@ Fault Controller::readTactileModule(const RobotInput& input, double period_s,
   if (!isValid(input.tactile, module)) return Fault::kTactileInvalid;
   locateContact(input.tactile, module.length_m, state.contact_point);
   return Fault::kNone;
-}
-
-void Controller::locate(const Kinematics& kinematics, const ContactPointState& point,
-                        Contact& contact) const noexcept {
-  const AttachedFrame& link = config_.tactile_module->link;
-  const Pose X_BaseModule = framePose(kinematics.pose, link);
-  const Vector3 F_Base = X_BaseModule.R_AB.lazyProduct(point.direction);
-  contact.p_Base = X_BaseModule.p_AB + point.position_m * X_BaseModule.R_AB.col(0);
-  applyPointJacobianTranspose(config_.chain, kinematics.pose, link.joint, contact.p_Base, F_Base,
-                              contact.a);
-  computeContactSpace(kinematics.pseudoinverse, contact.a, inv_sqrt_weights_, kinematics.y_eff,
-                      contact.space);
-}
-
-void Controller::answerContact(const Kinematics& kinematics, double period_s,
-                               ControllerState& state, ContactReport& report,
-                               Motion& motion) const noexcept {
-  if (joint_space_transition_)
-    joint_space_transition_->follow(state.contact_point, period_s, state.joint_space_transition);
-  Contact contact;
-  locate(kinematics,
-         joint_space_transition_ ? state.joint_space_transition.contact : state.contact_point,
-         contact);
-
-  ControlLawInput law_input;
-  law_input.F_p_N =
-      std::max(0.0, state.contact_point.force_N - config_.force_control->contact_threshold_N);
-  if (estimator_) {
-    const double approach_m_per_s = -contact.a.dot(state.velocity_before);  // (15)
-    estimator_->update(law_input.F_p_N, approach_m_per_s, period_s, state.estimator);
-  }
-  law_input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
-  if (joint_space_transition_) {
-    passJointSpaceTransition(kinematics, contact, period_s, state, report, law_input, motion);
-  } else {
-    passTransition(contact, period_s, state, report, law_input);
-  }
-  ControlLawOutput u;
-  law_->update(law_input, contact.space, period_s, state.law, u);
-
-  // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
-  motion.y += (u.u_n - u.u_t) * contact.space.a_task;
-  motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
-
-  report.force_contact_N = law_input.F_p_N;
-  report.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
-  report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
-  report.k_n = contact.space.k_n;
-  report.k_j = contact.space.k_j;
-  report.k_t = contact.space.k_t;
-  report.u_n = u.u_n;
-  report.u_j = u.u_j;
-  report.u_t = u.u_t;
-}
-
-void Controller::passTransition(const Contact& contact, double period_s, ControllerState& state,
-                                ContactReport& report, ControlLawInput& law_input) const noexcept {
-  const double x_dot_eff = contact.space.x_dot_eff_m_per_s;
-  law_input.integral_decay =
-      transition_->update(law_input.F_p_N, contact.p_Base, period_s, state.transition);
-  law_input.x_dot_ff_m_per_s = state.transition.gamma * std::min(x_dot_eff, 0.0);
-  report.gamma = state.transition.gamma;
-  report.x_dot_eff_m_per_s = x_dot_eff;
-}
-
-void Controller::passJointSpaceTransition(const Kinematics& kinematics, const Contact& contact,
-                                          double period_s, ControllerState& state,
-                                          ContactReport& report, ControlLawInput& law_input,
-                                          Motion& motion) const noexcept {
-  JointSpaceTransitionState& transition = state.joint_space_transition;
-  const ContactSpace& space = contact.space;
-  const double x_free = space.a_task.dot(motion.y) + space.a_scaled.dot(motion.v_scaled);
-  const double share = law_->speedShare(kinematics.pseudoinverse.expand(kinematics.y_pull)) *
-                       (1.0 - motion.limit_nearness * motion.limit_nearness);
-  const TaskVector y_pull = share * kinematics.y_pull;
-  const IntegralShare integral = joint_space_transition_->update(
-      {law_input.F_p_N, contact.p_Base, x_free}, period_s, transition);
-  const double x_pull = space.a_task.dot(y_pull);
-  law_input.integral_decay = integral.decay;
-  law_input.integral_share = integral.share;
-  law_input.x_dot_ff_m_per_s = std::min(0.0, transition.gamma * x_free + transition.kappa * x_pull);
-  motion.y += transition.kappa * y_pull;
-  report.gamma = transition.gamma;
-  report.x_dot_eff_m_per_s = x_free + transition.kappa * x_pull;
 }
 
 const char* faultName(Fault fault) noexcept {

@@ -110,10 +110,17 @@ Pose framePose(const ChainPose& pose, const AttachedFrame& frame) noexcept {
   return Pose{pose.R_BaseJoint[frame.joint], pose.p_BaseJoint[frame.joint]} * frame.X_JointFrame;
 }
 
+Vector3 vectorInBase(const ChainPose& pose, int joint, const Vector3& v_Joint) noexcept {
+  return joint < 0 ? v_Joint : Vector3(pose.R_BaseJoint[joint].lazyProduct(v_Joint));
+}
+
+Vector3 pointInBase(const ChainPose& pose, int joint, const Vector3& p_JointPoint) noexcept {
+  if (joint < 0) return p_JointPoint;
+  return pose.p_BaseJoint[joint] + vectorInBase(pose, joint, p_JointPoint);
+}
+
 Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcept {
-  if (frame.joint < 0) return frame.X_JointFrame.p_AB;
-  return pose.p_BaseJoint[frame.joint] +
-         pose.R_BaseJoint[frame.joint].lazyProduct(frame.X_JointFrame.p_AB);
+  return pointInBase(pose, frame.joint, frame.X_JointFrame.p_AB);
 }
 
 void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const Vector3& p_BaseTip,

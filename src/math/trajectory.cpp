@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tactus/math/sin_cos.h"
+
 namespace tactus {
 namespace {
 
@@ -21,8 +23,9 @@ struct PathPoint {
 /// Distance of a sin^2 speed ramp of length T from 0 to 1, and its speed, x into the ramp.
 PathPoint ramp(double x, double T) {
   const double phase = std::numbers::pi * x / T;
-  const double sine = std::sin(0.5 * phase);
-  return {0.5 * x - T / (2.0 * std::numbers::pi) * std::sin(phase), sine * sine};
+  double sine, cosine;
+  sinCos(&phase, 1, &sine, &cosine);
+  return {0.5 * x - T / (2.0 * std::numbers::pi) * sine, 0.5 - 0.5 * cosine};
 }
 
 /// Path parameter 0..1 of a rest-to-rest motion at time t into it.

@@ -4,30 +4,14 @@
 #include <optional>
 
 #include "tactus/control/command_limiter.h"
+#include "tactus/control/contact_controller.h"
 #include "tactus/control/contact_point.h"
-#include "tactus/control/contact_transition.h"
-#include "tactus/control/control_law.h"
 #include "tactus/control/controller_config.h"
 #include "tactus/control/joint_limit_avoidance.h"
-#include "tactus/control/joint_space_transition.h"
+#include "tactus/control/motion.h"
 #include "tactus/control/robot.h"
-#include "tactus/control/stiffness_estimator.h"
 
 namespace tactus {
-
-/// What a controller reports of one cycle, in the paper's symbols; zero where a stage is absent.
-struct ContactReport {
-  double force_sensor_N = 0.0;                  ///< F_sen
-  double contact_position_m = 0.0;              ///< along the link
-  Vector3 contact_direction = Vector3::Zero();  ///< F^, unit force on the robot, module frame
-  double force_contact_N = 0.0;                 ///< F_p
-  double stiffness_N_per_m = 0.0;               ///< c
-  double stiffness_raw_N_per_m = 0.0;           ///< c_raw
-  double gamma = 0.0;
-  double k_n = 0.0, k_j = 0.0, k_t = 0.0;  ///< (18), (19)
-  double x_dot_eff_m_per_s = 0.0;          ///< (18)
-  double u_n = 0.0, u_j = 0.0, u_t = 0.0;
-};
 
 /// Why a controller has stopped following its task. Every fault has one reaction: the command ramps
 /// to rest within the acceleration limits and stays there.
@@ -57,10 +41,7 @@ struct ControllerState {
   std::uint32_t sample_sequence = 0;
   double sample_age_s = 0.0;
   ContactPointState contact_point;
-  ContactTransitionState transition;
-  JointSpaceTransitionState joint_space_transition;  ///< instead, for joint space
-  StiffnessEstimatorState estimator;
-  ControlLawState law;
+  ContactControllerState contact;
 };
 
 /// One cycle of the paper: kinematics of the desired configuration, contact, law and limits. The
@@ -76,26 +57,12 @@ class Controller {
               ControllerOutput& output) const noexcept;
 
  private:
-  struct Kinematics;
-  struct Motion;
-  struct Contact;
-
-  void computeKinematics(double t_s, const ControllerState& state, Kinematics& kinematics,
+  void computeKinematics(double t_s, const ControllerState& state, TaskKinematics& kinematics,
                          ControllerOutput& output) const noexcept;
-  void avoidJointLimits(const Kinematics& kinematics, const ControllerState& state,
+  void avoidJointLimits(const TaskKinematics& kinematics, const ControllerState& state,
                         Motion& motion) const noexcept;
   Fault readTactileModule(const RobotInput& input, double period_s,
                           ControllerState& state) const noexcept;
-  void locate(const Kinematics& kinematics, const ContactPointState& point,
-              Contact& contact) const noexcept;
-  /// Adds the contact controller's part to the motion.
-  void answerContact(const Kinematics& kinematics, double period_s, ControllerState& state,
-                     ContactReport& report, Motion& motion) const noexcept;
-  void passTransition(const Contact& contact, double period_s, ControllerState& state,
-                      ContactReport& report, ControlLawInput& law_input) const noexcept;
-  void passJointSpaceTransition(const Kinematics& kinematics, const Contact& contact,
-                                double period_s, ControllerState& state, ContactReport& report,
-                                ControlLawInput& law_input, Motion& motion) const noexcept;
   void limit(double period_s, ControllerState& state, ControllerOutput& output) const noexcept;
 
   ControllerConfig config_;
@@ -103,10 +70,7 @@ class Controller {
   ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
   CommandLimiter limiter_;
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
-  std::optional<ControlLaw> law_;
-  std::optional<ContactTransition> transition_;
-  std::optional<JointSpaceTransition> joint_space_transition_;
-  std::optional<StiffnessEstimator> estimator_;
+  std::optional<ContactController> contact_controller_;
 };
 
 }  // namespace tactus

@@ -68,6 +68,10 @@ class SerialChain {
 /// Pose of an attached frame in the base frame.
 Pose framePose(const ChainPose& pose, const AttachedFrame& frame) noexcept;
 
+/// A point (m) or a free vector given in the frame of `joint` (-1: the base), in the base frame.
+Vector3 pointInBase(const ChainPose& pose, int joint, const Vector3& p_JointPoint) noexcept;
+Vector3 vectorInBase(const ChainPose& pose, int joint, const Vector3& v_Joint) noexcept;
+
 /// Position only, m: what framePose(pose, frame).p_AB would be.
 Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcept;
 

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <optional>
+
+#include "tactus/control/contact_point.h"
+#include "tactus/control/contact_transition.h"
+#include "tactus/control/control_law.h"
+#include "tactus/control/controller_config.h"
+#include "tactus/control/joint_space_transition.h"
+#include "tactus/control/motion.h"
+#include "tactus/control/stiffness_estimator.h"
+
+namespace tactus {
+
+/// What a controller reports of one cycle, in the paper's symbols; zero where a stage is absent.
+struct ContactReport {
+  double force_sensor_N = 0.0;                  ///< F_sen
+  double contact_position_m = 0.0;              ///< along the link
+  Vector3 contact_direction = Vector3::Zero();  ///< F^, unit force on the robot, module frame
+  double force_contact_N = 0.0;                 ///< F_p
+  double stiffness_N_per_m = 0.0;               ///< c
+  double stiffness_raw_N_per_m = 0.0;           ///< c_raw
+  double gamma = 0.0;
+  double k_n = 0.0, k_j = 0.0, k_t = 0.0;  ///< (18), (19)
+  double x_dot_eff_m_per_s = 0.0;          ///< (18)
+  double u_n = 0.0, u_j = 0.0, u_t = 0.0;
+};
+
+struct ContactControllerState {
+  ContactTransitionState transition;
+  JointSpaceTransitionState joint_space_transition;  ///< instead, for joint space
+  StiffnessEstimatorState estimator;
+  ControlLawState law;
+};
+
+/// The answer to contact: contact space, stiffness estimate, contact transition and law, added to
+/// the motion that the task asks for.
+class ContactController {
+ public:
+  /// config.tactile_module and config.force_control must be there.
+  ContactController(const ControllerConfig& config, const ScaledVector& inv_sqrt_weights);
+
+  ContactControllerState initialState() const;
+
+  /// sensor: the newest contact point; velocity_before: the previous command. Fills the report from
+  /// force_contact_N on.
+  void update(const TaskKinematics& kinematics, const ContactPointState& sensor,
+              const JointVector& velocity_before, double period_s, ContactControllerState& state,
+              ContactReport& report, Motion& motion) const noexcept;
+
+ private:
+  struct Contact;
+
+  Contact locate(const TaskKinematics& kinematics, const ContactPointState& point) const noexcept;
+  void passTransition(const Contact& contact, double period_s, ContactControllerState& state,
+                      ContactReport& report, ControlLawInput& input) const noexcept;
+  void passJointSpaceTransition(const TaskKinematics& kinematics, const Contact& contact,
+                                double period_s, ContactControllerState& state,
+                                ContactReport& report, ControlLawInput& input,
+                                Motion& motion) const noexcept;
+
+  SerialChain chain_;
+  AttachedFrame link_;
+  double initial_position_m_;
+  ForceControlConfig config_;
+  ScaledVector inv_sqrt_weights_;
+  ControlLaw law_;
+  std::optional<ContactTransition> transition_;
+  std::optional<JointSpaceTransition> joint_space_transition_;
+  std::optional<StiffnessEstimator> estimator_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "tactus/math/serial_chain.h"
+#include "tactus/math/weighted_pseudoinverse.h"
+
+namespace tactus {
+
+/// What depends on the desired configuration and the reference alone, and not on the contact.
+struct TaskKinematics {
+  ChainPose pose;
+  WeightedPseudoinverse pseudoinverse;
+  TaskVector error;  ///< w_d - w, m or rad
+  TaskVector y_eff;  ///< solve(w_dot_d,eff), (2)
+};
+
+/// The motion equation (1) as it comes together: q_dot = W^-1/2 (Q y + v_scaled), with everything
+/// that goes through N or J# gathered in y.
+struct Motion {
+  TaskVector y;
+  ScaledVector v_scaled = ScaledVector::Zero();
+  double limit_nearness = 0.0;  ///< s_max of the joint-limit cost, 0 to 1
+};
+
+}  // namespace tactus

@@ -1,0 +1,124 @@
+#include "tactus/control/contact_controller.h"
+
+#include <algorithm>
+
+namespace tactus {
+
+/// A contact as the joints see it.
+struct ContactController::Contact {
+  Vector3 p_Base;
+  JointVector a;  ///< J_p^T F^
+  ContactSpace space;
+};
+
+ContactController::ContactController(const ControllerConfig& config,
+                                     const ScaledVector& inv_sqrt_weights)
+    : chain_(config.chain),
+      link_(config.tactile_module->link),
+      initial_position_m_(0.5 * config.tactile_module->length_m),
+      config_(*config.force_control),
+      inv_sqrt_weights_(inv_sqrt_weights),
+      law_(config_, config.chain, inv_sqrt_weights) {
+  if (config_.variant == Variant::kJointSpace) {
+    joint_space_transition_.emplace(config_);
+  } else {
+    transition_.emplace(config_.transition);
+  }
+  if (config_.estimator) estimator_.emplace(*config_.estimator, config_.assumed_stiffness_N_per_m);
+}
+
+ContactControllerState ContactController::initialState() const {
+  ContactControllerState state;
+  state.joint_space_transition.contact.position_m = initial_position_m_;
+  state.estimator = {config_.assumed_stiffness_N_per_m, config_.assumed_stiffness_N_per_m};
+  return state;
+}
+
+void ContactController::update(const TaskKinematics& kinematics, const ContactPointState& sensor,
+                               const JointVector& velocity_before, double period_s,
+                               ContactControllerState& state, ContactReport& report,
+                               Motion& motion) const noexcept {
+  if (joint_space_transition_)
+    joint_space_transition_->follow(sensor, period_s, state.joint_space_transition);
+  const Contact contact =
+      locate(kinematics, joint_space_transition_ ? state.joint_space_transition.contact : sensor);
+
+  ControlLawInput input;
+  input.F_p_N = std::max(0.0, sensor.force_N - config_.contact_threshold_N);
+  if (estimator_) {
+    const double approach_m_per_s = -contact.a.dot(velocity_before);  // (15)
+    estimator_->update(input.F_p_N, approach_m_per_s, period_s, state.estimator);
+  }
+  input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
+  if (joint_space_transition_) {
+    passJointSpaceTransition(kinematics, contact, period_s, state, report, input, motion);
+  } else {
+    passTransition(contact, period_s, state, report, input);
+  }
+  ControlLawOutput u;
+  law_.update(input, contact.space, period_s, state.law, u);
+
+  // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
+  motion.y += (u.u_n - u.u_t) * contact.space.a_task;
+  motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
+
+  report.force_contact_N = input.F_p_N;
+  report.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
+  report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
+  report.k_n = contact.space.k_n;
+  report.k_j = contact.space.k_j;
+  report.k_t = contact.space.k_t;
+  report.u_n = u.u_n;
+  report.u_j = u.u_j;
+  report.u_t = u.u_t;
+}
+
+ContactController::Contact ContactController::locate(
+    const TaskKinematics& kinematics, const ContactPointState& point) const noexcept {
+  Contact contact;
+  const Pose& X_JointModule = link_.X_JointFrame;
+  const Vector3 p_JointContact = X_JointModule.p_AB + point.position_m * X_JointModule.R_AB.col(0);
+  const Vector3 F_Joint = X_JointModule.R_AB.lazyProduct(point.direction);
+  contact.p_Base = pointInBase(kinematics.pose, link_.joint, p_JointContact);
+  const Vector3 F_Base = vectorInBase(kinematics.pose, link_.joint, F_Joint);
+  applyPointJacobianTranspose(chain_, kinematics.pose, link_.joint, contact.p_Base, F_Base,
+                              contact.a);
+  computeContactSpace(kinematics.pseudoinverse, contact.a, inv_sqrt_weights_, kinematics.y_eff,
+                      contact.space);
+  return contact;
+}
+
+void ContactController::passTransition(const Contact& contact, double period_s,
+                                       ContactControllerState& state, ContactReport& report,
+                                       ControlLawInput& input) const noexcept {
+  const double x_dot_eff = contact.space.x_dot_eff_m_per_s;
+  input.integral_decay =
+      transition_->update(input.F_p_N, contact.p_Base, period_s, state.transition);
+  input.x_dot_ff_m_per_s = state.transition.gamma * std::min(x_dot_eff, 0.0);
+  report.gamma = state.transition.gamma;
+  report.x_dot_eff_m_per_s = x_dot_eff;
+}
+
+void ContactController::passJointSpaceTransition(const TaskKinematics& kinematics,
+                                                 const Contact& contact, double period_s,
+                                                 ContactControllerState& state,
+                                                 ContactReport& report, ControlLawInput& input,
+                                                 Motion& motion) const noexcept {
+  JointSpaceTransitionState& transition = state.joint_space_transition;
+  const ContactSpace& space = contact.space;
+  const double x_free = space.a_task.dot(motion.y) + space.a_scaled.dot(motion.v_scaled);
+  TaskVector y_pull = kinematics.pseudoinverse.solve(config_.pull_gain_per_s * kinematics.error);
+  y_pull *= law_.speedShare(kinematics.pseudoinverse.expand(y_pull)) *
+            (1.0 - motion.limit_nearness * motion.limit_nearness);
+  const double x_pull = space.a_task.dot(y_pull);
+  const IntegralShare integral =
+      joint_space_transition_->update({input.F_p_N, contact.p_Base, x_free}, period_s, transition);
+  input.integral_decay = integral.decay;
+  input.integral_share = integral.share;
+  input.x_dot_ff_m_per_s = std::min(0.0, transition.gamma * x_free + transition.kappa * x_pull);
+  motion.y += transition.kappa * y_pull;
+  report.gamma = transition.gamma;
+  report.x_dot_eff_m_per_s = x_free + transition.kappa * x_pull;
+}
+
+}  // namespace tactus
