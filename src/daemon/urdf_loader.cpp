@@ -200,48 +200,68 @@ void setLimits(const std::vector<MovingJoint>& moving, JointLimits& limits) {
   }
 }
 
+/// The way from the root to the tip, as far as it has been gone.
+struct Walk {
+  std::vector<MovingJoint> moving;
+  std::vector<std::string> names;  ///< of the moving joints
+  std::vector<PlacedLink> placed;
+  AttachedFrame frame;  ///< of the link reached last
+};
+
+Walk walkFrom(int root, const UrdfTree& tree, const std::vector<int>& path) {
+  Walk walk;
+  walk.placed.push_back({root, walk.frame});
+  for (const int j : path) {
+    const JointReader reader{tree, tree.joints[j]};
+    checkType(reader);
+    walk.frame.X_JointFrame = walk.frame.X_JointFrame * readOrigin(reader);
+    if (reader.joint.type != "fixed") {
+      walk.moving.push_back(readMovingJoint(reader));
+      walk.moving.back().joint.X_ParentJoint = walk.frame.X_JointFrame;
+      walk.names.push_back(reader.joint.name);
+      walk.frame = {static_cast<int>(walk.moving.size()) - 1, Pose{}};
+    }
+    walk.placed.push_back({reader.joint.child, walk.frame});
+  }
+  return walk;
+}
+
+void checkJointCount(const Walk& walk, const std::string& root, const NamedFrame& tip) {
+  if (walk.moving.size() >= 2 && walk.moving.size() <= kMaxJoints) return;
+  failAt(tip.at, tip.key,
+         fmt::format("{} moving joints from {} to {}", walk.moving.size(), inQuotes(root),
+                     inQuotes(tip.link)),
+         fmt::format("expected 2 to {}", kMaxJoints));
+}
+
+AttachedFrame moduleFrame(const UrdfTree& tree, const Walk& walk, const NamedFrame& link) {
+  const AttachedFrame frame = frameBesideChain(tree, walk.placed, link);
+  if (frame.joint < 0) {
+    failAt(link.at, link.key, inQuotes(link.link) + " never moves",
+           "expected a link that at least one joint moves");
+  }
+  return frame;
+}
+
 }  // namespace
 
 UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
                         const std::optional<NamedFrame>& module_link) {
   UrdfTree tree;
   parseUrdf(file, tree);
-  const std::vector<int> path = tree.pathTo(requireLink(tree, tip));
-  const int root = path.empty() ? tree.findLink(tip.link) : tree.joints[path.front()].parent;
+  const int tip_link = requireLink(tree, tip);
+  const std::vector<int> path = tree.pathTo(tip_link);
+  const int root = path.empty() ? tip_link : tree.joints[path.front()].parent;
+  const Walk walk = walkFrom(root, tree, path);
+  checkJointCount(walk, tree.links[root], tip);
 
   UrdfChain chain;
   chain.robot_name = tree.robot_name;
-  std::vector<MovingJoint> moving;
-  AttachedFrame frame;
-  std::vector<PlacedLink> placed = {{root, frame}};
-  for (const int j : path) {
-    const JointReader reader{tree, tree.joints[j]};
-    checkType(reader);
-    frame.X_JointFrame = frame.X_JointFrame * readOrigin(reader);
-    if (reader.joint.type != "fixed") {
-      moving.push_back(readMovingJoint(reader));
-      moving.back().joint.X_ParentJoint = frame.X_JointFrame;
-      chain.joint_names.push_back(reader.joint.name);
-      frame = {static_cast<int>(moving.size()) - 1, Pose{}};
-    }
-    placed.push_back({reader.joint.child, frame});
-  }
-  if (moving.size() < 2 || moving.size() > kMaxJoints) {
-    failAt(tip.at, tip.key,
-           fmt::format("{} moving joints from {} to {}", moving.size(), inQuotes(tree.links[root]),
-                       inQuotes(tip.link)),
-           fmt::format("expected 2 to {}", kMaxJoints));
-  }
-  for (const MovingJoint& m : moving) chain.joints.push_back(m.joint);
-  chain.tip = frame;
-  setLimits(moving, chain.limits);
-  if (module_link) {
-    chain.module_link = frameBesideChain(tree, placed, *module_link);
-    if (chain.module_link->joint < 0) {
-      failAt(module_link->at, module_link->key, inQuotes(module_link->link) + " never moves",
-             "expected a link that at least one joint moves");
-    }
-  }
+  chain.joint_names = walk.names;
+  for (const MovingJoint& m : walk.moving) chain.joints.push_back(m.joint);
+  chain.tip = walk.frame;
+  setLimits(walk.moving, chain.limits);
+  if (module_link) chain.module_link = moduleFrame(tree, walk, *module_link);
   return chain;
 }
 
