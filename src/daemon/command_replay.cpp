@@ -99,13 +99,13 @@ std::string textReport(const Options& options, const ReplayComparison& compariso
     return fmt::format("{} cycles, every output equal to the bit\n", comparison.cycles());
   }
   const ReplayDifference& first = *comparison.first();
-  std::string text =
-      fmt::format("{} of {} cycles differ, first cycle {} at {} s: {} recorded {}, replayed {}\n",
-                  comparison.differingCycles(), comparison.cycles(), first.cycle, first.t_s,
-                  first.column, first.recorded, first.replayed);
+  std::string text = fmt::format(
+      "{} of {} cycles differ, first cycle {} at {:.9g} s: {} recorded {}, replayed {}\n",
+      comparison.differingCycles(), comparison.cycles(), first.cycle, first.t_s, first.column,
+      first.recorded, first.replayed);
   if (options.settings.empty()) return text;
   for (const ReplayDifference& largest : comparison.largest()) {
-    text += fmt::format("largest difference of {}: {} at {} s, recorded {}, replayed {}\n",
+    text += fmt::format("largest difference of {}: {:.6g} at {:.9g} s, recorded {}, replayed {}\n",
                         largest.column, largest.size(), largest.t_s, largest.recorded,
                         largest.replayed);
   }

@@ -117,7 +117,8 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, File
                .robot_name = robot.chain.robot_name,
                .joint_names = robot.chain.joint_names,
                .sources = reader.files(),
-               .overrides = overrides};
+               .overrides = overrides,
+               .numbers = std::move(draft.numbers)};
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ SimulationResult simulate(const Scene& scene, const std::string& log_path,
   const auto cycles = std::llround(scene.duration_s / scene.period_s);
   const Controller controller(scene.controller);
   SimulatedRobot robot(scene.controller, scene.plant, scene.period_s);
-  UlogWriter log(log_path, describeLog(scene, {}));
+  UlogWriter log(log_path, describeLog(scene));
   RunSummary summary(scene.controller, static_cast<std::size_t>(cycles));
   ControllerState state = controller.initialState();
   RobotInput input;

@@ -51,6 +51,7 @@ T parseNumber(const Reading& r, const YamlNode& node, const std::string& path) {
   if (number < range.lower || number > range.upper || (range.lower_open && number == range.lower)) {
     r.fail(node, path, inQuotes(node.text) + " is out of range");
   }
+  r.draft.numbers.emplace_back(path, number);
   return value;
 }
 

@@ -46,16 +46,17 @@ std::vector<CopyRun> packedRuns(const RecordShape& shape, std::size_t message_of
 
 }  // namespace
 
-LogDescription describeLog(const Scene& scene,
-                           std::vector<std::pair<std::string, double>> parameters) {
+LogDescription describeLog(const Scene& scene) {
   LogDescription description;
   description.shape = {scene.controller.chain.size(), scene.controller.task.size};
-  description.infos = {{"ver_sw", TACTUS_VERSION}, {"scene", scene.name}};
-  description.infos.emplace_back("variant", scene.variant);
+  description.infos = {{"ver_sw", TACTUS_VERSION},
+                       {"scene", scene.name},
+                       {"variant", scene.variant},
+                       {"robot", scene.robot_name}};
   for (std::size_t i = 0; i < scene.joint_names.size(); ++i) {
     description.infos.emplace_back(fmt::format("joint/{}", i + 1), scene.joint_names[i]);
   }
-  description.parameters = std::move(parameters);
+  description.parameters = scene.numbers;
   description.sources = scene.sources;
   description.overrides = scene.overrides;
   return description;
@@ -140,7 +141,9 @@ void UlogWriter::writeMultiInfo(std::string_view name, std::string_view value) {
 }
 
 void UlogWriter::writeParameter(std::string name, double value) {
-  std::replace(name.begin(), name.end(), '.', '/');
+  std::erase(name, ']');
+  std::ranges::replace_if(
+      name, [](char c) { return c == '.' || c == '['; }, '/');
   std::string payload;
   appendKey(payload, "float " + name);
   append(payload, static_cast<float>(value));

@@ -104,7 +104,8 @@ Scene scene() {
           .robot_name = {},
           .joint_names = {},
           .sources = {},
-          .overrides = {}};
+          .overrides = {},
+          .numbers = {}};
 }
 
 TEST(SummaryJson, HasTheKeysOfTheContractInTheirOrder) {

@@ -81,9 +81,11 @@ TEST(Ulog, HoldsInfosAndParametersByAllowedNames) {
   const LogDescription read = readLog(writeLog(smallDescription(), {})).description;
   const std::pair<std::string, std::string> expected_info{"ver_sw", "1.2.3"};
   EXPECT_EQ(std::count(read.infos.begin(), read.infos.end(), expected_info), 1);
-  ASSERT_EQ(read.parameters.size(), 1u);
+  ASSERT_EQ(read.parameters.size(), 2u);
   EXPECT_EQ(read.parameters[0].first, "controller/time_constant_s");
   EXPECT_EQ(read.parameters[0].second, static_cast<double>(0.1f));
+  EXPECT_EQ(read.parameters[1].first, "a/b/0/12");
+  EXPECT_EQ(read.parameters[1].second, -2.5);
 }
 
 /// Every byte of a small log, written down from the specification.

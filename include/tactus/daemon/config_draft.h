@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tactus/control/controller_config.h"
@@ -33,6 +34,9 @@ struct ConfigDraft {
   std::vector<double> max_acceleration;  ///< empty: no limit
   std::string module_link;
   TactileModuleConfig module;
+
+  // Both.
+  std::vector<std::pair<std::string, double>> numbers;  ///< all of them, by dotted path, as read
 };
 
 }  // namespace tactus

@@ -21,7 +21,7 @@ enum class FieldRole : std::uint8_t { kInput, kOutput, kObservation };
 
 struct RecordField {
   const char* name;
-  const char* unit;  ///< "" for a number without one; "joint": m or rad, whichever joint it is
+  const char* unit;  ///< "" for a number without one
   FieldShape shape;
   FieldType type;
   FieldRole role;

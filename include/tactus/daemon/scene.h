@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tactus/control/controller_config.h"
@@ -33,6 +34,8 @@ struct Scene {
   std::vector<std::string> joint_names;
   std::vector<SourceFile> sources;  ///< the scene first, then what it extends, the robot, the URDF
   std::vector<Override> overrides;
+  /// Every number of scene and robot, defaults included, by dotted path: for the log's readers.
+  std::vector<std::pair<std::string, double>> numbers;
 };
 
 /// The stages that exist in this scene, in the order of a cycle, by the names of the contract.

@@ -15,17 +15,16 @@ namespace tactus {
 /// What a log says before its first cycle.
 struct LogDescription {
   RecordShape shape;
-  /// Names of a-z A-Z 0-9 _ - / only, each once; a dot in a parameter's name becomes a slash.
+  /// Names of a-z A-Z 0-9 _ - / only, each once.
   std::vector<std::pair<std::string, std::string>> infos;
-  /// For the reader at a plot: the format holds them as float. The exact values are in `sources`.
+  /// For the reader at a plot: the format holds them as float, and a.b[0] as a/b/0. The exact
+  /// values are in `sources`.
   std::vector<std::pair<std::string, double>> parameters;
   std::vector<SourceFile> sources;
   std::vector<Override> overrides;
 };
 
-/// The description of a run of `scene`; `parameters` are its numeric values by dotted name.
-LogDescription describeLog(const Scene& scene,
-                           std::vector<std::pair<std::string, double>> parameters);
+LogDescription describeLog(const Scene& scene);
 
 /// Writes cycles to a ULog file. A log cut off anywhere is readable up to the cut.
 class UlogWriter {
@@ -33,7 +32,7 @@ class UlogWriter {
   /// Throws InputError if `path` cannot be opened, RunError if it cannot be written.
   UlogWriter(const std::string& path, const LogDescription& description);
 
-  /// Copies the record into a buffer and writes that out when it is full, about every 2000 cycles.
+  /// Copies the record into a buffer and writes that out when it is full, about every 500 cycles.
   /// Throws RunError if it cannot be written.
   void write(const CycleRecord& record);
 
