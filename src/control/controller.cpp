@@ -34,7 +34,7 @@ Controller::Controller(const ControllerConfig& config)
       inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
       limiter_(config.limits) {
   if (config.joint_limit_avoidance)
-    joint_limit_avoidance_.emplace(*config.joint_limit_avoidance, config.limits);
+    joint_limit_avoidance_.emplace(*config.joint_limit_avoidance, config.limits, inv_sqrt_weights_);
   if (config.force_control) contact_controller_.emplace(config, inv_sqrt_weights_);
 }
 
@@ -93,9 +93,9 @@ void Controller::limit(double period_s, ControllerState& state,
 
 void Controller::avoidJointLimits(const TaskKinematics& kinematics, const ControllerState& state,
                                   Motion& motion) const noexcept {
-  JointVector gradient;
-  motion.limit_nearness = joint_limit_avoidance_->compute(state.q_desired, gradient);
-  motion.v_scaled = -scaled(gradient, inv_sqrt_weights_);
+  const JointLimitCost cost = joint_limit_avoidance_->evaluate(state.q_desired);
+  motion.limit_nearness = cost.nearness;
+  motion.v_scaled = -cost.gradient;
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 

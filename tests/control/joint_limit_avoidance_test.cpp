@@ -43,8 +43,14 @@ TEST(JointLimitAvoidance, IsTheGradientOfACost) {
   test::Random random(151);
   for (int i = 0; i < 500; ++i) {
     const RandomCase c(random);
-    JointVector gradient;
-    JointLimitAvoidance(c.config, c.limits).compute(c.q, gradient);
+    const ScaledVector inv_sqrt_weights = random.vector(kMaxJoints, 0.1, 3.0);
+    const JointLimitCost evaluated =
+        JointLimitAvoidance(c.config, c.limits, inv_sqrt_weights).evaluate(c.q);
+    const ScaledVector gradient = evaluated.gradient.cwiseQuotient(inv_sqrt_weights);
+    ASSERT_EQ(gradient.tail(kMaxJoints - c.n).norm(), 0.0);
+    ASSERT_NEAR(evaluated.nearness,
+                gradient.lpNorm<Eigen::Infinity>() / (c.config.gain * c.config.gradient_at_limit),
+                1e-12);
     const double h = 1e-6;
     for (int k = 0; k < c.n; ++k) {
       const JointVector step = h * JointVector::Unit(c.n, k);
@@ -61,10 +67,10 @@ TEST(JointLimitAvoidance, GrowsTowardsTheNearerLimitOnly) {
   JointLimits limits = test::noLimits(2);
   limits.lower << -1.0, -2.0;
   limits.upper << 3.0, 2.0;
-  const JointLimitAvoidance avoidance({1.0, 3.52, 0.5}, limits);
-  JointVector gradient;
+  const JointLimitAvoidance avoidance({1.0, 3.52, 0.5}, limits, ScaledVector::Ones());
+  ScaledVector gradient;
   const auto at = [&](double q0, double q1) {
-    avoidance.compute(JointVector(Eigen::Vector2d(q0, q1)), gradient);
+    gradient = avoidance.evaluate(JointVector(Eigen::Vector2d(q0, q1))).gradient;
     return gradient;
   };
   EXPECT_EQ(at(1.0, 0.0).norm(), 0.0) << "in the middle";
@@ -77,10 +83,10 @@ TEST(JointLimitAvoidance, GrowsTowardsTheNearerLimitOnly) {
 TEST(JointLimitAvoidance, IgnoresJointsWithoutLimits) {
   JointLimits limits = test::noLimits(3);
   limits.lower[1] = -1.0;  // one side alone has no middle
-  const JointLimitAvoidance avoidance({}, limits);
-  JointVector gradient;
-  avoidance.compute(JointVector(Eigen::Vector3d(1e6, -0.99, -1e300)), gradient);
-  EXPECT_EQ(gradient.norm(), 0.0);
+  const JointLimitAvoidance avoidance({}, limits, ScaledVector::Ones());
+  const JointLimitCost cost = avoidance.evaluate(JointVector(Eigen::Vector3d(1e6, -0.99, -1e300)));
+  EXPECT_EQ(cost.gradient.norm(), 0.0);
+  EXPECT_EQ(cost.nearness, 0.0);
 }
 
 }  // namespace

@@ -4,6 +4,11 @@
 
 namespace tactus {
 
+struct JointLimitCost {
+  ScaledVector gradient;  ///< alpha W^-1/2 dH/dq, m/s or rad/s
+  double nearness = 0.0;  ///< s_max, 0 to 1: the joint nearest to a limit
+};
+
 /// dH/dq of (1), pointing towards the nearer limit (N alpha dH/dq is subtracted):
 ///   s_i = max(0, (|q_i - mid_i| - (1 - f) half_i) / (f half_i))
 ///   dH/dq_i = gradient_at_limit s_i sign(q_i - mid_i)
@@ -12,17 +17,17 @@ namespace tactus {
 /// W.
 class JointLimitAvoidance {
  public:
-  JointLimitAvoidance(const JointLimitAvoidanceConfig& config, const JointLimits& limits);
+  JointLimitAvoidance(const JointLimitAvoidanceConfig& config, const JointLimits& limits,
+                      const ScaledVector& inv_sqrt_weights);
 
-  /// alpha dH/dq, m/s or rad/s. Returns s_max, 0 to 1: how far the joint nearest to a limit has
-  /// come through its outer zone.
-  double compute(const JointVector& q, JointVector& gradient) const noexcept;
+  JointLimitCost evaluate(const JointVector& q) const noexcept;
 
  private:
-  JointVector middle_;        ///< of the range
-  JointVector inner_half_;    ///< half width of the zone without cost
-  double gradient_at_limit_;  ///< alpha gradient_at_limit
-  JointVector slope_per_s_;   ///< alpha gradient_at_limit / width of the outer zone
+  // Zero beyond the robot's joints, and for joints without limits.
+  ScaledVector middle_ = ScaledVector::Zero();      ///< of the range
+  ScaledVector inner_half_ = ScaledVector::Zero();  ///< half width of the zone without cost
+  ScaledVector inv_width_ = ScaledVector::Zero();   ///< 1 / (f half)
+  ScaledVector slope_ = ScaledVector::Zero();       ///< alpha W^-1/2 gradient_at_limit / (f half)
 };
 
 }  // namespace tactus
