@@ -73,7 +73,7 @@ void printRow(const std::string& name, const SimulationResult& result) {
   fmt::print("{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", name, figures.peak_force_N,
              figures.final_force_N, 1e3 * figures.tcp_error_max_m, 1e3 * figures.tcp_error_final_m,
              result.real_time_factor,
-             figures.fault == Fault::kNone ? "done" : faultName(figures.fault));
+             figures.fault == Fault::kNone ? "completed" : faultName(figures.fault));
 }
 
 int simulateScenes(const Options& options) {
