@@ -2,21 +2,27 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <set>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "tactus/daemon/commands.h"
-#include "tactus/daemon/input_error.h"
+#include "tactus/daemon/located_error.h"
 #include "tactus/daemon/run_summary.h"
 #include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/simulation.h"
 
 namespace tactus {
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSummaryName = "summary.json";
 
 struct Options {
   std::vector<std::string> scenes;
@@ -33,13 +39,46 @@ std::vector<Scene> loadScenes(const Options& options) {
   std::set<std::string> names;
   for (const std::string& path : options.scenes) {
     scenes.push_back(loadScene(path, overrides));
-    if (!names.insert(scenes.back().name).second)
-      throw InputError(
-          fmt::format("{}:1:1: -: a second scene named {}, names that differ are "
-                      "expected (each names a folder)",
-                      path, scenes.back().name));
+    if (!names.insert(scenes.back().name).second) {
+      failAt({std::make_shared<std::string>(path), 1, 1}, "-",
+             "a second scene named " + inQuotes(scenes.back().name),
+             "expected names that differ, each names a folder");
+    }
   }
   return scenes;
+}
+
+[[noreturn]] void failAtOutput(const fs::path& path, const std::string& problem,
+                               const std::string& expectation) {
+  failAt({std::make_shared<std::string>(path.string()), 1, 1}, "-o", problem, expectation);
+}
+
+/// Makes a scene's folder and removes the summary of an earlier run: a run that fails leaves none.
+fs::path prepareFolder(const std::string& directory, const std::string& scene) {
+  const fs::path folder = fs::path(directory) / scene;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    error = {errno, std::generic_category()};
+  }
+  if (error) {
+    failAtOutput(folder, "cannot be written to: " + error.message(),
+                 "expected a folder or room to make one");
+  }
+  fs::remove(folder / kSummaryName, error);
+  if (error) {
+    failAtOutput(folder / kSummaryName, "cannot be replaced: " + error.message(),
+                 "expected an earlier summary or nothing");
+  }
+  return folder;
+}
+
+/// All folders are prepared before the first scene runs, too.
+std::vector<fs::path> prepareFolders(const Options& options, const std::vector<Scene>& scenes) {
+  if (options.directory.empty()) failAtOutput("", "no folder", "expected a path");
+  std::vector<fs::path> folders;
+  for (const Scene& scene : scenes) folders.push_back(prepareFolder(options.directory, scene.name));
+  return folders;
 }
 
 /// Keeps one line of a terminal up to date; says nothing elsewhere.
@@ -76,30 +115,33 @@ void printRow(const std::string& name, const SimulationResult& result) {
              figures.fault == Fault::kNone ? "completed" : faultName(figures.fault));
 }
 
+SimulationResult simulateScene(const Scene& scene, const fs::path& folder) {
+  ProgressLine line(scene.name);
+  const SimulationResult result =
+      simulate(scene, (folder / "run.ulg").string(), [&line](double share) { line.show(share); });
+  line.clear();
+  writeSummary((folder / kSummaryName).string(), scene, result.figures, result.real_time_factor);
+  return result;
+}
+
 int simulateScenes(const Options& options) {
   const std::vector<Scene> scenes = loadScenes(options);
+  const std::vector<fs::path> folders = prepareFolders(options, scenes);
   int exit_code = kExitDone;
   if (!options.json) printHeading();
-  std::string separator = "[";
-  for (const Scene& scene : scenes) {
-    const std::filesystem::path folder = std::filesystem::path(options.directory) / scene.name;
-    std::filesystem::create_directories(folder);
-    ProgressLine line(scene.name);
-    const SimulationResult result =
-        simulate(scene, (folder / "run.ulg").string(), [&line](double share) { line.show(share); });
-    line.clear();
-    writeSummary((folder / "summary.json").string(), scene, result.figures,
-                 result.real_time_factor);
+  std::string json;  // printed at the end, so that a failed run leaves no unfinished list
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const SimulationResult result = simulateScene(scenes[i], folders[i]);
     if (result.figures.fault != Fault::kNone) exit_code = kExitFault;
     if (options.json) {
-      fmt::print("{}{}", separator, summaryJson(scene, result.figures, result.real_time_factor));
-      separator = ",";
+      json += json.empty() ? "[" : ",";
+      json += summaryJson(scenes[i], result.figures, result.real_time_factor);
     } else {
-      printRow(scene.name, result);
+      printRow(scenes[i].name, result);
+      std::fflush(stdout);
     }
-    std::fflush(stdout);
   }
-  if (options.json) fmt::print("]\n");
+  if (options.json) fmt::print("{}]\n", json);
   return exit_code;
 }
 

@@ -10,22 +10,21 @@
 #include <filesystem>
 #include <utility>
 
-#include "tactus/daemon/input_error.h"
+#include "tactus/daemon/located_error.h"
 #include "tactus/daemon/run_error.h"
 
 namespace tactus {
 
 OutputFile::OutputFile(const std::string& path)
-    : path_(path == "-" ? "standard output" : path),
+    : path_(path == "-" ? "standard output" : escaped(path)),
       descriptor_(path == "-"
                       ? ::dup(STDOUT_FILENO)
                       : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
       buffer_(new char[kBufferSize]) {
   if (descriptor_ < 0) {
-    throw InputError(
-        fmt::format("{}: cannot be opened for writing: {}, a path that can be written "
-                    "is expected",
-                    path_, std::strerror(errno)));
+    failAt({std::make_shared<std::string>(path_), 1, 1}, "-",
+           fmt::format("cannot be opened for writing: {}", std::strerror(errno)),
+           "expected a path that can be written");
   }
 }
 
@@ -72,7 +71,8 @@ void OutputFile::close() {
 void refuseOverwriting(const std::string& input, const std::string& output) {
   std::error_code ignored;  // of an output that does not exist yet
   if (std::filesystem::equivalent(input, output, ignored)) {
-    throw InputError(fmt::format("{}: is the input itself, another file is expected", output));
+    failAt({std::make_shared<std::string>(output), 1, 1}, "-o", "is the input itself",
+           "expected another file");
   }
 }
 

@@ -14,6 +14,8 @@ import unittest
 TACTUS = pathlib.Path(sys.argv.pop(1)).resolve()
 CONFIG = pathlib.Path(__file__).resolve().parents[2] / "config"
 GOOD = CONFIG / "scenes/scenario1_null_space.yaml"
+SECOND = CONFIG / "scenes/scenario1_none.yaml"
+SHORT = ("--set", "simulation.duration_s=0.1")
 ONE_LINE = re.compile(r"\A[^\n]+:[1-9]\d*:[1-9]\d*: [^:\n]+: [^\n]+, expected [^\n]+\n\Z")
 
 
@@ -88,6 +90,68 @@ class BadInput(unittest.TestCase):
         result = self.run_tactus("simulate", GOOD, "gone.yaml", "-o", "out")
         self.assertEqual(result.returncode, 1)
         self.assertEqual(list(self.folder.iterdir()), [])
+
+    def expect_output_refused(self, output, *options):
+        """No scene runs; the one line names the path and -o."""
+        result = self.run_tactus("simulate", GOOD, SECOND, *SHORT, "-o", output, *options)
+        self.assertEqual((result.returncode, result.stdout), (1, ""), result)
+        self.assertRegex(result.stderr, ONE_LINE)
+        self.assertIn(":1:1: -o: ", result.stderr)
+        self.assertEqual(list(self.folder.rglob("run.ulg")), [])
+
+    def test_output_in_a_file(self):
+        (self.folder / "afile").write_text("")
+        self.expect_output_refused("afile/x")
+        self.expect_output_refused("afile", "--json")
+        self.expect_output_refused("afile/a\nb")
+
+    def test_output_without_a_name(self):
+        self.expect_output_refused("")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_bad_folder_of_the_second_scene(self):
+        (self.folder / "out").mkdir()
+        (self.folder / "out" / SECOND.stem).write_text("a file")
+        self.expect_output_refused("out")
+
+    def test_summary_that_cannot_be_replaced(self):
+        (self.folder / "out" / SECOND.stem / "summary.json" / "x").mkdir(parents=True)
+        self.expect_output_refused("out")
+
+    def test_failed_run_leaves_no_summary(self):
+        folder = self.folder / "out" / GOOD.stem
+        folder.mkdir(parents=True)
+        (folder / "summary.json").write_text("stale")
+        (folder / "run.ulg").symlink_to("/dev/full")
+        result = self.run_tactus("simulate", GOOD, *SHORT, "-o", "out", "--json")
+        self.assertEqual((result.returncode, result.stdout), (3, ""), result)
+        self.assertFalse((folder / "summary.json").exists())
+
+    def test_full_standard_output(self):
+        commands = (
+            ["simulate", "--json", GOOD, *SHORT, "-o", "out"],
+            ["simulate", GOOD, *SHORT, "-o", "out"],
+            ["check", GOOD],
+            ["--help"],
+        )
+        for command in commands:
+            with open("/dev/full", "w") as full:
+                result = subprocess.run(
+                    [TACTUS, *command], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, timeout=60
+                )
+            self.assertEqual(result.returncode, 3, result)
+            self.assertEqual(result.stderr.count(b"\n"), 1, result)
+
+    def test_same_name_twice(self):
+        result = self.run_tactus("simulate", GOOD, self.copy_of_good(), "-o", "out")
+        self.assertEqual((result.returncode, result.stdout), (1, ""), result)
+        self.assertRegex(result.stderr, ONE_LINE)
+
+    def copy_of_good(self):
+        folder = self.folder / "a\nb"
+        folder.mkdir()
+        (folder / GOOD.name).write_text(f"extends: {GOOD}\n")
+        return folder / GOOD.name
 
 
 unittest.main()

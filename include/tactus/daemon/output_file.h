@@ -37,7 +37,7 @@ class OutputFile {
  private:
   void flush();
 
-  std::string path_;
+  std::string path_;  ///< as errors show it
   int descriptor_;
   std::unique_ptr<char[]> buffer_;
   std::size_t used_ = 0;
