@@ -24,7 +24,7 @@ ContactController::ContactController(const ControllerConfig& config,
   } else {
     transition_.emplace(config_.transition);
   }
-  if (config_.estimator) estimator_.emplace(*config_.estimator, config_.assumed_stiffness_N_per_m);
+  if (config_.estimator) estimator_.emplace(*config_.estimator);
 }
 
 ContactControllerState ContactController::initialState() const {

@@ -1,8 +1,9 @@
 #include "tactus/control/controller.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "tactus/math/rotation.h"
 
 namespace tactus {
 namespace {
@@ -14,11 +15,6 @@ Pose toolPose(const SerialChain& chain, const JointVector& q) {
   ChainPose pose;
   chain.computePose(q, pose);
   return framePose(pose, chain.tip());
-}
-
-Vector3 rotationVector(const Matrix3& R) {
-  const Eigen::AngleAxisd turn(R);
-  return turn.angle() * turn.axis();
 }
 
 bool usesOrientation(const TaskConfig& task) {

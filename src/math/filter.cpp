@@ -6,8 +6,34 @@
 
 namespace tactus {
 
+namespace {
+
+constexpr double kLn2High = 6.93147180369123816490e-01;  ///< 33 bits: k times it is exact
+constexpr double kLn2Low = 1.90821492927058770002e-10;
+
+/// exp(-r) - 1 for |r| <= ln(2) / 2 by its series, up to the term that no longer counts.
+double expMinusOne(double r) {
+  constexpr int kTerms = 14;
+  static constexpr auto kInverse = [] {
+    std::array<double, kTerms + 1> inverse{};
+    for (int n = 1; n <= kTerms; ++n) inverse[n] = 1.0 / n;
+    return inverse;
+  }();
+  double sum = 0.0;
+  for (int n = kTerms; n >= 1; --n) sum = (1.0 + sum) * (-r * kInverse[n]);
+  return sum;
+}
+
+}  // namespace
+
+/// Not libm's expm1, which differs between processors; see sin_cos.h.
 double lagShare(double dt_s, double time_constant_s) noexcept {
-  return time_constant_s > 0.0 ? -std::expm1(-dt_s / time_constant_s) : 1.0;
+  if (!(time_constant_s > 0.0)) return 1.0;
+  const double x = dt_s / time_constant_s;
+  if (!(x < 40.0)) return 1.0;  // exp(-40) does not change 1
+  const double k = std::floor(x / (kLn2High + kLn2Low) + 0.5);
+  const double e = expMinusOne((x - k * kLn2High) - k * kLn2Low);
+  return k == 0.0 ? -e : 1.0 - std::ldexp(1.0 + e, -static_cast<int>(k));
 }
 
 /// H(s) = 1 / ((s + 1)(s^2 + s + 1)) in s / w_c, with s / w_c = (1/K) (z - 1)/(z + 1) and

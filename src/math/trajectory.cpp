@@ -1,20 +1,14 @@
 #include "tactus/math/trajectory.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "tactus/math/rotation.h"
 #include "tactus/math/sin_cos.h"
 
 namespace tactus {
 namespace {
-
-Matrix3 rotationOf(const Vector3& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  if (angle == 0.0) return Matrix3::Identity();
-  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
-}
 
 struct PathPoint {
   double s, s_dot;
@@ -57,9 +51,8 @@ Trajectory::Trajectory(const TrajectoryConfig& config, const Pose& X_BaseTool_st
     segment.rotation_vector = Vector3::Zero();
     if (waypoint.rotation_vector_rad != rotation_vector) {
       rotation_vector = waypoint.rotation_vector_rad;
-      R = rotationOf(rotation_vector) * X_start_.R_AB;
-      const Eigen::AngleAxisd turn(Matrix3(R * segment.R_start.transpose()));
-      segment.rotation_vector = turn.angle() * turn.axis();
+      R = rotationMatrix(rotation_vector) * X_start_.R_AB;
+      segment.rotation_vector = rotationVector(R * segment.R_start.transpose());
     }
     // The slower of the two motions sets the pace; short paths never reach their cruise speed.
     const double cruise_s =
@@ -89,7 +82,7 @@ ToolReference Trajectory::evaluate(double t_s) const noexcept {
                                                           segment.cruise_rate_per_s)
                                                 : PathPoint{1.0, 0.0};
   return {segment.p_start + path.s * segment.displacement, path.s_dot * segment.displacement,
-          rotationOf(path.s * segment.rotation_vector).lazyProduct(segment.R_start),
+          rotationMatrix(path.s * segment.rotation_vector).lazyProduct(segment.R_start),
           path.s_dot * segment.rotation_vector};
 }
 

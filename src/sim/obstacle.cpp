@@ -39,9 +39,12 @@ ObstacleContact Obstacle::touch(const CoverAxis& axis, double t_s) noexcept {
   const double r_x = config_.x_m - axis.p_BaseStart.x();
   const double r_y = config_.y_m - axis.p_BaseStart.y();
   const double left_m = h_x * r_y - h_y * r_x;  // distance to the left of the axis
-  if (side_ == 0.0) side_ = left_m < 0.0 ? -1.0 : 1.0;
   contact.position_m = (h_x * r_x + h_y * r_y) / horizontal;
-  if (contact.position_m < 0.0 || contact.position_m > axis.length_m) return contact;
+  if (contact.position_m < 0.0 || contact.position_m > axis.length_m) {
+    side_ = 0.0;  // it may come back on the other side
+    return contact;
+  }
+  if (side_ == 0.0) side_ = left_m < 0.0 ? -1.0 : 1.0;
   contact.force_N = spring_.force_N(axis.radius_m - side_ * left_m);
   contact.force_Base = contact.force_N * side_ * Vector3(h_y, -h_x, 0.0);
   return contact;

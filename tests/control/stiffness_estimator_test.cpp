@@ -13,14 +13,12 @@ constexpr double kAssumed = 7000.0;
 
 class Estimator : public testing::Test {
  protected:
-  Estimator() : estimator_({}, kAssumed), state_(estimator_.initialState()) {}
-
   void update(double F_p_N, double approach_m_per_s) {
     estimator_.update(F_p_N, approach_m_per_s, kPeriod_s, state_);
   }
 
-  StiffnessEstimator estimator_;
-  StiffnessEstimatorState state_;
+  StiffnessEstimator estimator_{{}};
+  StiffnessEstimatorState state_{kAssumed, kAssumed};
 };
 
 const double kShare = 1.0 - std::exp(-kPeriod_s / 0.03);
@@ -95,7 +93,7 @@ TEST_F(Estimator, ClampsTheRawEstimate) {
 
 TEST_F(Estimator, FindsTheStiffnessOfASpring) {
   for (const double stiffness : {30.0, 600.0, 17000.0}) {
-    state_ = estimator_.initialState();
+    state_ = {kAssumed, kAssumed};
     double way_m = 0.0;
     for (int i = 0; i < 3000; ++i) {
       const double v = 0.02 + 0.01 * std::sin(0.01 * i);
@@ -109,7 +107,7 @@ TEST_F(Estimator, FindsTheStiffnessOfASpring) {
 
 TEST_F(Estimator, FilterIsExactForAnyPeriod) {
   for (const double period_s : {0.00025, 0.004, 0.5}) {
-    StiffnessEstimatorState state = estimator_.initialState();
+    StiffnessEstimatorState state{kAssumed, kAssumed};
     state.stiffness_raw_N_per_m = 1000.0;
     const double duration_s = 1.0;
     for (int i = 0; i < std::lround(duration_s / period_s); ++i)

@@ -127,5 +127,15 @@ TEST(Obstacle, LeavesAVerticalLinkAlone) {
   EXPECT_EQ(contact.force_N, 0.0);
 }
 
+TEST(Obstacle, TakesItsSideAnewWhenItComesBackOverTheEnd) {
+  Obstacle obstacle(lineAt(0.5, 0.1), kNoLimit);  // beyond the end, left of the axis
+  const auto axis = [](double y_m, double length_m) {
+    return CoverAxis{Vector3(0.0, y_m, 0.0), Vector3::UnitX(), length_m, 0.06};
+  };
+  EXPECT_EQ(obstacle.touch(axis(0.0, 0.4), 0.0).force_N, 0.0);
+  EXPECT_EQ(obstacle.touch(axis(0.3, 0.4), 0.0).force_N, 0.0) << "still beyond, now on the right";
+  EXPECT_EQ(obstacle.touch(axis(0.3, 0.6), 0.0).force_N, 0.0) << "beside the cover, 0.2 m away";
+}
+
 }  // namespace
 }  // namespace tactus

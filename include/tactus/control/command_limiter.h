@@ -15,8 +15,9 @@ class CommandLimiter {
  public:
   explicit CommandLimiter(const JointLimits& limits);
 
-  /// q: present desired joints, within limits; velocity_before: the previous result. Returns false,
-  /// and lets the arm ramp to rest, if `velocity` is not finite.
+  /// q: present desired joints, within limits; velocity_before: the previous result; period_s: the
+  /// same in every cycle (braking counts on it). Returns false, and lets the arm ramp to rest, if
+  /// `velocity` is not finite.
   bool apply(const JointVector& q, const JointVector& velocity_before, double period_s,
              JointVector& velocity) const noexcept;
 

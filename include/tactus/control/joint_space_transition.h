@@ -26,6 +26,7 @@ struct IntegralShare {
   double share = 1.0;
 };
 
+// clang-format off: equations
 /// Contact transition of the joint-space variant. There the tool leaves its path, and beta = 500
 /// pulls it back against the obstacle at up to a hundred metres a second: joints are driven onto
 /// their limits, and shoot back when the obstacle is gone. And the arm is meant to rest *below*
@@ -34,10 +35,11 @@ struct IntegralShare {
 ///   q_free = J# (w_dot_d + beta (w_d - w)) - N alpha W^-1 dH/dq       beta = 5 as elsewhere
 ///   q_pull = J# beta_pull (w_d - w), scaled as a whole to the null-space speed limits, and by
 ///            (1 - s_max^2), s_max in 0..1 telling how near the nearest joint is to its limit
-///   x_0 = a^T q_free,  x_p = a^T q_pull                               both < 0 towards the
-///   obstacle q_dot = q_free + kappa q_pull - b u_j u_j = (min(0, gamma x_0 + kappa x_p) - P F_p -
-///   sigma V) / k_j     (5), with the whole residual
-///                                                 motion as feedforward, joint-limit cost included
+///   x_0 = a^T q_free,  x_p = a^T q_pull              both < 0 towards the obstacle
+///   q_dot = q_free + kappa q_pull - b u_j
+///   u_j = (min(0, gamma x_0 + kappa x_p) - P F_p - sigma V) / k_j
+/// The last is (5) with the whole residual motion, that of the joint-limit cost included, as its
+/// feedforward.
 /// Contact begins at F_th and ends only when F_sen falls below F_rel ("nothing is felt"):
 ///   engage, F_p > 0:   dgamma/dt = (1 - gamma) (F_p / F_eng)^2 / T;  F_eng = 0: gamma = 1 at once
 ///   between:           gamma stays; V decays with T_t,max and enters with
@@ -52,6 +54,7 @@ struct IntegralShare {
 /// Point and direction of contact are low-passed with T once gamma > 0, and frozen below F_rel.
 /// Where the arm rests between F_rel and F_th is not regulated: it follows from the integral that
 /// the engagement fills and T_t,max empties.
+// clang-format on
 class JointSpaceTransition {
  public:
   explicit JointSpaceTransition(const ForceControlConfig& config) : config_(config) {}

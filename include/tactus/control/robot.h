@@ -18,7 +18,7 @@ struct TactileSample {
 
 /// What a cycle reads from the robot.
 struct RobotInput {
-  JointVector q_measured;  ///< m or rad
+  JointVector q_measured;  ///< m or rad; logged, but no law uses it: the arm is position-controlled
   TactileSample tactile;   ///< stays zero on a robot without tactile module
 };
 

@@ -5,8 +5,8 @@
 namespace tactus {
 
 struct StiffnessEstimatorState {
-  double stiffness_N_per_m;      ///< c
-  double stiffness_raw_N_per_m;  ///< c_raw
+  double stiffness_N_per_m = 0.0;      ///< c; c_0 at first
+  double stiffness_raw_N_per_m = 0.0;  ///< c_raw, likewise
   double x_int_m = 0.0;
   double v_prev_m_per_s = 0.0;
   double F_prev_N = 0.0;
@@ -17,12 +17,7 @@ struct StiffnessEstimatorState {
 /// restarts; a trigger after less than 1e-6 m of approach gives no estimate; c_raw is clamped.
 class StiffnessEstimator {
  public:
-  StiffnessEstimator(const StiffnessEstimatorConfig& config, double assumed_N_per_m)
-      : config_(config), assumed_N_per_m_(assumed_N_per_m) {}
-
-  StiffnessEstimatorState initialState() const noexcept {
-    return {assumed_N_per_m_, assumed_N_per_m_};
-  }
+  explicit StiffnessEstimator(const StiffnessEstimatorConfig& config) : config_(config) {}
 
   /// F_p_N: contact force; approach_m_per_s: v_p,d of (15), positive towards the obstacle, of the
   /// previous cycle's command.
@@ -33,7 +28,6 @@ class StiffnessEstimator {
   void trigger(double F_p_N, StiffnessEstimatorState& state) const noexcept;
 
   StiffnessEstimatorConfig config_;
-  double assumed_N_per_m_;
 };
 
 }  // namespace tactus
