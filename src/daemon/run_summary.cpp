@@ -9,7 +9,7 @@
 namespace tactus {
 namespace {
 
-/// The command limiter lets a joint rest at a T^2 / 8 before its limit, micrometres at most.
+/// Makes "at the limit" insensitive to rounding; the command limiter reaches limits exactly.
 constexpr double kLimitTolerance = 1e-4;  // m or rad
 
 double norm(const double (&vector)[3]) noexcept {

@@ -124,6 +124,21 @@ void checkController(const Checked& c) {
   }
 }
 
+/// A run takes a few bytes of memory and some hundred of its log for every cycle.
+void checkDuration(const Checked& c) {
+  constexpr double kMaxCycles = 1e8;
+  const std::string key = "simulation.duration_s";
+  if (c.draft.duration_s < c.draft.period_s) {
+    c.fail(key, fmt::format("{} s is shorter than a cycle", c.draft.duration_s),
+           fmt::format("at least period_s = {}", c.draft.period_s));
+  }
+  if (c.draft.duration_s > kMaxCycles * c.draft.period_s) {
+    c.fail(key, fmt::format("{} s is more than {:g} cycles", c.draft.duration_s, kMaxCycles),
+           fmt::format("at most {} s with period_s = {}", kMaxCycles * c.draft.period_s,
+                       c.draft.period_s));
+  }
+}
+
 /// The simulated module filters a whole number of times a cycle, or once in a whole number of them.
 void checkPeriod(const Checked& c) {
   if (!findGiven(c.root, "controller")) return;
@@ -134,6 +149,13 @@ void checkPeriod(const Checked& c) {
     c.fail("period_s", fmt::format("{} s does not fit the tactile module", c.draft.period_s),
            fmt::format("a multiple or a whole part of its filter period of {} s",
                        1.0 / c.draft.plant.module.filter_rate_hz));
+  }
+  // A sample that is not new is a period old at once.
+  if (c.draft.module.max_sample_age_s < c.draft.period_s) {
+    const std::string key = "tactile_module.max_sample_age_s";
+    failAt(locate(c.robot.root, key), key,
+           fmt::format("{} s is shorter than a cycle", c.draft.module.max_sample_age_s),
+           fmt::format("expected at least the scene's period_s = {}", c.draft.period_s));
   }
 }
 
@@ -171,6 +193,7 @@ void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobo
   checkTask(checked);
   checkTrajectory(checked);
   checkController(checked);
+  checkDuration(checked);
   checkPeriod(checked);
   checkStiffness(checked);
   checkObstacles(checked);

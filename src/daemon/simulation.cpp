@@ -1,5 +1,6 @@
 #include "tactus/daemon/simulation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -14,6 +15,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr long long kCyclesBetweenReports = 8192;
+/// Longer runs pay for their memory as they go.
+constexpr long long kMaxReservedCycles = 1'000'000;
 
 std::int64_t nanoseconds(Clock::duration duration) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
@@ -41,7 +44,8 @@ SimulationResult simulate(const Scene& scene, const std::string& log_path,
   const Controller controller(scene.controller);
   SimulatedRobot robot(scene.controller, scene.plant, scene.period_s);
   UlogWriter log(log_path, describeLog(scene));
-  RunSummary summary(scene.controller, static_cast<std::size_t>(cycles));
+  RunSummary summary(scene.controller,
+                     static_cast<std::size_t>(std::min(cycles, kMaxReservedCycles)));
   ControllerState state = controller.initialState();
   RobotInput input;
   ControllerOutput output;

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "tactus/daemon/number_text.h"
+
 namespace tactus {
 namespace {
 
@@ -35,8 +37,9 @@ template <class T>
 T parseNumber(const Reading& r, const YamlNode& node, const std::string& path) {
   if (node.kind != Kind::kScalar || node.quoted) r.fail(node, path, describe(node));
   T value{};
-  const char* const end = node.text.data() + node.text.size();
-  const auto [stop, error] = std::from_chars(node.text.data(), end, value);
+  const std::string_view text = withoutPlus(node.text);
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
   if (error == std::errc::result_out_of_range) {
     r.fail(node, path, inQuotes(node.text) + " is out of range");
   }

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "tactus/daemon/number_text.h"
+
 namespace tactus {
 namespace {
 
@@ -38,9 +40,11 @@ bool parseNumbers(std::string_view text, std::vector<double>& numbers) {
     text.remove_prefix(std::min(text.find_first_not_of(kWhitespace), text.size()));
     if (text.empty()) return true;
     const std::string_view word = text.substr(0, text.find_first_of(kWhitespace));
+    const std::string_view number = withoutPlus(word);
+    const char* const end = number.data() + number.size();
     double value = 0.0;
-    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || stop != word.data() + word.size() || !std::isfinite(value)) {
+    const auto [stop, error] = std::from_chars(number.data(), end, value);
+    if (error != std::errc() || stop != end || !std::isfinite(value)) {
       return false;
     }
     numbers.push_back(value);

@@ -8,7 +8,17 @@
 namespace tactus {
 namespace {
 
+/// A log holds names in messages of 64 KiB; file systems stop at 255 bytes as well.
+constexpr std::size_t kMaxNameBytes = 255;
+
 using LinkIndex = std::unordered_map<std::string, int>;
+
+void checkLength(const UrdfTree& tree, const pugi::xml_node& node, const std::string& key,
+                 std::string_view name) {
+  if (name.size() <= kMaxNameBytes) return;
+  failAt(tree.position(node), key, fmt::format("{} bytes long", name.size()),
+         fmt::format("expected at most {}", kMaxNameBytes));
+}
 
 std::string requiredAttribute(const UrdfTree& tree, const pugi::xml_node& node, const char* name,
                               const std::string& key) {
@@ -17,6 +27,7 @@ std::string requiredAttribute(const UrdfTree& tree, const pugi::xml_node& node, 
     failAt(tree.position(node), key + "." + name, "is missing",
            fmt::format("expected an attribute {} with text", name));
   }
+  checkLength(tree, node, key + "." + name, attribute.value());
   return attribute.value();
 }
 
@@ -33,6 +44,7 @@ void parseDocument(UrdfTree& tree) {
            "expected <robot>");
   }
   tree.robot_name = robot.attribute("name").value();
+  checkLength(tree, robot, "robot.name", tree.robot_name);
 }
 
 LinkIndex readLinks(UrdfTree& tree) {

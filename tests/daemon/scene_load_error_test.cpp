@@ -137,6 +137,15 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenText{"robot: robot.yaml", "period_s: 0.0015\nrobot: robot.yaml",
                    "scene.yaml:1:11: period_s: ", "does not fit the tactile module",
                    "a multiple or a whole part"},
+        BrokenText{"duration_s: 13", "duration_s: 0.0009",
+                   "scene.yaml:18:15: simulation.duration_s: ", "shorter than a cycle",
+                   "at least period_s = 0.001"},
+        BrokenText{"time_constant_s: 0.1", "time_constant_s: +-0.1",
+                   "scene.yaml:12:20: controller.time_constant_s: ", "'+-0.1' is not a number",
+                   "a number"},
+        BrokenText{"time_constant_s: 0.1", "time_constant_s: ++0.1",
+                   "scene.yaml:12:20: controller.time_constant_s: ", "'++0.1' is not a number",
+                   "a number"},
         BrokenText{"stiffness_N_per_m: 60", "stiffness_N_per_m: -60",
                    "scene.yaml:20:47: simulation.obstacles[0].stiffness_N_per_m: ", "out of range",
                    "> 0"},
@@ -232,6 +241,26 @@ TEST(BrokenSceneFile, Truncated) {
     EXPECT_EQ(error.substr(0, 11), "scene.yaml:") << error;
     EXPECT_NE(error.find(", expected "), std::string::npos) << error;
   }
+}
+
+TEST(BrokenSceneFile, MoreCyclesThanARunMayHave) {
+  const SceneFiles files;
+  const std::vector<Override> settings = {{"period_s", "0.0001"},
+                                          {"simulation.duration_s", "10001"}};
+  test::expectError(test::loadError(files.sources(), settings),
+                    {"", "", "--set simulation.duration_s:1:1: simulation.duration_s: ",
+                     "more than 1e+08 cycles", "at most 10000 s"});
+  EXPECT_EQ(files.load({settings[0], {"simulation.duration_s", "10000"}}).duration_s, 10000.0);
+}
+
+TEST(BrokenSceneFile, TactileSampleStaleWithinACycle) {
+  SceneFiles files;
+  files.robot = test::replaced(files.robot, "sample_period_s: 0.005",
+                               "sample_period_s: 0.005\n  max_sample_age_s: 0.006");
+  test::expectError(test::loadError(files.sources(), {{"period_s", "0.01"}}),
+                    {"", "", "robot.yaml:12:21: tactile_module.max_sample_age_s: ",
+                     "0.006 s is shorter than a cycle", "at least the scene's period_s = 0.01"});
+  EXPECT_EQ(files.load({{"period_s", "0.005"}}).period_s, 0.005);
 }
 
 TEST(BrokenSceneFile, TooManyKeys) {

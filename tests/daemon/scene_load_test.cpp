@@ -123,6 +123,16 @@ TEST(SceneLoad, AcceptsNumbersAsYamlSpellsThem) {
       123456789012345u);
 }
 
+TEST(SceneLoad, AcceptsOnePlusSign) {
+  SceneFiles files;
+  files.scene = test::replaced(files.scene, "time_constant_s: 0.1", "time_constant_s: +0.25");
+  files.urdf = test::replaced(files.urdf, "upper=\"0.5\"", "upper=\"+5e-1\"");
+  const Scene scene = files.load({{"simulation.tactile_module.seed", "+7"}});
+  EXPECT_EQ(scene.controller.force_control->time_constant_s, 0.25);
+  EXPECT_EQ(scene.controller.limits.upper[0], 0.5);
+  EXPECT_EQ(scene.plant.module.seed, 7u);
+}
+
 TEST(SceneLoad, ReadsWindowsLineEndings) {
   SceneFiles files;
   std::string text;

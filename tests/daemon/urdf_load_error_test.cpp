@@ -118,6 +118,28 @@ TEST(BrokenUrdfFile, HostileName) {
                      "'fast' is no limit", "a number"});
 }
 
+TEST(BrokenUrdfFile, EndlessNames) {
+  const struct {
+    std::string from, to, place;
+  } cases[] = {
+      {"name=\"shoulder\"", "name=\"@\"", "robot.urdf:11:3: joint.name: "},
+      {"<robot name=\"three\"", "<robot name=\"@\"", "robot.urdf:1:1: robot.name: "},
+      {"<link name=\"spacer\"/>", "<link name=\"spacer\"/><link name=\"@\"/>",
+       "robot.urdf:2:63: link.name: "},
+  };
+  for (const auto& c : cases) {
+    SceneFiles files;
+    files.urdf =
+        test::replaced(files.urdf, c.from, test::replaced(c.to, "@", std::string(70000, 'n')));
+    test::expectError(test::loadError(files.sources()),
+                      {c.from, c.to, c.place, "70000 bytes long", "at most 255"});
+  }
+  SceneFiles files;
+  const std::string longest(255, 'n');
+  files.urdf = test::replaced(files.urdf, "name=\"shoulder\"", "name=\"" + longest + "\"");
+  EXPECT_EQ(files.load().joint_names[1], longest);
+}
+
 TEST(BrokenUrdfFile, OtherDocumentElement) {
   SceneFiles files;
   files.urdf = "<sdf></sdf>\n";
