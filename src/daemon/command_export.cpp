@@ -7,6 +7,7 @@
 
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/csv_export.h"
+#include "tactus/daemon/located_error.h"
 #include "tactus/daemon/ulog_reader.h"
 
 namespace tactus {
@@ -23,7 +24,8 @@ void addExportCommand(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] {
     const LogExtent extent = checkLog(options->log);
     if (extent.cut_off) {
-      fmt::print(stderr, "{}: the log was cut off after {} cycles\n", options->log, extent.cycles);
+      fmt::print(stderr, "{}: the log was cut off after {} cycles\n", escaped(options->log),
+                 extent.cycles);
     }
     exportCsv(options->log, options->output);
     exit_code = kExitDone;

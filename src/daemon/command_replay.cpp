@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "tactus/daemon/commands.h"
-#include "tactus/daemon/input_error.h"
 #include "tactus/daemon/json.h"
+#include "tactus/daemon/located_error.h"
 #include "tactus/daemon/replay.h"
 #include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/ulog_reader.h"
@@ -23,23 +23,26 @@ struct Options {
   bool json = false;
 };
 
+void checkSize(const std::string& log, const char* field, const char* what, int logged,
+               int of_scene) {
+  if (logged == of_scene) return;
+  failAt({std::make_shared<std::string>(log), 1, 1}, field,
+         fmt::format("the cycles have {} {}, the log's scene {}", logged, what, of_scene),
+         "expected the log of a run of its scene");
+}
+
 /// The scene of the log with its own overrides and then those of the command line.
 Scene loadLoggedScene(const Options& options, const LogDescription& description) {
   std::vector<Override> overrides = description.overrides;
   for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
   if (description.sources.empty()) {
-    throw InputError(
-        fmt::format("{}:1:1: source_path: the log holds no scene, the files of the "
-                    "run are expected",
-                    options.log));
+    failAt({std::make_shared<std::string>(options.log), 1, 1}, "source_path",
+           "the log holds no scene", "expected the files of the run");
   }
   Scene scene = loadScene(description.sources, overrides);
-  if (scene.controller.chain.size() != description.shape.joints) {
-    throw InputError(
-        fmt::format("{}:1:1: q: cycles of {} joints, {} as in the log's scene are "
-                    "expected",
-                    options.log, description.shape.joints, scene.controller.chain.size()));
-  }
+  checkSize(options.log, "q", "joints", description.shape.joints, scene.controller.chain.size());
+  checkSize(options.log, "w", "task components", description.shape.task_size,
+            scene.controller.task.size);
   return scene;
 }
 
@@ -119,7 +122,8 @@ int runReplay(const Options& options) {
   UlogReader reader(in, options.log);
   const ReplayComparison comparison = replayLog(options, reader);
   if (extent.cut_off)
-    fmt::print(stderr, "{}: the log was cut off after {} cycles\n", options.log, extent.cycles);
+    fmt::print(stderr, "{}: the log was cut off after {} cycles\n", escaped(options.log),
+               extent.cycles);
   const std::string report = options.json ? jsonReport(options, comparison, extent.cut_off)
                                           : textReport(options, comparison);
   fmt::print(options.output == "-" ? stderr : stdout, "{}", report);

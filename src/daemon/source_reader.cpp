@@ -30,7 +30,7 @@ void checkIsText(const SourceFile& file, std::string_view key) {
 
 }  // namespace
 
-std::string readFromDisk(const std::string& path) {
+void requireRegularFile(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
@@ -38,6 +38,10 @@ std::string readFromDisk(const std::string& path) {
   }
   // Opening a fifo would wait for its writer.
   if (!fs::is_regular_file(status)) throw FileProblem("is no regular file");
+}
+
+std::string readFromDisk(const std::string& path) {
+  requireRegularFile(path);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw FileProblem("cannot be opened");
   std::string text(kMaxFileBytes + 1, '\0');

@@ -13,6 +13,8 @@ namespace {
 
 /// Far beyond any robot description; what a hostile log may make us hold.
 constexpr std::size_t kMaxEmbeddedSize = std::size_t{64} << 20;
+/// Memory of an entry, about, besides its text.
+constexpr std::size_t kEntrySize = 2 * sizeof(std::string);
 
 template <typename Number>
 Number numberAt(std::string_view bytes, std::size_t offset) noexcept {
@@ -103,9 +105,16 @@ class DefinitionsReader {
     return {key.substr(0, space), key.substr(space + 1), bytes.substr(1 + key_size)};
   }
 
+  void countEmbedded() {
+    embedded_size_ += message_.payload.size() + kEntrySize;
+    if (embedded_size_ > kMaxEmbeddedSize) fail("too much text, at most 64 MiB are expected");
+  }
+
   void readInfo() {
     const KeyedValue info = parseKeyedValue(message_.payload);
-    if (info.isText()) definitions_.description.infos.emplace_back(info.name, info.value);
+    if (!info.isText()) return;
+    countEmbedded();
+    definitions_.description.infos.emplace_back(info.name, info.value);
   }
 
   void readParameter() {
@@ -113,6 +122,7 @@ class DefinitionsReader {
     if (parameter.type != "float" || parameter.value.size() != sizeof(float)) {
       fail("no number, a float of 4 bytes is expected");
     }
+    countEmbedded();
     definitions_.description.parameters.emplace_back(parameter.name,
                                                      numberAt<float>(parameter.value, 0));
   }
@@ -132,8 +142,7 @@ class DefinitionsReader {
     std::vector<std::string>* const texts = multiInfo(info.name);
     if (!texts) return;
     if (!info.isText()) fail("no text, char[] of the value's length is expected");
-    embedded_size_ += message_.payload.size();
-    if (embedded_size_ > kMaxEmbeddedSize) fail("too much text, at most 64 MiB are expected");
+    countEmbedded();
     if (!is_continued) texts->emplace_back();
     if (texts->empty()) fail("continues nothing, a first part is expected");
     texts->back() += info.value;

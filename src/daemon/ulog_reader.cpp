@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tactus/daemon/located_error.h"
+#include "tactus/daemon/source_reader.h"
 #include "tactus/daemon/ulog_format.h"
 
 namespace tactus {
@@ -55,12 +56,15 @@ void UlogReader::copy(const UlogMessage& message, CycleRecord& record) const noe
 }
 
 std::ifstream openLog(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    throw InputError(fmt::format("{}:1:1: file: cannot be opened: {}, a log of tactus is expected",
-                                 escaped(path), std::strerror(errno)));
+  try {
+    requireRegularFile(path);
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw FileProblem(std::string("cannot be opened: ") + std::strerror(errno));
+    return in;
+  } catch (const FileProblem& problem) {
+    failAt({std::make_shared<std::string>(path), 1, 1}, "-", problem.what(),
+           "expected a log of tactus");
   }
-  return in;
 }
 
 LogExtent checkLog(const std::string& path) {
@@ -71,8 +75,8 @@ LogExtent checkLog(const std::string& path) {
   while (reader.next(record)) ++extent.cycles;
   extent.cut_off = reader.cutOff();
   if (extent.cycles == 0) {
-    throw InputError(fmt::format("{}:1:1: {}: the log holds none, at least one is expected",
-                                 escaped(path), kCycleTopic));
+    failAt({std::make_shared<std::string>(path), 1, 1}, kCycleTopic, "the log holds none",
+           "expected at least one");
   }
   return extent;
 }

@@ -48,6 +48,7 @@ bool parseField(std::string_view text, LoggedField& field) noexcept {
   field.entries = 1;
   const std::size_t bracket = field.type.find('[');
   if (bracket == std::string_view::npos) return true;
+  if (bracket + 1 == field.type.size()) return false;
   const char* const end = field.type.data() + field.type.size() - 1;
   const auto [next, error] = std::from_chars(field.type.data() + bracket + 1, end, field.entries);
   if (error != std::errc() || next != end || *end != ']') return false;

@@ -140,6 +140,11 @@ TEST_F(CommandReplay, RefusesALogThatDoesNotBelongToItsScene) {
   rewriteLog();
   EXPECT_THROW(run({}), InputError);
   description_.shape.joints = 9;
+  const int task_size = description_.shape.task_size;
+  description_.shape.task_size = task_size - 1;
+  rewriteLog();
+  EXPECT_THROW(run({}), InputError);
+  description_.shape.task_size = task_size;
   description_.sources.clear();
   rewriteLog();
   EXPECT_THROW(run({}), InputError);

@@ -128,6 +128,7 @@ TEST(UlogReader, RefusesEachWithItsPlace) {
       {swap("double gamma;", "double[99999999999999999999] gamma;"), "is no field"},
       {swap("double gamma;", "double[-1] gamma;"), "is no field"},
       {swap("double gamma;", "double[1 gamma;"), "is no field"},
+      {swap("double gamma;", "double[ gamma;"), "\"double[ gamma\" is no field"},
       {swap("double gamma;", "double gamma;double[65535] more;"), "larger than a message"},
       {swap("double gamma;", "double;"), "\"double\" is no field"},
       {swap("double gamma;", "double ;"), "is no field"},
@@ -166,6 +167,17 @@ TEST(UlogReader, RefusesEndlessText) {
   log.definitions = message('M', "\0\x13"s + "char[0] source_text");
   for (int i = 0; i < 1200; ++i) log.definitions += chunk;
   EXPECT_NE(complaintOf(log).find("at most 64 MiB"), std::string::npos) << complaintOf(log);
+}
+
+TEST(UlogReader, RefusesEndlessInfosAndParameters) {
+  const std::string info = message('I', "\x0e"s + "char[60000] xx" + std::string(60000, 'x'));
+  const std::string parameter = message('P', "\x07"s + "float x" + raw(1.0f));
+  const std::pair<std::string, int> endless[] = {{info, 1200}, {parameter, 1'000'000}};
+  for (const auto& [text, count] : endless) {
+    HandMadeLog log;
+    for (int i = 0; i < count; ++i) log.definitions += text;
+    EXPECT_NE(complaintOf(log).find("at most 64 MiB"), std::string::npos) << complaintOf(log);
+  }
 }
 
 }  // namespace

@@ -242,6 +242,7 @@ TEST(Ulog, ReportsAFullDisk) {
 TEST(Ulog, ReportsAPathThatCannotBeOpened) {
   EXPECT_THROW(UlogWriter("/nowhere/run.ulg", smallDescription()), InputError);
   EXPECT_THROW(openLog("/nowhere/run.ulg"), InputError);
+  EXPECT_THROW(openLog("/dev/null"), InputError) << "no regular file, as a fifo";
   EXPECT_THROW(checkLog("/tmp"), InputError);
 }
 

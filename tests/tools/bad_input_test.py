@@ -82,6 +82,24 @@ class BadInput(unittest.TestCase):
         os.mkfifo(self.folder / "scene.yaml")
         self.expect_refused("scene.yaml", "scene.yaml:1:1: -: ")
 
+    def test_fifo_as_log(self):
+        os.mkfifo(self.folder / "run\n.ulg")
+        for command in (["replay"], ["export", "-o", "out.csv"]):
+            result = self.run_tactus(*command, "run\n.ulg")
+            self.assertEqual((result.returncode, result.stdout), (1, ""), result)
+            self.assertRegex(result.stderr, ONE_LINE)
+
+    def test_log_as_its_own_output(self):
+        self.run_tactus("simulate", GOOD, *SHORT, "-o", ".")
+        log = f"{GOOD.stem}/run.ulg"
+        size = (self.folder / log).stat().st_size
+        for command in ("replay", "export"):
+            for output in (log, "."):
+                result = self.run_tactus(command, log, "-o", output)
+                self.assertEqual((result.returncode, result.stdout), (1, ""), result)
+                self.assertRegex(result.stderr, ONE_LINE)
+        self.assertEqual((self.folder / log).stat().st_size, size)
+
     def test_binary(self):
         (self.folder / "scene.yaml").write_bytes(bytes(range(256)))
         self.expect_refused("scene.yaml", "scene.yaml:1:1: -: ")

@@ -22,6 +22,9 @@ using FileProvider = std::function<std::string(const std::string& path)>;
 
 inline constexpr std::size_t kMaxFileBytes = 1 << 20;
 
+/// Throws FileProblem if there is no such file or opening it might wait.
+void requireRegularFile(const std::string& path);
+
 /// Regular files of at most kMaxFileBytes; never waits, whatever the path names.
 std::string readFromDisk(const std::string& path);
 
