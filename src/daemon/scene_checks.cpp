@@ -96,6 +96,11 @@ void checkTrajectory(const Checked& c) {
 
 void checkJointSpace(const Checked& c) {
   const ForceControlConfig& force = c.draft.force;
+  if (!findGiven(c.root, "redundancy.joint_limit_avoidance")) {
+    c.fail(
+        "redundancy.joint_limit_avoidance", "is missing",
+        "a section with the variant joint_space, whose pull would drive joints onto their limits");
+  }
   if (force.transition.release_force_N >= force.contact_threshold_N) {
     c.fail("controller.transition.release_force_N",
            fmt::format("{} N is not below the contact threshold", force.transition.release_force_N),
