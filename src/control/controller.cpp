@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "tactus/math/rotation.h"
 
@@ -31,7 +32,9 @@ Controller::Controller(const ControllerConfig& config)
       limiter_(config.limits) {
   if (config.joint_limit_avoidance)
     joint_limit_avoidance_.emplace(*config.joint_limit_avoidance, config.limits, inv_sqrt_weights_);
-  if (config.force_control) contact_controller_.emplace(config, inv_sqrt_weights_);
+  if (!config.force_control) return;
+  if (!config.tactile_module) throw std::invalid_argument("force control needs a tactile module");
+  contact_controller_.emplace(config, inv_sqrt_weights_);
 }
 
 ControllerState Controller::initialState() const {

@@ -24,16 +24,19 @@ double firstQuadrantAngle(double sine, double cosine) {
 
 }  // namespace
 
+Matrix3 rotationMatrix(const Vector3& axis, double sine, double cosine) noexcept {
+  Matrix3 axis_cross;
+  axis_cross << 0.0, -axis.z(), axis.y(), axis.z(), 0.0, -axis.x(), -axis.y(), axis.x(), 0.0;
+  return cosine * Matrix3::Identity() + sine * axis_cross +
+         (1.0 - cosine) * axis * axis.transpose();
+}
+
 Matrix3 rotationMatrix(const Vector3& rotation_vector) noexcept {
   const double angle = rotation_vector.norm();
   if (angle == 0.0) return Matrix3::Identity();
   double sine, cosine;
   sinCos(&angle, 1, &sine, &cosine);
-  const Vector3 axis = rotation_vector / angle;
-  Matrix3 axis_cross;
-  axis_cross << 0.0, -axis.z(), axis.y(), axis.z(), 0.0, -axis.x(), -axis.y(), axis.x(), 0.0;
-  return cosine * Matrix3::Identity() + sine * axis_cross +
-         (1.0 - cosine) * axis * axis.transpose();
+  return rotationMatrix(rotation_vector / angle, sine, cosine);
 }
 
 Vector3 rotationVector(const Matrix3& R) noexcept {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "tactus/math/rotation.h"
 #include "tactus/math/sin_cos.h"
 
 namespace tactus {
@@ -32,15 +33,6 @@ void rotateAboutCoordinateAxis(double sine, double cosine, Matrix3& R) {
   const Vector3 j = R.col((K + 2) % 3);
   R.col((K + 1) % 3) = cosine * i + sine * j;
   R.col((K + 2) % 3) = cosine * j - sine * i;
-}
-
-/// Rot(axis_Base, angle) * R, by Rodrigues' formula on each column.
-void rotateAboutAxis(const Vector3& axis_Base, double sine, double cosine, Matrix3& R) {
-  for (int column = 0; column < 3; ++column) {
-    const Vector3 v = R.col(column);
-    R.col(column) =
-        cosine * v + sine * axis_Base.cross(v) + (1.0 - cosine) * axis_Base.dot(v) * axis_Base;
-  }
 }
 
 }  // namespace
@@ -97,7 +89,8 @@ void SerialChain::computePose(const JointVector& q, ChainPose& pose) const noexc
           rotateAboutCoordinateAxis<2>(joint.axis_sign * sine[i], cosine[i], R);
           break;
         default:
-          rotateAboutAxis(axis, sine[i], cosine[i], R);
+          // With the constant axis of the joint's own frame: with the one in R, errors would grow.
+          R = R.lazyProduct(rotationMatrix(joint.axis, sine[i], cosine[i])).eval();
       }
     }
     pose.R_BaseJoint[i] = R;

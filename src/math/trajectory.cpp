@@ -78,9 +78,10 @@ ToolReference Trajectory::evaluate(double t_s) const noexcept {
     return {X_start_.p_AB, Vector3::Zero(), X_start_.R_AB, Vector3::Zero()};
   const Segment& segment = *std::prev(next);
   const double t = t_s - segment.start_s;
-  const PathPoint path = t < segment.duration_s ? timeLaw(t, segment.duration_s, segment.ramp_s,
-                                                          segment.cruise_rate_per_s)
-                                                : PathPoint{1.0, 0.0};
+  // A time that is no number must not look like one after the end.
+  const PathPoint path = t >= segment.duration_s ? PathPoint{1.0, 0.0}
+                                                 : timeLaw(t, segment.duration_s, segment.ramp_s,
+                                                           segment.cruise_rate_per_s);
   return {segment.p_start + path.s * segment.displacement, path.s_dot * segment.displacement,
           rotationMatrix(path.s * segment.rotation_vector).lazyProduct(segment.R_start),
           path.s_dot * segment.rotation_vector};

@@ -12,7 +12,7 @@ namespace {
 /// longer / shorter if that is a whole number.
 int wholeRatio(double longer, double shorter) {
   const double ratio = longer / shorter;
-  if (std::abs(ratio - std::round(ratio)) > 1e-6)
+  if (!(std::abs(ratio - std::round(ratio)) <= 1e-6) || ratio < 0.5)
     throw std::invalid_argument(
         "the cycle period must be a multiple or a whole part of the tactile module's filter "
         "period");

@@ -144,5 +144,16 @@ TEST(ControllerFaults, CommandThatIsNoNumber) {
   }
 }
 
+TEST(ControllerFaults, TimeThatIsNoNumberMovesNothing) {
+  test::Random random(197);
+  const Controller controller(test::fullController(random, 8, Variant::kNullSpace));
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  controller.update({state.q_desired, test::touchAt(0.2, 1.0, 0.0, 1)}, kNaN, kPeriod_s, state,
+                    output);
+  EXPECT_EQ(output.fault, Fault::kCommandNotFinite);
+  EXPECT_EQ(output.velocity.norm(), 0.0);
+}
+
 }  // namespace
 }  // namespace tactus

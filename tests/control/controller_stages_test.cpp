@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "support/controller_run.h"
 
 /// A stage that a scene leaves out changes nothing for the others.
@@ -79,6 +81,13 @@ TEST(ControllerStages, AbsentStagesReportZero) {
   controller.update({state.q_desired, test::touchAt(0.2, 10.0, 0.4, 1)}, 0.0, 1e-3, state, output);
   test::expectSameContact(output.contact, ContactReport{});
   EXPECT_EQ(output.fault, Fault::kNone);
+}
+
+TEST(ControllerStages, RefusesALawWithoutAModule) {
+  test::Random random(248);
+  ControllerConfig config = test::fullController(random, 7, Variant::kNullSpace);
+  config.tactile_module.reset();
+  EXPECT_THROW(Controller{config}, std::invalid_argument);
 }
 
 TEST(ControllerStages, EveryStagePresentDoesChangeTheMotion) {

@@ -71,7 +71,7 @@ TEST(SimulatedRobot, FeelsNothingWithoutAModule) {
 
 TEST(SimulatedRobot, RefusesPeriodsThatDoNotFitTheModule) {
   const ControllerConfig config = test::crops9Controller(Variant::kNullSpace);
-  for (const double bad_s : {0.0015, 0.0007})
+  for (const double bad_s : {0.0015, 0.0007, 0.0, -0.001, std::nan("")})
     EXPECT_THROW(SimulatedRobot(config, test::crops9Plant({}), bad_s), std::invalid_argument)
         << bad_s;
   for (const double good_s : {0.000125, 0.00025, 0.0005, 0.001, 0.002, 0.004})
