@@ -147,18 +147,4 @@ Fault Controller::readTactileModule(const RobotInput& input, double period_s,
   return Fault::kNone;
 }
 
-const char* faultName(Fault fault) noexcept {
-  switch (fault) {
-    case Fault::kNone:
-      return "none";
-    case Fault::kTactileInvalid:
-      return "tactile_invalid";
-    case Fault::kTactileStale:
-      return "tactile_stale";
-    case Fault::kCommandNotFinite:
-      return "command_not_finite";
-  }
-  return "unknown";
-}
-
 }  // namespace tactus

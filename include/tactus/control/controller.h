@@ -7,22 +7,12 @@
 #include "tactus/control/contact_controller.h"
 #include "tactus/control/contact_point.h"
 #include "tactus/control/controller_config.h"
+#include "tactus/control/fault.h"
 #include "tactus/control/joint_limit_avoidance.h"
 #include "tactus/control/motion.h"
 #include "tactus/control/robot.h"
 
 namespace tactus {
-
-/// Why a controller has stopped following its task. Every fault has one reaction: the command ramps
-/// to rest within the acceleration limits and stays there.
-enum class Fault : std::uint8_t {
-  kNone = 0,
-  kTactileInvalid = 1,    ///< reading not finite or beyond the module's range
-  kTactileStale = 2,      ///< no new sample for longer than max_sample_age_s
-  kCommandNotFinite = 3,  ///< the law produced a number that is none
-};
-
-const char* faultName(Fault fault) noexcept;
 
 /// What one cycle computes.
 struct ControllerOutput {

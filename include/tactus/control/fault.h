@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace tactus {
+
+/// Why the arm has stopped following its task. Numbers are part of the log's format: only append.
+enum class Fault : std::uint8_t {
+  kNone = 0,
+  kTactileInvalid = 1,
+  kTactileStale = 2,
+  kCommandNotFinite = 3,
+  kTactileSaturated = 4,
+  kTactileCableBreak = 5,
+  kTareRefused = 6,
+  kBusStalled = 7,
+  kBusUnacknowledged = 8,
+  kBusOff = 9,
+  kBusDown = 10,
+  kBusFlooded = 11,
+  kDriveSilent = 12,
+  kDriveFault = 13,
+  kDriveStateLost = 14,
+  kFollowingError = 15,
+  kDriveSetupRefused = 16,
+  kNotAtStart = 17,
+  kEmergencyStop = 18,
+  kGpioLost = 19,
+  kOverrun = 20,
+  kForbiddenSystemCall = 21,
+};
+
+/// How the arm comes to rest, mildest first; a later fault can only make it harsher.
+enum class Reaction : std::uint8_t {
+  kNone,
+  kHold,       ///< ramp to zero velocity within the acceleration limits, drives keep the position
+  kRamp,       ///< the same, then drives disabled
+  kQuickStop,  ///< zero setpoint and quick stop by the drives at once, then disabled
+  kBrake,      ///< the same, and the brake line falls at once
+};
+
+/// One row of the fault table, which README and manual print.
+struct FaultRow {
+  Fault fault;
+  const char* name;       ///< as in the log and in summary.json
+  const char* detection;  ///< what is seen, and when
+  Reaction reaction;
+};
+
+const std::array<FaultRow, 22>& faultTable() noexcept;  ///< in the order of the numbers
+const FaultRow& faultRow(Fault fault) noexcept;
+const char* faultName(Fault fault) noexcept;
+const char* reactionName(Reaction reaction) noexcept;
+
+}  // namespace tactus
