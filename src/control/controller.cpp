@@ -37,9 +37,9 @@ Controller::Controller(const ControllerConfig& config)
   contact_controller_.emplace(config, inv_sqrt_weights_);
 }
 
-ControllerState Controller::initialState() const {
+ControllerState Controller::initialState(const JointVector& q) const {
   ControllerState state;
-  state.q_desired = config_.q_start;
+  state.q_desired = q.cwiseMax(config_.limits.lower).cwiseMin(config_.limits.upper);
   state.velocity_before = JointVector::Zero(config_.chain.size());
   if (config_.tactile_module)
     state.contact_point.position_m = 0.5 * config_.tactile_module->length_m;
@@ -73,20 +73,27 @@ void Controller::update(const RobotInput& input, double t_s, double period_s,
   limit(period_s, state, output);
 }
 
+void Controller::coast(int missed_cycles, double period_s, ControllerState& state) const noexcept {
+  moveDesired(missed_cycles * period_s, state);
+}
+
 void Controller::limit(double period_s, ControllerState& state,
                        ControllerOutput& output) const noexcept {
-  if (state.fault != Fault::kNone) output.velocity.setZero();
+  if (state.fault != Fault::kNone || state.is_stopping) output.velocity.setZero();
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
   if (!finite) state.fault = Fault::kCommandNotFinite;
 
   output.fault = state.fault;
-  output.q_desired.resize(config_.chain.size());
+  output.q_desired = state.q_desired;
+  state.velocity_before = output.velocity;
+  moveDesired(period_s, state);
+}
+
+void Controller::moveDesired(double duration_s, ControllerState& state) const noexcept {
   for (int i = 0; i < config_.chain.size(); ++i) {
-    output.q_desired[i] = state.q_desired[i];
-    const double q = state.q_desired[i] + period_s * output.velocity[i];
+    const double q = state.q_desired[i] + duration_s * state.velocity_before[i];
     state.q_desired[i] = std::clamp(q, config_.limits.lower[i], config_.limits.upper[i]);
-    state.velocity_before[i] = output.velocity[i];
   }
 }
 

@@ -4,7 +4,10 @@ namespace tactus {
 
 const std::array<FaultRow, 22>& faultTable() noexcept {
   using enum Fault;
-  using enum Reaction;
+  constexpr auto kHold = Reaction::kHold;
+  constexpr auto kRamp = Reaction::kRamp;
+  constexpr auto kQuickStop = Reaction::kQuickStop;
+  constexpr auto kBrake = Reaction::kBrake;
   static constexpr std::array<FaultRow, 22> kTable = {{
       {kNone, "none", "", Reaction::kNone},
       {kTactileInvalid, "tactile_invalid", "a reading not finite or beyond max_force_N", kHold},

@@ -27,7 +27,8 @@ struct ControllerOutput {
 struct ControllerState {
   JointVector q_desired;        ///< m or rad
   JointVector velocity_before;  ///< previous command
-  Fault fault = Fault::kNone;   ///< latched
+  Fault fault = Fault::kNone;   ///< latched; while it is set the command ramps to rest
+  bool is_stopping = false;     ///< set by the caller: ramp to rest and stay there
   std::uint32_t sample_sequence = 0;
   double sample_age_s = 0.0;
   ContactPointState contact_point;
@@ -40,7 +41,12 @@ class Controller {
  public:
   explicit Controller(const ControllerConfig& config);
 
-  ControllerState initialState() const;
+  ControllerState initialState() const { return initialState(config_.q_start); }
+  /// For an arm that stands at q, near the configured start, m or rad.
+  ControllerState initialState(const JointVector& q) const;
+
+  /// For cycles that were missed: the drives kept the last command for as long.
+  void coast(int missed_cycles, double period_s, ControllerState& state) const noexcept;
 
   /// One cycle. t_s: time since the start of the run; period_s: time to the next cycle, > 0.
   void update(const RobotInput& input, double t_s, double period_s, ControllerState& state,
@@ -54,6 +60,7 @@ class Controller {
   Fault readTactileModule(const RobotInput& input, double period_s,
                           ControllerState& state) const noexcept;
   void limit(double period_s, ControllerState& state, ControllerOutput& output) const noexcept;
+  void moveDesired(double duration_s, ControllerState& state) const noexcept;
 
   ControllerConfig config_;
   Trajectory trajectory_;

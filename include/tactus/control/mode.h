@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "tactus/control/fault.h"
+
+namespace tactus {
+
+/// Where the daemon is between power-up and rest. Numbers are part of the log's format.
+enum class Mode : std::uint8_t {
+  kBoot = 0,      ///< drives are being configured, the tactile module is tared
+  kReady = 1,     ///< all configured, power off; waits for the enable line
+  kEnabling = 2,  ///< drives switch on, brakes open
+  kRunning = 3,   ///< the controller follows its task
+  kHolding = 4,   ///< ramped to rest, drives keep the position
+  kStopping = 5,  ///< ramps to rest, then drives switch off
+  kFault = 6,     ///< quick stop or off; drives are off as soon as the arm rests
+  kOff = 7,       ///< the end: drives off, or out of reach
+};
+
+inline constexpr int kModeCount = 8;
+const char* modeName(Mode mode) noexcept;
+
+/// One legal change of mode. Whatever is not in the table does not happen.
+struct ModeTransition {
+  Mode from, to;
+  const char* when;
+};
+inline constexpr int kModeTransitionCount = 20;
+const std::array<ModeTransition, kModeTransitionCount>& modeTransitions() noexcept;
+bool isLegal(Mode from, Mode to) noexcept;
+
+/// What a cycle knows when it decides on the mode.
+struct ModeInput {
+  Fault fault = Fault::kNone;    ///< seen in this cycle
+  bool stop_requested = false;   ///< by the user: end at rest
+  bool has_enable_line = false;  ///< without one, movement is enabled from the start
+  bool enable = true;            ///< state of that line
+  bool are_configured = false;   ///< drives configured, module tared, samples coming
+  bool are_enabled = false;      ///< every drive follows setpoints
+  bool are_disabled = true;      ///< no drive that can be reached has power
+  bool is_at_rest = true;        ///< the commanded velocity is zero
+};
+
+struct ModeState {
+  Mode mode = Mode::kBoot;
+  Fault fault = Fault::kNone;           ///< the first one since the last clearing
+  Reaction reaction = Reaction::kNone;  ///< the harshest since then
+  bool may_clear = false;               ///< the enable line was off since the fault or hold
+  int cycles_in_mode = 0;
+};
+
+/// Time limits, in cycles.
+struct ModeConfig {
+  int boot_cycles = 5000;      ///< to configure all drives: kDriveSetupRefused
+  int enabling_cycles = 2000;  ///< to switch on: kDriveStateLost
+  int stopping_cycles = 2000;  ///< to end: then quick stop, and after as many again, off
+  int brake_cycles = 0;        ///< between switched on and moving, for the brakes to open
+};
+
+/// The supervisor: one step of the mode table. A fault is answered by its row of the fault table; a
+/// second fault can only make the reaction harsher. A fault is cleared, and movement after a hold
+/// resumed, by switching the enable line off and on again while the cause is gone; a robot without
+/// that line ends.
+void updateMode(const ModeConfig& config, const ModeInput& input, ModeState& state) noexcept;
+
+}  // namespace tactus
