@@ -1,0 +1,74 @@
+"""Debian's PREEMPT_RT kernel for the virtual machine: fetched by apt, which checks it, and unpacked
+without installing it."""
+
+import fcntl
+import subprocess
+import tarfile
+import tempfile
+from pathlib import Path
+
+# In the order of loading.
+MODULES = [
+    "net/can/can",
+    "net/can/can-raw",
+    "drivers/net/can/dev/can-dev",
+    "drivers/net/can/vcan",
+    "drivers/gpio/gpio-generic",
+    "drivers/gpio/gpio-amdpt",
+]
+
+
+class KernelMissing(RuntimeError):
+    pass
+
+
+def _apt(command, **options):
+    done = subprocess.run(command, text=True, capture_output=True, check=False, **options)
+    if done.returncode != 0:
+        raise KernelMissing(
+            "the virtual machine needs Debian's kernel with PREEMPT_RT (70 MB, once), and apt "
+            "cannot get it: is there a network? Are apt's lists there (apt-get update)?\n"
+            f"{' '.join(command)}: {done.stderr.strip()}"
+        )
+    return done.stdout
+
+
+def _download(folder):
+    words = _apt(["apt-cache", "depends", "linux-image-rt-amd64"]).split()
+    package = next((word for word in words if word.startswith("linux-image-6")), None)
+    if package is None:
+        raise KernelMissing("linux-image-rt-amd64 depends on no kernel; is this Debian 12 on amd64?")
+    # Else apt warns that its own user may not write here.
+    _apt(["apt-get", "-q", "-o", "APT::Sandbox::User=root", "download", package], cwd=folder)
+    return next(Path(folder).glob(f"{package}_*.deb"))
+
+
+def _unpack(package, folder):
+    """Leaves vmlinuz and the modules, flat."""
+    wanted = {f"{module}.ko" for module in MODULES}
+    listing = subprocess.Popen(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE)
+    with tarfile.open(fileobj=listing.stdout, mode="r|") as members:
+        for member in members:
+            inner = member.name.partition("/kernel/")[2]
+            if inner in wanted or member.name.startswith("./boot/vmlinuz-"):
+                name = "vmlinuz" if not inner else Path(inner).name
+                (folder / name).write_bytes(members.extractfile(member).read())
+                wanted.discard(inner)
+    if listing.wait() != 0 or wanted or not (folder / "vmlinuz").exists():
+        raise KernelMissing(f"{package.name} lacks {', '.join(sorted(wanted)) or 'a kernel'}")
+
+
+def kernel_folder(cache):
+    """A folder with vmlinuz and MODULES, flat. Kept in the folder `cache`; safe to call twice at
+    once."""
+    cache.mkdir(parents=True, exist_ok=True)
+    folder = cache / "kernel"
+    with open(cache / "kernel.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not folder.exists():
+            with tempfile.TemporaryDirectory(dir=cache) as scratch:
+                unpacked = Path(scratch) / "kernel"
+                unpacked.mkdir()
+                _unpack(_download(scratch), unpacked)
+                unpacked.rename(folder)
+    return folder

@@ -1,0 +1,103 @@
+#!/usr/bin/python3
+"""Runs one guest script, guest/TEST.sh, in a virtual machine with virtual time: one instruction
+takes 2^shift ns, so that two runs are equal to the bit, however busy the host is.
+
+usage: vm.py TEST [--out FOLDER] [--program FILE]... [--folder PATH=SOURCE]... [--shift N]
+             [--timeout SECONDS] [--cache FOLDER]
+
+What the script writes to /out lands in FOLDER, with the console's output as console.txt. Exits with
+the script's status, or 125 where the machine did not get so far."""
+
+import argparse
+import io
+import subprocess
+import sys
+import tarfile
+import tempfile
+from pathlib import Path
+
+from build_image import HERE, add_content_options, build, installed
+
+SHARED_MIB = 256  # for results; the file is sparse
+PAGE = 4096
+MACHINE_FAILED = 125
+
+
+class MachineFailed(RuntimeError):
+    pass
+
+
+def _command(folder, test, shift):
+    options = f"console=ttyS0 quiet panic=-1 iomem=relaxed memmap=64K$0x3f000000 test={test}"
+    return [
+        installed("qemu-system-x86_64"), "-M", "pc", "-cpu", "max", "-m", "1024", "-smp", "1",
+        "-accel", "tcg", "-icount", f"shift={shift},sleep=off", "-seed", "42",
+        "-rtc", "base=2025-01-01T00:00:00,clock=vm",
+        "-nodefaults", "-no-reboot", "-display", "none", "-monitor", "none",
+        "-kernel", folder / "vmlinuz", "-initrd", folder / "initrd", "-append", options,
+        "-acpitable", f"file={folder}/gpio.aml",
+        "-serial", f"file:{folder}/console", "-serial", "null",
+        "-object", f"memory-backend-file,id=shared,share=on,size={SHARED_MIB}M,"
+                   f"mem-path={folder}/shared",
+        "-device", "ivshmem-plain,memdev=shared,addr=0x10",
+    ]  # fmt: skip
+
+
+def _handed_over(path):
+    """What guest/hand_over.c left: the script's status and the files of /out as a tar archive."""
+    with open(path, "rb") as shared:
+        header = shared.read(PAGE).partition(b"\n")[0].split()
+        if len(header) != 3 or header[0] != b"tactus-hil":
+            raise MachineFailed("the machine ended without handing over a result")
+        return int(header[1]), shared.read(int(header[2]))
+
+
+def run(test, out, programs=(), folders=(), shift=0, timeout_s=600, cache=None):
+    """Returns the script's exit status. Raises MachineFailed; the console's output is in
+    out/console.txt even then."""
+    if not (HERE / "guest" / f"{test}.sh").exists():
+        raise MachineFailed(f"there is no tests/hil/guest/{test}.sh")
+    cache.mkdir(parents=True, exist_ok=True)
+    out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="run-", dir=cache) as scratch:
+        folder = Path(scratch)
+        build(folder, programs, folders, cache)
+        try:
+            subprocess.run(_command(folder, test, shift), stdin=subprocess.DEVNULL,
+                           timeout=timeout_s, check=True)  # fmt: skip
+            status, archive = _handed_over(folder / "shared")
+        except subprocess.TimeoutExpired as late:
+            raise MachineFailed(f"the machine did not end within {late.timeout} s") from late
+        except subprocess.CalledProcessError as failed:
+            raise MachineFailed(f"QEMU exits with {failed.returncode}") from failed
+        finally:
+            if (folder / "console").exists():
+                (out / "console.txt").write_bytes((folder / "console").read_bytes())
+    with tarfile.open(fileobj=io.BytesIO(archive)) as files:
+        files.extractall(out)
+    return status
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("test")
+    parser.add_argument("--out", type=Path)
+    parser.add_argument("--shift", type=int, default=0)
+    parser.add_argument("--timeout", type=float, default=600)
+    add_content_options(parser)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as unnamed:
+        out = options.out or Path(unnamed)
+        try:
+            status = run(options.test, out, options.program, options.folder, options.shift,
+                         options.timeout, options.cache)  # fmt: skip
+        except MachineFailed as failure:
+            print(f"vm: {failure}", file=sys.stderr)
+            status = MACHINE_FAILED
+        if (out / "console.txt").exists():
+            sys.stdout.write((out / "console.txt").read_text(errors="replace"))
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())
