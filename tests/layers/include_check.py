@@ -16,7 +16,7 @@ LAYERS = {
     "io": ({"io", "control", "math"}, {"Eigen", "gpiod.h"}),
     "sim": ({"sim", "control", "math"}, {"Eigen"}),
     "plant": ({"plant", "io", "sim", "control", "math"}, {"Eigen"}),
-    "rt": ({"rt"}, {"seccomp.h"}),
+    "rt": ({"rt"}, {"seccomp.h", "malloc.h"}),
     "daemon": ({"daemon", "plant", "io", "sim", "rt", "control", "math"},
                {"Eigen", "yaml-cpp", "pugixml.hpp", "CLI", "fmt", "systemd"}),
 }

@@ -1,0 +1,121 @@
+#include "tactus/rt/system_call_filter.h"
+
+#include <errno.h>
+#include <linux/seccomp.h>
+#include <pthread.h>
+#include <seccomp.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <memory>
+#include <system_error>
+
+namespace tactus {
+namespace {
+
+thread_local std::atomic<SystemCallFilter*> loaded_filter{nullptr};
+
+constexpr int kCausedBySeccomp = 1;  // si_code; the kernel's SYS_SECCOMP, which glibc leaves out
+
+static_assert(std::atomic<std::uint32_t>::is_always_lock_free);  // for the signal handler
+
+void failWithEnosys(ucontext_t& context) noexcept {
+#if defined(__x86_64__)
+  context.uc_mcontext.gregs[REG_RAX] = -ENOSYS;
+#elif defined(__aarch64__)
+  context.uc_mcontext.regs[0] = -ENOSYS;
+#else
+#error "which register holds the result of a system call here?"
+#endif
+}
+
+void check(int result, const char* what) {
+  if (result < 0) throw std::system_error(-result, std::generic_category(), what);
+}
+
+using Context = std::unique_ptr<void, decltype(&seccomp_release)>;
+
+void allow(const Context& context, int number) {
+  check(seccomp_rule_add(context.get(), SCMP_ACT_ALLOW, number, 0),
+        "allowing a system call in the loop's filter");
+}
+
+Context makeContext(std::span<const int> allowed) {
+  Context context(seccomp_init(SCMP_ACT_TRAP), seccomp_release);
+  if (!context) check(-ENOMEM, "making the loop's system call filter");
+  check(seccomp_attr_set(context.get(), SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_TRAP),
+        "making the loop's system call filter");
+  for (const int number : allowed) allow(context, number);
+  allow(context, SYS_rt_sigreturn);  // the way out of the handler
+  return context;
+}
+
+/// libseccomp 2.5 writes a program only into a file.
+std::vector<sock_filter> exportProgram(const Context& context) {
+  const int file = memfd_create("filter", MFD_CLOEXEC);
+  if (file < 0) check(-errno, "making a file for the loop's system call filter");
+  const int error = seccomp_export_bpf(context.get(), file);
+  const off_t size = lseek(file, 0, SEEK_END);
+  std::vector<sock_filter> program(size > 0 ? size / sizeof(sock_filter) : 0);
+  const ssize_t read = pread(file, program.data(), program.size() * sizeof(sock_filter), 0);
+  close(file);
+  check(error, "exporting the loop's system call filter");
+  if (size <= 0 || read != size) check(-EIO, "reading the loop's system call filter");
+  return program;
+}
+
+void unblockSigsys() noexcept {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGSYS);
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+}  // namespace
+
+SystemCallFilter::SystemCallFilter(std::span<const int> allowed)
+    : program_(exportProgram(makeContext(allowed))) {
+  struct sigaction action {};
+  action.sa_sigaction = onForbiddenCall;
+  action.sa_flags = SA_SIGINFO | SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  if (sigaction(SIGSYS, &action, nullptr) != 0) check(-errno, "taking SIGSYS");
+}
+
+int SystemCallFilter::load() noexcept {
+  unblockSigsys();  // a forbidden call while it is blocked would end the process
+  loaded_filter = this;
+  sock_fprog program{static_cast<unsigned short>(program_.size()), program_.data()};
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return errno;
+  // No sandbox, hence no reason to slow this thread down against speculation.
+  const long result =
+      syscall(SYS_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_SPEC_ALLOW, &program);
+  return result == 0 ? 0 : errno;
+}
+
+void SystemCallFilter::onForbiddenCall(int, siginfo_t* info, void* context) noexcept {
+  if (info->si_code != kCausedBySeccomp) return;  // sent by somebody, at any instruction
+  failWithEnosys(*static_cast<ucontext_t*>(context));
+  SystemCallFilter* const filter = loaded_filter;
+  if (filter == nullptr) return;
+  int none = -1;
+  filter->first_.compare_exchange_strong(none, info->si_syscall);
+  ++filter->count_;
+}
+
+Refusal systemCallFilterRefusal(int error) {
+  return {"loading the loop's system call filter: " + std::generic_category().message(error),
+          "a call that could block the loop would go unnoticed",
+          "a kernel with CONFIG_SECCOMP_FILTER, and a container whose profile allows seccomp()"};
+}
+
+std::string systemCallName(int number) {
+  const std::unique_ptr<char, decltype(&std::free)> name(
+      seccomp_syscall_resolve_num_arch(SCMP_ARCH_NATIVE, number), std::free);
+  return name ? name.get() : "system call " + std::to_string(number);
+}
+
+}  // namespace tactus
