@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "tactus/control/fault.h"
 #include "tactus/io/can_frame.h"
 #include "tactus/io/cia402.h"
+#include "tactus/io/drive_setup.h"
 #include "tactus/io/hardware_config.h"
-#include "tactus/io/sdo_client.h"
+#include "tactus/io/pdo.h"
+#include "tactus/io/velocity_counts.h"
 
 namespace tactus {
 
@@ -19,33 +22,33 @@ enum class DriveGoal : std::uint8_t {
   kQuickStop,  ///< stop by itself, then switch on disabled
 };
 
-/// Why a drive could not be configured: the object and the abort code, 0 for a time-out.
-struct SetupFailure {
-  std::uint16_t index = 0;
-  std::uint8_t subindex = 0;
-  std::uint32_t abort_code = 0;
-};
-
 /// What is known of a drive after a cycle's frames.
 struct DriveReport {
   bool is_configured = false;
   DriveState state = DriveState::kNotReady;
   bool has_position = false;
-  double position = 0.0;       ///< m or rad
-  Fault fault = Fault::kNone;  ///< kDriveSilent, kDriveFault, kDriveStateLost, kFollowingError or
-                               ///< kDriveSetupRefused; stays until kConfigure starts anew
+  double position = 0.0;  ///< m or rad
+  /// kDriveSilent, kDriveFault, kDriveStateLost, kFollowingError, kDriveSetupRefused, or
+  /// kCommandNotFinite if a setpoint was none; the first one stays until kConfigure starts anew.
+  Fault fault = Fault::kNone;
   std::uint16_t emergency_code = 0;  ///< of the last EMCY, 0: none
   SetupFailure setup_failure;
 };
 
 /// The master's side of one CiA 402 drive in cyclic synchronous velocity mode (9). Knows no socket
 /// and no clock: time is counted in cycles. RPDO1 (0x200 + id): 6040 and 60FF; TPDO1 (0x180 + id):
-/// 6041 and 6064, both synchronous. SYNC and the master's heartbeat are the bus's, not the drive's.
+/// 6041 and 6064, both synchronous. SYNC and the master's heartbeat are the bus's, not the drive's,
+/// and have to go out in every phase, also while drives are configured.
+///
+/// A drive with a fault gets no velocity but 0, and a quick stop where it was to be enabled. One
+/// that is in fault when it is configured is reset once, on its way to kEnabled; a fault that comes
+/// later is never cleared but by a restart.
 class Drive {
  public:
   /// Feedback missing for more cycles than this is kDriveSilent.
   static constexpr int kMaxSilentCycles = 5;
 
+  /// Throws std::invalid_argument with one line for settings that no drive can be given.
   Drive(const DriveConfig& config, const CanopenConfig& canopen, double period_s);
 
   /// A data frame of this drive's bus; ids that are not its own are ignored. Frames of wrong size
@@ -55,17 +58,59 @@ class Drive {
   /// Once a cycle, after all frames: sets what is to be sent, and judges what came. velocity: m/s
   /// or rad/s at the joint, used while kEnabled and enabled; position: where the drive is commanded
   /// to be at the start of this cycle, for the following error and the tracking gain. restart: with
-  /// kConfigure, start the set-up anew and forget all faults.
+  /// kConfigure, start the set-up anew and forget all faults; for one cycle only.
   void update(DriveGoal goal, bool restart, double velocity, double position,
               FrameBatch& out) noexcept;
 
   const DriveReport& report() const noexcept { return report_; }
   int bus() const noexcept { return config_.bus; }
+  std::uint32_t malformedFrames() const noexcept { return malformed_frames_; }
 
  private:
-  // ... the implementation's own
+  enum class Phase : std::uint8_t {
+    kUnconfigured,
+    kSetup,     ///< objects are written
+    kStarting,  ///< NMT start sent; waiting for its operational heartbeat and its feedback
+    kConfigured,
+  };
+
+  void receiveFeedback(const CanFrame& frame) noexcept;
+  void receiveHeartbeat(const CanFrame& frame) noexcept;
+  void receiveEmergency(const CanFrame& frame) noexcept;
+  void onBootUp() noexcept;
+
+  void startSetup() noexcept;
+  void continueSetup(FrameBatch& out) noexcept;
+  void awaitOperation() noexcept;
+  void onConfigured() noexcept;
+
+  void takeFeedback() noexcept;
+  void watchSilence() noexcept;
+  void watchFault(DriveGoal goal) noexcept;
+  void watchOperation(DriveGoal goal) noexcept;
+  void watchPosition(double velocity, double position) noexcept;
+  bool isRunning(DriveGoal goal) const noexcept;
+  std::uint16_t controlWord(DriveGoal goal) const noexcept;
+  std::int32_t velocityCounts(DriveGoal goal, double velocity, double position) noexcept;
+  void fail(Fault fault) noexcept;
+
   DriveConfig config_;
+  int heartbeat_timeout_cycles_;
+  int answer_timeout_cycles_;
+  DriveSetup setup_;
+  VelocityCounts velocity_counts_;
   DriveReport report_;
+  Phase phase_ = Phase::kUnconfigured;
+  std::optional<DriveFeedback> feedback_;  ///< that has come since the last cycle
+  std::optional<DriveState> state_;        ///< none: a status word that the standard does not know
+  bool is_operational_ = false;            ///< by its last heartbeat
+  int starting_cycles_ = 0;                ///< since NMT start
+  int cycles_without_feedback_ = 0;
+  int cycles_without_heartbeat_ = 0;
+  bool has_old_fault_ = false;  ///< in fault without a break since it was configured
+  int reset_cycles_ = 0;        ///< since the reset of an old fault began
+  int enabled_cycles_ = 0;      ///< in a row, counted up to where operation is settled
+  std::uint32_t malformed_frames_ = 0;
 };
 
 }  // namespace tactus

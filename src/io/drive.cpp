@@ -1,0 +1,215 @@
+#include "tactus/io/drive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/io/canopen.h"
+#include "tactus/io/cycle_count.h"
+
+namespace tactus {
+namespace {
+
+/// Operation enabled that was seen for so many cycles is not left but by a command of ours: a
+/// control word takes effect with the SYNC after it, is seen in the feedback after the next one,
+/// and drives may need a cycle more.
+constexpr int kSettledCycles = 3;
+
+PowerGoal powerGoal(DriveGoal goal, bool has_fault) noexcept {
+  if (goal == DriveGoal::kQuickStop) return PowerGoal::kQuickStop;
+  if (goal != DriveGoal::kEnabled) return PowerGoal::kDisabled;
+  return has_fault ? PowerGoal::kQuickStop : PowerGoal::kEnabled;
+}
+
+}  // namespace
+
+Drive::Drive(const DriveConfig& config, const CanopenConfig& canopen, double period_s)
+    : config_(config),
+      heartbeat_timeout_cycles_(cyclesLasting(canopen.heartbeat_timeout_s, period_s)),
+      answer_timeout_cycles_(cyclesLasting(canopen.sdo_timeout_s, period_s)),
+      setup_(config, canopen, period_s),
+      velocity_counts_(config.sign * config.counts_per_unit) {}
+
+void Drive::receive(const CanFrame& frame) noexcept {
+  if (frame.kind != FrameKind::kData || frame.extended) return;
+  switch (frame.id - static_cast<std::uint32_t>(config_.node_id)) {
+    case cob_id::kTpdo1:
+      return receiveFeedback(frame);
+    case cob_id::kHeartbeat:
+      return receiveHeartbeat(frame);
+    case cob_id::kEmergency:
+      return receiveEmergency(frame);
+    case cob_id::kSdoAnswer:
+      if (frame.size != 8) ++malformed_frames_;
+      return setup_.receive(frame);
+  }
+}
+
+void Drive::receiveFeedback(const CanFrame& frame) noexcept {
+  const auto feedback = decodeFeedback(frame, config_.node_id);
+  if (!feedback) ++malformed_frames_;
+  if (feedback) feedback_ = feedback;
+}
+
+void Drive::receiveHeartbeat(const CanFrame& frame) noexcept {
+  const auto state = decodeHeartbeat(frame, config_.node_id);
+  if (!state) {
+    ++malformed_frames_;
+    return;
+  }
+  cycles_without_heartbeat_ = 0;
+  is_operational_ = state == NmtState::kOperational;
+  if (state == NmtState::kBootUp) return onBootUp();
+  if (phase_ == Phase::kConfigured && !is_operational_) fail(Fault::kDriveStateLost);
+}
+
+void Drive::onBootUp() noexcept {
+  if (phase_ == Phase::kConfigured) {
+    fail(Fault::kDriveStateLost);
+    phase_ = Phase::kUnconfigured;  // its mapping is gone: setpoints would be misread
+    report_.is_configured = false;
+    report_.state = DriveState::kNotReady;
+  } else if (phase_ != Phase::kUnconfigured) {
+    phase_ = Phase::kSetup;
+    setup_.onBootUp();
+  }
+}
+
+void Drive::receiveEmergency(const CanFrame& frame) noexcept {
+  const auto emergency = decodeEmergency(frame, config_.node_id);
+  if (!emergency) {
+    ++malformed_frames_;
+    return;
+  }
+  report_.emergency_code = emergency->code;
+  const bool is_new = phase_ == Phase::kConfigured && !has_old_fault_;
+  if (is_new && emergency->code != 0) fail(Fault::kDriveFault);
+}
+
+void Drive::update(DriveGoal goal, bool restart, double velocity, double position,
+                   FrameBatch& out) noexcept {
+  if (goal == DriveGoal::kConfigure && restart) startSetup();
+  if (goal == DriveGoal::kConfigure) continueSetup(out);
+  if (phase_ == Phase::kConfigured) {
+    watchSilence();
+    takeFeedback();
+    watchFault(goal);
+    watchOperation(goal);
+    if (isRunning(goal)) watchPosition(velocity, position);
+    const DriveCommand command{controlWord(goal), velocityCounts(goal, velocity, position)};
+    if (goal != DriveGoal::kSilent) out.push(commandFrame(config_.node_id, command));
+  }
+  feedback_.reset();
+}
+
+void Drive::startSetup() noexcept {
+  report_ = {};
+  phase_ = Phase::kSetup;
+  setup_.start();
+}
+
+void Drive::continueSetup(FrameBatch& out) noexcept {
+  const bool is_new = phase_ == Phase::kUnconfigured && report_.fault == Fault::kNone;
+  if (is_new) startSetup();
+  if (phase_ == Phase::kStarting) return awaitOperation();
+  if (phase_ != Phase::kSetup) return;
+  setup_.update(out);
+  if (setup_.status() == DriveSetup::Status::kDone) {
+    phase_ = Phase::kStarting;
+    is_operational_ = false;
+    starting_cycles_ = 0;
+  } else if (setup_.status() == DriveSetup::Status::kFailed) {
+    phase_ = Phase::kUnconfigured;
+    report_.setup_failure = setup_.failure();
+    fail(Fault::kDriveSetupRefused);
+  }
+}
+
+void Drive::awaitOperation() noexcept {
+  takeFeedback();
+  if (is_operational_ && report_.has_position) return onConfigured();
+  if (++starting_cycles_ <= heartbeat_timeout_cycles_ + answer_timeout_cycles_) return;
+  phase_ = Phase::kUnconfigured;
+  fail(Fault::kDriveSilent);
+}
+
+void Drive::onConfigured() noexcept {
+  phase_ = Phase::kConfigured;
+  report_.is_configured = true;
+  cycles_without_feedback_ = 0;
+  cycles_without_heartbeat_ = 0;
+  has_old_fault_ = true;  // until its first valid state shows otherwise
+  reset_cycles_ = 0;
+  enabled_cycles_ = 0;
+}
+
+void Drive::takeFeedback() noexcept {
+  if (!feedback_) return;
+  state_ = decodeStatusWord(feedback_->status_word);
+  report_.state = state_.value_or(DriveState::kNotReady);
+  report_.has_position = true;
+  report_.position =
+      feedback_->position / (config_.sign * config_.counts_per_unit) + config_.offset;
+}
+
+void Drive::watchSilence() noexcept {
+  cycles_without_feedback_ = feedback_ ? 0 : cycles_without_feedback_ + 1;
+  ++cycles_without_heartbeat_;
+  const bool is_silent = cycles_without_feedback_ > kMaxSilentCycles ||
+                         cycles_without_heartbeat_ > heartbeat_timeout_cycles_;
+  if (is_silent) fail(Fault::kDriveSilent);
+}
+
+void Drive::watchFault(DriveGoal goal) noexcept {
+  const bool is_in_fault =
+      state_ == DriveState::kFault || state_ == DriveState::kFaultReactionActive;
+  if (state_ && !is_in_fault) has_old_fault_ = false;
+  if (!is_in_fault) return;
+  const bool may_reset = goal == DriveGoal::kEnabled && has_old_fault_;
+  if (may_reset) ++reset_cycles_;
+  const bool is_given_up = reset_cycles_ > (may_reset ? answer_timeout_cycles_ : 0);
+  if (!has_old_fault_ || is_given_up) fail(Fault::kDriveFault);
+}
+
+void Drive::watchOperation(DriveGoal goal) noexcept {
+  const bool is_running = isRunning(goal);
+  const bool is_asked_for = goal == DriveGoal::kEnabled;
+  if (is_asked_for && !is_running && enabled_cycles_ >= kSettledCycles)
+    fail(Fault::kDriveStateLost);
+  enabled_cycles_ = is_running ? std::min(enabled_cycles_ + 1, kSettledCycles) : 0;
+}
+
+void Drive::watchPosition(double velocity, double position) noexcept {
+  if (!std::isfinite(velocity) || !std::isfinite(position)) return fail(Fault::kCommandNotFinite);
+  const bool is_far = std::abs(position - report_.position) > config_.max_following_error;
+  if (feedback_ && is_far) fail(Fault::kFollowingError);
+}
+
+bool Drive::isRunning(DriveGoal goal) const noexcept {
+  return goal == DriveGoal::kEnabled && report_.fault == Fault::kNone &&
+         state_ == DriveState::kOperationEnabled;
+}
+
+std::uint16_t Drive::controlWord(DriveGoal goal) const noexcept {
+  const bool has_fault = report_.fault != Fault::kNone;
+  const bool is_resetting = goal == DriveGoal::kEnabled && has_old_fault_ && !has_fault;
+  if (is_resetting && state_ == DriveState::kFault && reset_cycles_ > 1)  // bit 7 was low before
+    return control_word::kFaultReset;
+  if (!state_) return control_word::kQuickStop;
+  return controlWordTowards(powerGoal(goal, has_fault), *state_);
+}
+
+std::int32_t Drive::velocityCounts(DriveGoal goal, double velocity, double position) noexcept {
+  if (!isRunning(goal)) {
+    velocity_counts_.reset();
+    return 0;
+  }
+  const double limit = config_.max_following_error;  // also where the measured position is old
+  const double lag = std::clamp(position - report_.position, -limit, limit);
+  return velocity_counts_.next(velocity + config_.tracking_gain_per_s * lag);
+}
+
+void Drive::fail(Fault fault) noexcept {
+  if (report_.fault == Fault::kNone) report_.fault = fault;
+}
+
+}  // namespace tactus
