@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -16,11 +17,15 @@ struct IdFilter {
 };
 
 /// One raw CAN socket, bound to one interface. Data frames by exact filters, error frames on, own
-/// frames echoed as confirmation to the monitor. One recvmmsg and one sendmmsg a cycle.
+/// frames echoed as confirmation to the monitor. One recvmmsg and one sendmmsg a cycle. Extended,
+/// remote and FD frames are kept out by the kernel already; every frame is checked all the same.
 class CanSocket {
  public:
+  /// received: ids that receive() returns. sent: ids that go out; the kernel filters echoes as it
+  /// does all frames, so without its id a frame is never confirmed and the bus taken for stalled.
   /// Throws std::system_error whose text names interface, what failed and what to do.
-  CanSocket(const std::string& interface, std::span<const IdFilter> filters);
+  CanSocket(const std::string& interface, std::span<const IdFilter> received,
+            std::span<const IdFilter> sent);
   ~CanSocket();
   CanSocket(const CanSocket&) = delete;
   CanSocket& operator=(const CanSocket&) = delete;
@@ -28,20 +33,37 @@ class CanSocket {
   /// All frames waiting (as many as the batch holds), without own echoes, error and foreign frames:
   /// these go to the monitor. One system call, never waits.
   void receive(FrameBatch& frames) noexcept;
-  /// Hands frames to the kernel if the monitor lets it. One system call, never waits.
+  /// Once a cycle: hands frames to the kernel if the monitor lets it. What is not accepted is
+  /// dropped: the next cycle has newer ones. One system call, never waits.
   void send(std::span<const CanFrame> frames) noexcept;
+  /// In place of send(): hands over a frame that does no harm, if the monitor wants a probe.
+  void probe(const CanFrame& harmless) noexcept;
 
   BusMonitor& monitor() noexcept { return monitor_; }
   const BusMonitor& monitor() const noexcept { return monitor_; }
   int descriptor() const noexcept { return descriptor_; }
 
  private:
+  struct Messages;
+
+  void handOver(std::span<const CanFrame> frames) noexcept;
+  /// True: a data frame for the caller, put into `frame`.
+  bool take(std::size_t message, CanFrame& frame) noexcept;
+  bool isExpected(const CanFrame& frame) const noexcept;
+
   int descriptor_ = -1;
   BusMonitor monitor_;
+  std::unique_ptr<Messages> messages_;  ///< all that the kernel reads and writes, allocated once
 };
 
+/// Frames that an interface queues for its controller, set by the administrator:
+/// `ip link set can0 txqueuelen 10`. Throws std::system_error.
+int transmitQueueLength(const std::string& interface);
+/// A longer one delays what follows; a cycle's frames fit.
+inline constexpr int kMaxTransmitQueue = 16;
+
 /// Held while a daemon owns an interface: a second one on it throws std::runtime_error. Freed by
-/// the kernel whenever the process ends.
+/// the kernel whenever the process ends. Holds in one network namespace, as interfaces do.
 class InterfaceLock {
  public:
   explicit InterfaceLock(const std::string& interface);

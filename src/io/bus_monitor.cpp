@@ -1,0 +1,134 @@
+#include "tactus/io/bus_monitor.h"
+
+#include <errno.h>
+#include <linux/can/error.h>
+
+#include <algorithm>
+#include <array>
+
+namespace tactus {
+namespace {
+
+constexpr std::uint8_t kPassive = CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE;
+constexpr std::uint8_t kNotPassive =
+    CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING | CAN_ERR_CRTL_ACTIVE;
+
+bool isDownError(int error_number) noexcept {
+  constexpr std::array<int, 3> kDownErrors = {ENETDOWN, ENODEV, ENXIO};
+  return std::find(kDownErrors.begin(), kDownErrors.end(), error_number) != kDownErrors.end();
+}
+
+int gravity(Fault fault) noexcept {
+  constexpr std::array kMildestFirst = {Fault::kNone,       Fault::kBusFlooded,
+                                        Fault::kBusStalled, Fault::kBusUnacknowledged,
+                                        Fault::kBusOff,     Fault::kBusDown};
+  return static_cast<int>(std::find(kMildestFirst.begin(), kMildestFirst.end(), fault) -
+                          kMildestFirst.begin());
+}
+
+/// Drivers report a missing acknowledgement as a class of its own or as the place of a violation.
+bool lacksAcknowledge(const CanFrame& error) noexcept {
+  return (error.id & CAN_ERR_ACK) != 0 ||
+         ((error.id & CAN_ERR_PROT) != 0 && error.data[3] == CAN_ERR_PROT_LOC_ACK);
+}
+
+}  // namespace
+
+void BusMonitor::onErrorFrame(const CanFrame& frame) noexcept {
+  ++counters_.error_frames;
+  if ((frame.id & CAN_ERR_CRTL) != 0) {
+    if ((frame.data[1] & kPassive) != 0)
+      is_passive_ = true;
+    else if ((frame.data[1] & kNotPassive) != 0)
+      is_passive_ = false;
+  }
+  if (lacksAcknowledge(frame)) lacks_acknowledge_ = true;
+  if (is_passive_ && lacks_acknowledge_) raise(Fault::kBusUnacknowledged);
+  if ((frame.id & (CAN_ERR_BUSOFF | CAN_ERR_RESTARTED)) != 0) {
+    raise(Fault::kBusOff);
+    unconfirmed_ = 0;  // leaving the bus empties driver and queue
+  }
+}
+
+void BusMonitor::onConfirmed(int frames) noexcept {
+  if (frames <= 0) return;
+  unconfirmed_ = std::max(0, unconfirmed_ - frames);
+  was_confirmed_ = true;
+  has_answered_ = true;
+  lacks_acknowledge_ = false;
+}
+
+void BusMonitor::onSent(int accepted, int offered) noexcept {
+  counters_.sent += static_cast<std::uint32_t>(accepted);
+  counters_.refused += static_cast<std::uint32_t>(offered - accepted);
+  unconfirmed_ += accepted;
+  if (accepted < offered) was_refused_ = true;
+  if (isDead()) cycles_to_probe_ = kProbeCycles;
+}
+
+void BusMonitor::onSendError(int error_number) noexcept { onReceiveError(error_number); }
+
+/// Whatever else a send fails with shows in onSent(); a receive fails otherwise only with EAGAIN.
+void BusMonitor::onReceiveError(int error_number) noexcept {
+  if (!isDownError(error_number)) return;
+  raise(Fault::kBusDown);
+  unconfirmed_ = 0;  // going down empties driver and queue
+}
+
+void BusMonitor::onForeignFrame() noexcept { ++counters_.foreign; }
+
+void BusMonitor::onReceived(int frames, bool batch_was_full) noexcept {
+  counters_.received += static_cast<std::uint32_t>(frames);
+  full_batches_ = batch_was_full ? full_batches_ + 1 : 0;
+}
+
+void BusMonitor::update() noexcept {
+  if (cycles_to_probe_ > 0) --cycles_to_probe_;
+  noteUnconfirmed();
+  noteFlood();
+  if (gravity(trouble_) > gravity(fault_)) {
+    if (!isDead()) cycles_to_probe_ = kProbeCycles;
+    fault_ = trouble_;
+  }
+  recover();
+  trouble_ = Fault::kNone;
+  was_refused_ = was_confirmed_ = false;
+  if (!maySend()) ++counters_.held_back;
+}
+
+void BusMonitor::raise(Fault trouble) noexcept {
+  if (gravity(trouble) > gravity(trouble_)) trouble_ = trouble;
+  has_answered_ = false;
+}
+
+void BusMonitor::noteUnconfirmed() noexcept {
+  const bool is_stuck = unconfirmed_ > 0 || was_refused_;
+  stuck_cycles_ = is_stuck ? std::min(stuck_cycles_ + 1, kMaxUnconfirmedCycles + 1) : 0;
+  if (isDead() || !is_stuck) return;
+  if (is_passive_ && unconfirmed_ > 0) raise(Fault::kBusUnacknowledged);
+  if (stuck_cycles_ > kMaxUnconfirmedCycles) raise(Fault::kBusStalled);
+}
+
+void BusMonitor::noteFlood() noexcept {
+  full_batches_ = std::min(full_batches_, kMaxFullBatches);
+  if (full_batches_ < kMaxFullBatches) return;
+  if (gravity(Fault::kBusFlooded) > gravity(trouble_)) trouble_ = Fault::kBusFlooded;
+}
+
+void BusMonitor::recover() noexcept {
+  if (fault_ == Fault::kNone) return;
+  const bool is_disturbed = trouble_ != Fault::kNone || (isDead() && was_confirmed_);
+  calm_cycles_ = is_disturbed ? 0 : calm_cycles_ + 1;
+  const bool is_answered = isDead() ? has_answered_ : unconfirmed_ == 0;
+  if (!is_answered) calm_cycles_ = 0;
+  if (calm_cycles_ >= kCalmCycles) rearm();
+}
+
+/// What was not confirmed by now was lost, or never will be.
+void BusMonitor::rearm() noexcept {
+  fault_ = Fault::kNone;
+  unconfirmed_ = stuck_cycles_ = calm_cycles_ = 0;
+  is_passive_ = lacks_acknowledge_ = has_answered_ = false;
+}
+
+}  // namespace tactus

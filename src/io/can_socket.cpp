@@ -1,0 +1,252 @@
+#include "tactus/io/can_socket.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace tactus {
+namespace {
+
+/// In bytes of kernel memory, which the kernel doubles: about twenty frames. A cycle has fewer.
+constexpr int kSendBuffer = 8192;
+
+[[noreturn]] void fail(int error_number, const std::string& interface, const std::string& problem) {
+  throw std::system_error(error_number, std::system_category(), interface + ": " + problem);
+}
+
+/// Closes what a failing constructor has opened.
+class Descriptor {
+ public:
+  explicit Descriptor(int value) : value_(value) {}
+  ~Descriptor() {
+    if (value_ >= 0) close(value_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return value_; }
+  int release() { return std::exchange(value_, -1); }
+
+ private:
+  int value_;
+};
+
+ifreq requestFor(const std::string& interface) {
+  ifreq request{};
+  if (interface.empty() || interface.size() >= sizeof(request.ifr_name))
+    fail(EINVAL, interface, "is no name of a network interface, expected one as can0");
+  std::memcpy(request.ifr_name, interface.data(), interface.size());
+  return request;
+}
+
+/// Asks the kernel for one property of an interface, by a SIOCGIF... request.
+ifreq ask(const std::string& interface, unsigned long what) {
+  ifreq request = requestFor(interface);
+  const Descriptor any(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (ioctl(any.get(), what, &request) != 0)
+    fail(errno, interface,
+         "no such network interface; `ip link` lists them, and `ip link set " + interface +
+             " up type can bitrate 1000000` brings one up");
+  return request;
+}
+
+template <typename Value>
+void setOption(int descriptor, const std::string& interface, int option, const Value* value,
+               std::size_t count, const char* name) {
+  if (setsockopt(descriptor, SOL_CAN_RAW, option, value,
+                 static_cast<socklen_t>(count * sizeof(Value))) != 0)
+    fail(errno, interface, std::string("the kernel refuses the socket option ") + name);
+}
+
+/// Mask bits beside the id's keep extended and remote frames out of the kernel's match.
+void setFilters(int descriptor, const std::string& interface, std::span<const IdFilter> received,
+                std::span<const IdFilter> sent) {
+  std::vector<can_filter> filters;
+  for (const auto& ids : {received, sent}) {
+    for (const IdFilter& ours : ids)
+      filters.push_back(
+          {ours.id & CAN_SFF_MASK, (ours.mask & CAN_SFF_MASK) | CAN_EFF_FLAG | CAN_RTR_FLAG});
+  }
+  setOption(descriptor, interface, CAN_RAW_FILTER, filters.data(), filters.size(),
+            "CAN_RAW_FILTER");
+}
+
+void setOptions(int descriptor, const std::string& interface) {
+  const can_err_mask_t all_errors = CAN_ERR_MASK;
+  setOption(descriptor, interface, CAN_RAW_ERR_FILTER, &all_errors, 1, "CAN_RAW_ERR_FILTER");
+  const int on = 1;
+  setOption(descriptor, interface, CAN_RAW_RECV_OWN_MSGS, &on, 1, "CAN_RAW_RECV_OWN_MSGS");
+  if (setsockopt(descriptor, SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof(kSendBuffer)) != 0)
+    fail(errno, interface, "the kernel refuses a short send buffer (SO_SNDBUF)");
+}
+
+void bindTo(int descriptor, const std::string& interface) {
+  const ifreq flags = ask(interface, SIOCGIFFLAGS);
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = ask(interface, SIOCGIFINDEX).ifr_ifindex;
+  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
+    fail(errno, interface, "is no CAN interface");
+  if ((flags.ifr_flags & IFF_UP) == 0)
+    fail(ENETDOWN, interface, "the interface is down; `ip link set " + interface + " up`");
+}
+
+CanFrame fromKernel(const can_frame& raw) noexcept {
+  CanFrame frame;
+  frame.extended = (raw.can_id & CAN_EFF_FLAG) != 0;
+  frame.id = raw.can_id & (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK);
+  if ((raw.can_id & CAN_RTR_FLAG) != 0) frame.kind = FrameKind::kRemote;
+  if ((raw.can_id & CAN_ERR_FLAG) != 0) {
+    frame.kind = FrameKind::kError;
+    frame.id = raw.can_id & CAN_ERR_MASK;
+  }
+  frame.size = std::min<std::uint8_t>(raw.len, CAN_MAX_DLEN);
+  std::copy_n(raw.data, CAN_MAX_DLEN, frame.data.begin());
+  return frame;
+}
+
+can_frame toKernel(const CanFrame& frame) noexcept {
+  can_frame raw{};
+  raw.can_id = frame.id & CAN_SFF_MASK;
+  raw.len = std::min<std::uint8_t>(frame.size, CAN_MAX_DLEN);
+  std::copy_n(frame.data.begin(), raw.len, raw.data);
+  return raw;
+}
+
+}  // namespace
+
+struct CanSocket::Messages {
+  static constexpr std::size_t kCount = FrameBatch::kCapacity;
+
+  explicit Messages(std::span<const IdFilter> filters) : received(filters.begin(), filters.end()) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+      parts[i] = {&frames[i], sizeof(can_frame)};
+      headers[i].msg_hdr.msg_iov = &parts[i];
+      headers[i].msg_hdr.msg_iovlen = 1;
+    }
+  }
+
+  std::array<can_frame, kCount> frames{};
+  std::array<iovec, kCount> parts{};
+  std::array<mmsghdr, kCount> headers{};
+  std::vector<IdFilter> received;
+};
+
+CanSocket::CanSocket(const std::string& interface, std::span<const IdFilter> received,
+                     std::span<const IdFilter> sent)
+    : messages_(std::make_unique<Messages>(received)) {
+  ask(interface, SIOCGIFINDEX);  // the plainer message, if there is neither interface nor CAN
+  Descriptor opened(socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
+  if (opened.get() < 0)
+    fail(errno, interface, "this kernel opens no CAN sockets; `modprobe can_raw` may help");
+  setFilters(opened.get(), interface, received, sent);
+  setOptions(opened.get(), interface);
+  bindTo(opened.get(), interface);
+  descriptor_ = opened.release();
+}
+
+CanSocket::~CanSocket() { close(descriptor_); }
+
+void CanSocket::receive(FrameBatch& frames) noexcept {
+  frames.clear();
+  const int count =
+      recvmmsg(descriptor_, messages_->headers.data(), Messages::kCount, MSG_DONTWAIT, nullptr);
+  if (count < 0) {
+    monitor_.onReceiveError(errno);
+    monitor_.onReceived(0, false);
+    return;
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    CanFrame frame;
+    if (take(i, frame)) frames.push(frame);
+  }
+  monitor_.onReceived(static_cast<int>(frames.size()), count == Messages::kCount);
+}
+
+bool CanSocket::take(std::size_t message, CanFrame& frame) noexcept {
+  const mmsghdr& header = messages_->headers[message];
+  const bool is_whole = header.msg_len == CAN_MTU && (header.msg_hdr.msg_flags & MSG_TRUNC) == 0;
+  frame = fromKernel(messages_->frames[message]);
+  if (!is_whole) {
+    monitor_.onForeignFrame();
+  } else if ((header.msg_hdr.msg_flags & MSG_CONFIRM) != 0) {
+    monitor_.onConfirmed(1);
+  } else if (frame.kind == FrameKind::kError) {
+    monitor_.onErrorFrame(frame);
+  } else if (isExpected(frame)) {
+    return true;
+  } else {
+    monitor_.onForeignFrame();
+  }
+  return false;
+}
+
+/// What others send by the ids of our own frames passes the kernel's filters, but not this.
+bool CanSocket::isExpected(const CanFrame& frame) const noexcept {
+  if (frame.extended || frame.kind != FrameKind::kData) return false;
+  return std::any_of(messages_->received.begin(), messages_->received.end(),
+                     [&frame](const IdFilter& filter) {
+                       return ((frame.id ^ filter.id) & filter.mask & CAN_SFF_MASK) == 0;
+                     });
+}
+
+void CanSocket::send(std::span<const CanFrame> frames) noexcept {
+  if (monitor_.maySend() && !frames.empty()) handOver(frames);
+}
+
+void CanSocket::probe(const CanFrame& harmless) noexcept {
+  if (monitor_.mayProbe()) handOver({&harmless, 1});
+}
+
+void CanSocket::handOver(std::span<const CanFrame> frames) noexcept {
+  const std::size_t count = std::min(frames.size(), Messages::kCount);
+  for (std::size_t i = 0; i < count; ++i) {
+    messages_->frames[i] = toKernel(frames[i]);
+    messages_->headers[i].msg_hdr.msg_flags = 0;
+  }
+  const int accepted =
+      sendmmsg(descriptor_, messages_->headers.data(), static_cast<unsigned>(count), MSG_DONTWAIT);
+  if (accepted < 0) monitor_.onSendError(errno);
+  monitor_.onSent(std::max(0, accepted), static_cast<int>(frames.size()));
+}
+
+int transmitQueueLength(const std::string& interface) {
+  return ask(interface, SIOCGIFTXQLEN).ifr_qlen;
+}
+
+/// A name in the abstract name space of unix sockets, which the kernel gives to one socket at a
+/// time: no file to be left behind, no permission to be asked.
+InterfaceLock::InterfaceLock(const std::string& interface) {
+  requestFor(interface);
+  Descriptor opened(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (opened.get() < 0) fail(errno, interface, "cannot open a unix socket to lock it");
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = "tactus-" + interface;
+  std::memcpy(address.sun_path + 1, name.data(), name.size());
+  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  if (bind(opened.get(), reinterpret_cast<const sockaddr*>(&address), length) != 0) {
+    if (errno != EADDRINUSE) fail(errno, interface, "cannot be locked");
+    throw std::runtime_error(interface +
+                             ": another tactusd already runs on this interface; stop it first");
+  }
+  descriptor_ = opened.release();
+}
+
+InterfaceLock::~InterfaceLock() { close(descriptor_); }
+
+}  // namespace tactus
