@@ -22,7 +22,8 @@ SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config)
 
 void SimulatedModule::update(const Wrench4& wrench) noexcept {
   Wrench4 filtered;
-  for (int i = 0; i < 4; ++i) filtered[i] = filters_[i].update(wrench[i]);
+  for (int i = 0; i < 4; ++i)
+    filtered[i] = config_.filtered ? filters_[i].update(wrench[i]) : wrench[i];
   if (steps_to_sample_-- > 0) return;
   steps_to_sample_ = steps_a_sample_ - 1;
   const Wrench4 measured = measure(filtered);
@@ -32,12 +33,14 @@ void SimulatedModule::update(const Wrench4& wrench) noexcept {
 Wrench4 SimulatedModule::measure(const Wrench4& wrench) noexcept {
   if (!config_.quantised && config_.noise_N == 0.0) return wrench;
   Eigen::Matrix<double, 8, 1> channels = channels_from_wrench_ * wrench;
-  for (double& force_N : channels) {
+  for (int i = 0; i < 8; ++i) {
+    double& force_N = channels[i];
     if (config_.noise_N > 0.0) force_N += config_.noise_N * normal_(random_);
     if (!config_.quantised) continue;
     const double counts =
         std::clamp(std::round(force_N * config_.counts_per_N), -kMaxCounts, kMaxCounts);
     force_N = counts / config_.counts_per_N;
+    counts_[i] = static_cast<std::int32_t>(counts);
   }
   return config_.calibration * channels;
 }

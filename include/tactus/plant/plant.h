@@ -1,14 +1,17 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "tactus/control/controller_config.h"
 #include "tactus/io/can_frame.h"
 #include "tactus/io/hardware_config.h"
+#include "tactus/plant/plant_bus.h"
+#include "tactus/plant/slave_drive.h"
 #include "tactus/plant/trouble.h"
+#include "tactus/plant/troubles.h"
 #include "tactus/sim/plant_config.h"
+#include "tactus/sim/simulated_robot.h"
 
 namespace tactus {
 
@@ -16,14 +19,21 @@ namespace tactus {
 struct PlantCounters {
   std::uint64_t stale_setpoints_applied = 0;  ///< older than two periods when the drive took them
   std::uint64_t frames_refused = 0;           ///< by a full transmit queue
+  std::uint64_t frames_not_taken = 0;         ///< lost because take() came too late
 };
 
 /// The robot as its buses see it: drives (CiA 402 slaves of our own making, apart from the master's
 /// code), tactile module and obstacles, in one world. Every bus takes its time: a frame lasts as
 /// many bits as it has, the lowest id goes first, queues are short. Knows no socket and no clock:
 /// time is an argument, in ns since the plant was switched on.
+///
+/// The world moves in steps of the period. Its phase follows the other side: a step comes 0.8
+/// periods after the first SYNC (and after the first one that follows a long silence), so that a
+/// sample arrives before the other side wakes next. Obstacles and troubles count their time from
+/// the moment the first drive was enabled.
 class Plant {
  public:
+  /// Throws std::invalid_argument if the period does not fit the tactile module's.
   Plant(const ControllerConfig& robot, const PlantConfig& plant, const HardwareConfig& hardware,
         double period_s, std::vector<Trouble> troubles);
 
@@ -34,13 +44,64 @@ class Plant {
   void advance(std::int64_t t_ns) noexcept;
 
   /// Frames that have been on the bus since the last call, to be handed to the other side: of
-  /// drives and module, and error frames; not those of the other side.
+  /// drives and module, and error frames; not those of the other side. Replaces what `frames` held.
   void take(int bus, FrameBatch& frames) noexcept;
 
   /// When something next happens: nothing needs advance() before.
   std::int64_t nextEvent_ns() const noexcept;
 
   bool emergencyStop(std::int64_t t_ns) const noexcept;  ///< as scripted
+
+  PlantCounters counters() const noexcept;
+  int buses() const noexcept { return static_cast<int>(links_.size()); }
+  const SlaveDrive& drive(int joint) const noexcept { return drives_[joint].drive; }
+  const PlantBus& bus(int bus) const noexcept { return links_[bus].bus; }
+  const SimulatedRobot& world() const noexcept { return world_; }
+  bool wasEnabled() const noexcept { return script_.hasStarted(); }  ///< a drive, ever
+
+ private:
+  /// A bus with what goes wrong on it, and what it has for the other side.
+  struct Link {
+    PlantBus bus;
+    FrameTroubles troubles;
+    FrameBatch inbox;
+  };
+  struct Node {
+    SlaveDrive drive;
+    int bus;
+    int number;  ///< on the bus, from 1
+    std::uint32_t id;
+    bool is_failing = false;
+  };
+
+  void step(std::int64_t t_ns) noexcept;
+  void applyTroubles(std::int64_t t_ns) noexcept;
+  void applyBusTroubles(int bus, std::int64_t t_ns) noexcept;
+  void moveBus(int bus, std::int64_t t_ns) noexcept;
+  void deliver(int bus, const BusDelivery& delivery, std::int64_t t_ns) noexcept;
+  void hearSync(std::int64_t t_ns) noexcept;
+  void give(Link& link, const CanFrame& frame) noexcept;
+  void collect(Node& node, std::int64_t t_ns) noexcept;
+  void moveWorld(std::int64_t t_ns) noexcept;
+  void sendSample(std::int64_t t_ns) noexcept;
+  void noticeEnabling(std::int64_t t_ns) noexcept;
+
+  HardwareConfig hardware_;
+  double period_s_;
+  std::int64_t period_ns_;
+  SimulatedRobot world_;
+  RobotInput seen_;  ///< what encoders and module see
+  JointVector velocity_;
+  TroubleScript script_;
+  std::vector<Link> links_;   ///< one a bus
+  std::vector<Node> drives_;  ///< one a joint
+  int module_number_ = 0;     ///< the tactile module's on its bus
+  std::uint32_t sample_sequence_ = 0;
+  std::int64_t now_ns_ = 0;
+  std::int64_t next_move_ns_;
+  std::int64_t next_trouble_ns_ = kNever_ns;
+  std::int64_t last_sync_ns_;
+  std::uint64_t frames_not_taken_ = 0;
 };
 
 }  // namespace tactus

@@ -36,6 +36,7 @@ struct SimulatedModuleConfig {
   Eigen::Matrix<double, 4, 8> calibration = Eigen::Matrix<double, 4, 8>::Zero();
   double counts_per_N = 100000.0;  ///< of the 24-bit channels
   bool quantised = true;
+  bool filtered = true;  ///< false: a module that leaves the filter to its reader
   double noise_N = 0.0;  ///< standard deviation of one channel
   std::uint64_t seed = 1;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <random>
 
 #include "tactus/control/robot.h"
@@ -22,6 +23,8 @@ class SimulatedModule {
   void update(const Wrench4& wrench) noexcept;
 
   const TactileSample& sample() const noexcept { return sample_; }
+  /// The channels of the sample; zero unless quantised.
+  const std::array<std::int32_t, 8>& counts() const noexcept { return counts_; }
 
  private:
   Wrench4 measure(const Wrench4& wrench) noexcept;
@@ -34,6 +37,7 @@ class SimulatedModule {
   int steps_a_sample_;
   int steps_to_sample_ = 0;
   TactileSample sample_;
+  std::array<std::int32_t, 8> counts_{};
 };
 
 }  // namespace tactus

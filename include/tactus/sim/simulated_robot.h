@@ -26,6 +26,10 @@ class SimulatedRobot final : public Robot {
   Vector3 toolPosition() const noexcept { return framePosition(pose_, chain_.tip()); }
   /// Norm of the summed contact force before the module's filter, N.
   double trueForce_N() const noexcept { return true_force_N_; }
+  /// Nullptr on a robot without tactile module.
+  const SimulatedModule* module() const noexcept { return module_ ? &*module_ : nullptr; }
+  /// Obstacles appear and vanish by a time that counts from now.
+  void restartTime() noexcept { step_ = 0; }
 
  private:
   void moveArm(const JointVector& velocity_setpoint) noexcept;

@@ -1,0 +1,209 @@
+#include "tactus/plant/plant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tactus/plant/module_frames.h"
+
+namespace tactus {
+namespace {
+
+using Kind = Trouble::Kind;
+
+constexpr std::uint32_t kSyncId = 0x80;
+constexpr double kFirstMove_periods = 0.25;
+constexpr double kMoveAfterSync_periods = 0.8;
+constexpr std::int64_t kLongSilence_periods = 100;
+
+/// The module on the bus has 24 bits, and filters only if nobody behind it does.
+PlantConfig withModuleOf(const HardwareConfig& hardware, PlantConfig plant) {
+  plant.module.quantised = true;
+  if (!hardware.tactile) return plant;
+  plant.module.sample_period_s = hardware.tactile->sample_period_s;
+  plant.module.filtered = !hardware.tactile->filter_cutoff_hz;
+  return plant;
+}
+
+}  // namespace
+
+Plant::Plant(const ControllerConfig& robot, const PlantConfig& plant,
+             const HardwareConfig& hardware, double period_s, std::vector<Trouble> troubles)
+    : hardware_(hardware),
+      period_s_(period_s),
+      period_ns_(std::llround(1e9 * period_s)),
+      world_(robot, withModuleOf(hardware, plant), period_s),
+      velocity_(JointVector::Zero(robot.q_start.size())),
+      script_(std::move(troubles)),
+      next_move_ns_(std::llround(1e9 * kFirstMove_periods * period_s)),
+      last_sync_ns_(-(kLongSilence_periods + 1) * period_ns_) {
+  std::vector<int> nodes(hardware_.buses.size(), 1);
+  for (const DriveConfig& config : hardware_.drives)
+    drives_.push_back({SlaveDrive(config, period_s), config.bus, nodes[config.bus]++,
+                       static_cast<std::uint32_t>(config.node_id)});
+  if (hardware_.tactile) module_number_ = nodes[hardware_.tactile->bus]++;
+  for (int bus = 0; bus < static_cast<int>(nodes.size()); ++bus)
+    links_.push_back(
+        {PlantBus(hardware_.buses[bus].bit_rate_per_s, nodes[bus]), FrameTroubles(bus), {}});
+  world_.read(seen_);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    drives_[i].drive.setPosition(seen_.q_measured[hardware_.drives[i].joint]);
+    drives_[i].drive.setPowered(true, 0);
+  }
+}
+
+void Plant::send(int bus, const CanFrame& frame, std::int64_t t_ns) noexcept {
+  if (bus < 0 || bus >= buses() || frame.kind == FrameKind::kError || frame.size > 8) return;
+  if (t_ns > now_ns_) advance(t_ns);
+  links_[bus].bus.send(PlantBus::kOtherSide, frame, now_ns_);
+}
+
+void Plant::advance(std::int64_t t_ns) noexcept {
+  for (std::int64_t next_ns = nextEvent_ns(); next_ns <= t_ns; next_ns = nextEvent_ns()) {
+    now_ns_ = std::max(now_ns_, next_ns);
+    step(now_ns_);
+  }
+  now_ns_ = std::max(now_ns_, t_ns);
+}
+
+void Plant::take(int bus, FrameBatch& frames) noexcept {
+  frames = links_[bus].inbox;
+  links_[bus].inbox.clear();
+}
+
+std::int64_t Plant::nextEvent_ns() const noexcept {
+  std::int64_t next_ns = std::min(next_move_ns_, next_trouble_ns_);
+  for (const Link& link : links_)
+    next_ns = std::min({next_ns, link.bus.nextEvent_ns(), link.troubles.nextDelivery_ns()});
+  for (const Node& node : drives_) next_ns = std::min(next_ns, node.drive.nextEvent_ns());
+  return next_ns;
+}
+
+bool Plant::emergencyStop(std::int64_t t_ns) const noexcept {
+  for (int bus = 0; bus < kMaxBuses; ++bus)  // the line belongs to no bus
+    if (script_.isActive(Kind::kEmergencyStop, bus, 0, t_ns)) return true;
+  return false;
+}
+
+PlantCounters Plant::counters() const noexcept {
+  PlantCounters counters;
+  counters.frames_not_taken = frames_not_taken_;
+  for (const Link& link : links_) counters.frames_refused += link.bus.refused();
+  for (const Node& node : drives_) counters.stale_setpoints_applied += node.drive.staleSetpoints();
+  return counters;
+}
+
+void Plant::step(std::int64_t t_ns) noexcept {
+  if (t_ns >= next_trouble_ns_) applyTroubles(t_ns);
+  for (int bus = 0; bus < buses(); ++bus) moveBus(bus, t_ns);
+  for (Node& node : drives_) {
+    if (t_ns < node.drive.nextEvent_ns()) continue;
+    node.drive.update(t_ns);
+    collect(node, t_ns);
+  }
+  if (t_ns >= next_move_ns_) moveWorld(t_ns);
+}
+
+void Plant::applyTroubles(std::int64_t t_ns) noexcept {
+  for (int bus = 0; bus < buses(); ++bus) applyBusTroubles(bus, t_ns);
+  for (Node& node : drives_) {
+    const bool is_failing = script_.isActive(Kind::kDriveFault, node.bus, node.id, t_ns);
+    if (is_failing != node.is_failing) node.drive.setFailing(is_failing);
+    node.is_failing = is_failing;
+    collect(node, t_ns);
+  }
+  next_trouble_ns_ = script_.nextChange_ns(t_ns);
+}
+
+void Plant::applyBusTroubles(int bus, std::int64_t t_ns) noexcept {
+  Link& link = links_[bus];
+  link.troubles.release(t_ns);
+  const bool is_powered = !script_.isActive(Kind::kPowerCut, bus, 0, t_ns);
+  if (is_powered != link.bus.isPowered()) {
+    link.bus.setPowered(is_powered, t_ns);
+    for (Node& node : drives_)
+      if (node.bus == bus) node.drive.setPowered(is_powered, t_ns);
+  }
+  const bool is_off = script_.isActive(Kind::kBusOff, bus, 0, t_ns);
+  if (is_off == link.bus.isOtherSideOff()) return;
+  link.bus.setOtherSideOff(is_off, t_ns);
+  give(link, is_off ? busOffError() : busRestartedError());
+}
+
+void Plant::moveBus(int bus, std::int64_t t_ns) noexcept {
+  Link& link = links_[bus];
+  if (link.bus.nextEvent_ns() <= t_ns)
+    if (const auto delivery = link.bus.step()) link.troubles.add(*delivery, script_, t_ns);
+  while (link.troubles.nextDelivery_ns() <= t_ns) deliver(bus, link.troubles.pop(), t_ns);
+}
+
+void Plant::deliver(int bus, const BusDelivery& delivery, std::int64_t t_ns) noexcept {
+  Link& link = links_[bus];
+  if (delivery.sender != PlantBus::kOtherSide) {
+    if (!link.bus.isOtherSideOff()) give(link, delivery.item.frame);
+    return;
+  }
+  const CanFrame& frame = delivery.item.frame;
+  if (frame.id == kSyncId && !frame.extended && frame.kind == FrameKind::kData) hearSync(t_ns);
+  for (Node& node : drives_) {
+    if (node.bus != bus) continue;
+    node.drive.receive(delivery.item, t_ns);
+    collect(node, t_ns);
+  }
+  noticeEnabling(t_ns);
+}
+
+void Plant::hearSync(std::int64_t t_ns) noexcept {
+  if (t_ns - last_sync_ns_ > kLongSilence_periods * period_ns_)
+    next_move_ns_ = t_ns + std::llround(1e9 * kMoveAfterSync_periods * period_s_);
+  last_sync_ns_ = t_ns;
+}
+
+void Plant::give(Link& link, const CanFrame& frame) noexcept {
+  if (!link.inbox.push(frame)) ++frames_not_taken_;
+}
+
+void Plant::collect(Node& node, std::int64_t t_ns) noexcept {
+  for (const CanFrame& frame : node.drive.outbox())
+    links_[node.bus].bus.send(node.number, frame, t_ns);
+  node.drive.outbox().clear();
+}
+
+void Plant::moveWorld(std::int64_t t_ns) noexcept {
+  next_move_ns_ = t_ns + period_ns_;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    drives_[i].drive.move(period_s_);
+    velocity_[hardware_.drives[i].joint] = drives_[i].drive.velocity();
+  }
+  world_.write(velocity_);
+  world_.read(seen_);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    drives_[i].drive.setPosition(seen_.q_measured[hardware_.drives[i].joint]);
+    collect(drives_[i], t_ns);
+  }
+  sendSample(t_ns);
+}
+
+void Plant::sendSample(std::int64_t t_ns) noexcept {
+  if (!hardware_.tactile || seen_.tactile.sequence == sample_sequence_) return;
+  sample_sequence_ = seen_.tactile.sequence;
+  PlantBus& bus = links_[hardware_.tactile->bus].bus;
+  if (!bus.isPowered()) return;
+  for (const CanFrame& frame :
+       moduleFrames(hardware_.tactile->first_id, static_cast<std::uint8_t>(sample_sequence_),
+                    world_.module()->counts(), false))
+    bus.send(module_number_, frame, t_ns);
+}
+
+void Plant::noticeEnabling(std::int64_t t_ns) noexcept {
+  if (script_.hasStarted()) return;
+  const bool is_enabled = std::any_of(drives_.begin(), drives_.end(), [](const Node& node) {
+    return node.drive.powerState() == PowerState::kOperationEnabled;
+  });
+  if (!is_enabled) return;
+  world_.restartTime();
+  script_.start(t_ns);
+  applyTroubles(t_ns);
+}
+
+}  // namespace tactus

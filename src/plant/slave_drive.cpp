@@ -1,0 +1,265 @@
+#include "tactus/plant/slave_drive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/plant/sdo_server.h"
+#include "tactus/plant/slave_pdo.h"
+
+namespace tactus {
+namespace {
+
+// Error codes of CiA 301 and 402.
+constexpr std::uint16_t kOverCurrent = 0x2310;
+constexpr std::uint16_t kCommunication = 0x8100;
+constexpr std::uint16_t kHeartbeatLost = 0x8130;
+constexpr std::uint16_t kPdoTooShort = 0x8210;
+constexpr std::uint16_t kSyncLost = 0x8700;
+
+constexpr std::uint32_t kNoStatus = 0xFFFF'FFFF;
+constexpr std::int64_t kMillisecond_ns = 1'000'000;
+
+CanFrame frameOf(std::uint32_t id, std::uint8_t size) {
+  CanFrame frame;
+  frame.id = id;
+  frame.size = size;
+  return frame;
+}
+
+}  // namespace
+
+SlaveDrive::SlaveDrive(const DriveConfig& config, double period_s)
+    : config_(config),
+      max_setpoint_age_ns_(std::llround(2e9 * period_s)),
+      objects_(config.node_id),
+      axis_(config) {}
+
+void SlaveDrive::setPowered(bool is_on, std::int64_t t_ns) noexcept {
+  axis_.setPowered(false, objects_);
+  if (is_on) {
+    restart(0xFFFF, t_ns);
+    return;
+  }
+  nmt_ = NodeState::kOff;
+  outbox_.clear();
+  has_latched_rpdo_ = false;
+  boot_end_ns_ = next_heartbeat_ns_ = master_deadline_ns_ = kNever_ns;
+}
+
+void SlaveDrive::setFailing(bool is_failing) noexcept {
+  is_failing_ = is_failing;
+  if (is_failing) fail(kOverCurrent);
+  sendTpdoOnChange();
+}
+
+void SlaveDrive::receive(const QueuedFrame& item, std::int64_t t_ns) noexcept {
+  const CanFrame& frame = item.frame;
+  if (frame.kind != FrameKind::kData || frame.extended) return;
+  if (nmt_ == NodeState::kOff || nmt_ == NodeState::kInitialising) return;
+  const std::uint32_t master = (objects_.get(0x1016, 1) >> 16) & 0x7F;
+  if (frame.id == 0) onNmt(frame, t_ns);
+  if (frame.id == objects_.get(0x1005)) onSync(t_ns);
+  if (frame.id == idFrom(0x600)) onSdo(frame, t_ns);
+  if (frame.id == pdoId(objects_, kReceivePdo)) onRpdo(item, t_ns);
+  if (frame.id == 0x700 + master && frame.size == 1 && masterTimeout_ns() > 0)
+    master_deadline_ns_ = t_ns + masterTimeout_ns();
+  sendTpdoOnChange();
+}
+
+void SlaveDrive::update(std::int64_t t_ns) noexcept {
+  if (t_ns >= boot_end_ns_) finishBoot();
+  if (t_ns >= next_heartbeat_ns_) {
+    sendNmtState(static_cast<std::uint8_t>(nmt_));
+    next_heartbeat_ns_ = t_ns + heartbeatPeriod_ns();
+  }
+  if (t_ns >= master_deadline_ns_) {
+    master_deadline_ns_ = kNever_ns;
+    fail(kHeartbeatLost);
+    if (nmt_ == NodeState::kOperational) enter(NodeState::kPreOperational);  // default of 1029
+  }
+  if (t_ns >= syncDeadline_ns()) fail(kSyncLost);
+  sendTpdoOnChange();
+}
+
+std::int64_t SlaveDrive::nextEvent_ns() const noexcept {
+  return std::min({boot_end_ns_, next_heartbeat_ns_, master_deadline_ns_, syncDeadline_ns()});
+}
+
+void SlaveDrive::move(double dt_s) noexcept {
+  axis_.move(dt_s, objects_);
+  sendTpdoOnChange();
+}
+
+bool SlaveDrive::isConnected() const noexcept {
+  return nmt_ == NodeState::kPreOperational || nmt_ == NodeState::kOperational;
+}
+
+std::uint32_t SlaveDrive::idFrom(std::uint32_t function) const noexcept {
+  return function + static_cast<std::uint32_t>(config_.node_id);
+}
+
+void SlaveDrive::onNmt(const CanFrame& frame, std::int64_t t_ns) noexcept {
+  if (frame.size != 2 || (frame.data[1] != 0 && frame.data[1] != config_.node_id)) return;
+  switch (frame.data[0]) {
+    case 1:
+      return enter(NodeState::kOperational);
+    case 2:
+      return enter(NodeState::kStopped);
+    case 128:
+      return enter(NodeState::kPreOperational);
+    case 129:  // the whole node
+      axis_.setPowered(false, objects_);
+      return restart(0xFFFF, t_ns);
+    case 130:  // communication only
+      return restart(0x1FFF, t_ns);
+    default:
+      return;
+  }
+}
+
+void SlaveDrive::enter(NodeState state) noexcept {
+  if (nmt_ == NodeState::kOperational && state != nmt_) {
+    has_latched_rpdo_ = false;
+    if (axis_.state() == PowerState::kOperationEnabled) fail(kCommunication);
+  }
+  if (nmt_ != NodeState::kOperational) sent_status_ = kNoStatus;
+  nmt_ = state;
+}
+
+void SlaveDrive::restart(std::uint16_t last_index, std::int64_t t_ns) noexcept {
+  enter(NodeState::kInitialising);
+  const std::uint32_t position = objects_.get(0x6064);  // the encoder is absolute
+  objects_.reset(0, last_index);
+  objects_.set(0x6064, 0, position);
+  master_deadline_ns_ = next_heartbeat_ns_ = kNever_ns;
+  boot_end_ns_ = t_ns + kBootTime_ns;
+}
+
+void SlaveDrive::finishBoot() noexcept {
+  boot_end_ns_ = kNever_ns;
+  sendNmtState(0);
+  enter(NodeState::kPreOperational);
+  if (axis_.state() == PowerState::kNotReadyToSwitchOn) axis_.setPowered(true, objects_);
+  if (is_failing_) fail(kOverCurrent);
+}
+
+void SlaveDrive::onSdo(const CanFrame& frame, std::int64_t t_ns) noexcept {
+  if (!isConnected()) return;
+  const std::int64_t old_period_ns = heartbeatPeriod_ns();
+  const std::uint32_t old_consumer = objects_.get(0x1016, 1);
+  CanFrame response = frameOf(idFrom(0x580), 8);
+  if (!answerSdo(frame, objects_, response)) return;
+  outbox_.push(response);
+  if (objects_.get(0x1016, 1) != old_consumer) master_deadline_ns_ = kNever_ns;
+  if (heartbeatPeriod_ns() != old_period_ns)
+    next_heartbeat_ns_ = heartbeatPeriod_ns() == 0 ? kNever_ns : t_ns + heartbeatPeriod_ns();
+  obey(t_ns);
+}
+
+void SlaveDrive::onRpdo(const QueuedFrame& item, std::int64_t t_ns) noexcept {
+  if (nmt_ != NodeState::kOperational) return;
+  if (item.frame.size < pdoBytes(objects_, kReceivePdo)) {
+    sendEmergency(kPdoTooShort);
+    return;
+  }
+  const bool is_synchronous = objects_.get(0x1400, 2) <= 240;
+  if (!is_synchronous) {
+    applyRpdo(item, t_ns);
+    return;
+  }
+  latched_rpdo_ = item;
+  has_latched_rpdo_ = true;
+}
+
+void SlaveDrive::onSync(std::int64_t t_ns) noexcept {
+  last_sync_ns_ = t_ns;
+  if (nmt_ != NodeState::kOperational) return;
+  sendTpdoAtSync();  // what was sampled at the SYNC, before the setpoint takes effect
+  if (has_latched_rpdo_) applyRpdo(latched_rpdo_, t_ns);
+  has_latched_rpdo_ = false;
+}
+
+void SlaveDrive::applyRpdo(const QueuedFrame& item, std::int64_t t_ns) noexcept {
+  unpackRpdo(item.frame, objects_);
+  obey(t_ns);
+  const bool is_stale = t_ns - item.sent_ns > max_setpoint_age_ns_;
+  if (is_stale && axis_.state() == PowerState::kOperationEnabled) ++stale_setpoints_;
+}
+
+void SlaveDrive::obey(std::int64_t t_ns) noexcept {
+  const PowerState before = axis_.state();
+  const bool was_reset = axis_.obey(objects_, !is_failing_);
+  if (was_reset) {
+    objects_.set(0x603F, 0, 0);
+    objects_.set(0x1001, 0, 0);
+    sendEmergency(0);
+  }
+  if (axis_.state() == PowerState::kOperationEnabled && before != axis_.state())
+    last_sync_ns_ = std::max(last_sync_ns_, t_ns);
+}
+
+void SlaveDrive::fail(std::uint16_t error_code) noexcept {
+  if (!axis_.fail(objects_)) return;
+  const bool is_communication = error_code >> 12 == 8;
+  objects_.set(0x603F, 0, error_code);
+  objects_.set(0x1001, 0, is_communication ? 0x11 : 0x01);
+  sendEmergency(error_code);
+}
+
+std::int64_t SlaveDrive::masterTimeout_ns() const noexcept {
+  const std::uint32_t consumer = objects_.get(0x1016, 1);
+  const bool names_node = ((consumer >> 16) & 0x7F) != 0;
+  return names_node ? (consumer & 0xFFFF) * kMillisecond_ns : 0;
+}
+
+std::int64_t SlaveDrive::heartbeatPeriod_ns() const noexcept {
+  return objects_.get(0x1017) * kMillisecond_ns;
+}
+
+std::int64_t SlaveDrive::syncDeadline_ns() const noexcept {
+  if (axis_.state() != PowerState::kOperationEnabled) return kNever_ns;
+  double sync_period_ns = 1e9 * objects_.get(0x60C2, 1);
+  for (int power = objects_.getSigned(0x60C2, 2); power < 0; ++power) sync_period_ns /= 10.0;
+  return last_sync_ns_ + std::llround(kMaxMissingSyncs * sync_period_ns);
+}
+
+void SlaveDrive::sendTpdoAtSync() noexcept {
+  const std::uint32_t type = objects_.get(0x1800, 2);
+  if (type > 240) return;
+  const bool is_due =
+      type == 0 ? objects_.get(0x6041) != sent_status_ : ++syncs_since_tpdo_ >= type;
+  if (is_due) sendTpdo();
+}
+
+void SlaveDrive::sendTpdoOnChange() noexcept {
+  const bool is_on_change = objects_.get(0x1800, 2) >= 254;
+  if (nmt_ == NodeState::kOperational && is_on_change && objects_.get(0x6041) != sent_status_)
+    sendTpdo();
+}
+
+void SlaveDrive::sendTpdo() noexcept {
+  syncs_since_tpdo_ = 0;
+  sent_status_ = objects_.get(0x6041);
+  const auto id = pdoId(objects_, kTransmitPdo);
+  if (!id) return;
+  CanFrame frame = frameOf(*id, 0);
+  packTpdo(objects_, frame);
+  outbox_.push(frame);
+}
+
+void SlaveDrive::sendEmergency(std::uint16_t error_code) noexcept {
+  if (!isConnected()) return;
+  CanFrame frame = frameOf(idFrom(0x80), 8);
+  frame.data[0] = static_cast<std::uint8_t>(error_code);
+  frame.data[1] = static_cast<std::uint8_t>(error_code >> 8);
+  frame.data[2] = static_cast<std::uint8_t>(objects_.get(0x1001));
+  outbox_.push(frame);
+}
+
+void SlaveDrive::sendNmtState(std::uint8_t state) noexcept {
+  CanFrame frame = frameOf(idFrom(0x700), 1);
+  frame.data[0] = state;
+  outbox_.push(frame);
+}
+
+}  // namespace tactus
