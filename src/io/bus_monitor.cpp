@@ -61,9 +61,9 @@ void BusMonitor::onConfirmed(int frames) noexcept {
 void BusMonitor::onSent(int accepted, int offered) noexcept {
   counters_.sent += static_cast<std::uint32_t>(accepted);
   counters_.refused += static_cast<std::uint32_t>(offered - accepted);
+  if (isDead()) noteProbe();
   unconfirmed_ += accepted;
   if (accepted < offered) was_refused_ = true;
-  if (isDead()) cycles_to_probe_ = kProbeCycles;
 }
 
 void BusMonitor::onSendError(int error_number) noexcept { onReceiveError(error_number); }
@@ -98,6 +98,14 @@ void BusMonitor::update() noexcept {
 
 void BusMonitor::raise(Fault trouble) noexcept {
   if (gravity(trouble) > gravity(trouble_)) trouble_ = trouble;
+}
+
+/// A bus that has answered and fallen silent with frames open has lost them: their confirmations
+/// are no longer waited for, but the probe's is.
+void BusMonitor::noteProbe() noexcept {
+  cycles_to_probe_ = kProbeCycles;
+  if (!has_answered_ || calm_cycles_ < kCalmCycles) return;
+  unconfirmed_ = calm_cycles_ = 0;
   has_answered_ = false;
 }
 
@@ -111,23 +119,22 @@ void BusMonitor::noteUnconfirmed() noexcept {
 
 void BusMonitor::noteFlood() noexcept {
   full_batches_ = std::min(full_batches_, kMaxFullBatches);
-  if (full_batches_ < kMaxFullBatches) return;
-  if (gravity(Fault::kBusFlooded) > gravity(trouble_)) trouble_ = Fault::kBusFlooded;
+  if (full_batches_ == kMaxFullBatches) raise(Fault::kBusFlooded);
 }
 
+/// On a flooded bus frames are sent and confirmed all the while, or it would be stalled.
 void BusMonitor::recover() noexcept {
   if (fault_ == Fault::kNone) return;
-  const bool is_disturbed = trouble_ != Fault::kNone || (isDead() && was_confirmed_);
-  calm_cycles_ = is_disturbed ? 0 : calm_cycles_ + 1;
-  const bool is_answered = isDead() ? has_answered_ : unconfirmed_ == 0;
-  if (!is_answered) calm_cycles_ = 0;
-  if (calm_cycles_ >= kCalmCycles) rearm();
+  if (trouble_ != Fault::kNone) has_answered_ = false;
+  const bool is_answered = has_answered_ || !isDead();
+  const bool is_calm = trouble_ == Fault::kNone && is_answered && !(isDead() && was_confirmed_);
+  calm_cycles_ = is_calm ? std::min(calm_cycles_ + 1, kCalmCycles) : 0;
+  if (calm_cycles_ == kCalmCycles && (unconfirmed_ == 0 || !isDead())) rearm();
 }
 
-/// What was not confirmed by now was lost, or never will be.
 void BusMonitor::rearm() noexcept {
   fault_ = Fault::kNone;
-  unconfirmed_ = stuck_cycles_ = calm_cycles_ = 0;
+  stuck_cycles_ = calm_cycles_ = 0;
   is_passive_ = lacks_acknowledge_ = has_answered_ = false;
 }
 

@@ -26,14 +26,15 @@ struct BusCounters {
 ///   cycle; the controller drops them (bus-off, interface down) or sends them when it can.
 /// - Probe: each kProbeCycles cycles one harmless frame (a heartbeat) may go, also while others
 ///   wait, as drivers may lose frames without a word.
-/// - Re-arm: once a frame was confirmed and kCalmCycles cycles have passed without trouble and
-///   without further confirmations, the kernel is empty and the bus works.
+/// - Re-arm: once all frames are confirmed and kCalmCycles cycles have passed without trouble, the
+///   kernel is empty and the bus works. Frames that a bus which answers again never confirms were
+///   lost; then it takes another probe.
 /// A passing stall of up to kMaxUnconfirmedCycles cycles holds frames back and does no more.
 class BusMonitor {
  public:
   static constexpr int kMaxUnconfirmedCycles = 3;
   static constexpr int kProbeCycles = 100;
-  static constexpr int kCalmCycles = 10;
+  static constexpr int kCalmCycles = 20;
   /// Batches in a row that were full: more than copper carries, hence not a late cycle's backlog.
   static constexpr int kMaxFullBatches = 3;
 
@@ -61,6 +62,7 @@ class BusMonitor {
   /// A flooded bus still carries our frames, which are needed to stop.
   bool isDead() const noexcept { return fault_ != Fault::kNone && fault_ != Fault::kBusFlooded; }
   void raise(Fault trouble) noexcept;
+  void noteProbe() noexcept;
   void noteUnconfirmed() noexcept;
   void noteFlood() noexcept;
   void recover() noexcept;

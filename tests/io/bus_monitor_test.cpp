@@ -1,0 +1,433 @@
+#include "tactus/io/bus_monitor.h"
+
+#include <errno.h>
+#include <gtest/gtest.h>
+#include <linux/can/error.h>
+
+#include <array>
+#include <deque>
+#include <random>
+#include <vector>
+
+#include "support/allocation_guard.h"
+
+namespace tactus {
+namespace {
+
+CanFrame errorFrame(std::uint32_t error_class, std::uint8_t controller = 0,
+                    std::uint8_t location = 0) {
+  CanFrame frame;
+  frame.id = error_class;
+  frame.kind = FrameKind::kError;
+  frame.size = 8;
+  frame.data[1] = controller;
+  frame.data[3] = location;
+  return frame;
+}
+
+const CanFrame kPassive = errorFrame(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
+const CanFrame kNoAcknowledge = errorFrame(CAN_ERR_ACK);
+const CanFrame kBusOffFrame = errorFrame(CAN_ERR_BUSOFF);
+
+/// A cycle of a bus that works: what was sent is confirmed, then four frames are sent.
+void workingCycle(BusMonitor& monitor) {
+  monitor.onConfirmed(4);
+  monitor.onReceived(3, false);
+  monitor.update();
+  if (monitor.maySend()) monitor.onSent(4, 4);
+}
+
+/// Cycles without a confirmation in which the caller sends what it may.
+void deadCycles(BusMonitor& monitor, int count) {
+  for (int i = 0; i < count; ++i) {
+    monitor.onReceived(0, false);
+    monitor.update();
+    if (monitor.maySend()) monitor.onSent(4, 4);
+    if (monitor.mayProbe()) monitor.onSent(1, 1);
+  }
+}
+
+TEST(BusMonitor, LetsFramesGoOnABusThatConfirmsThem) {
+  BusMonitor monitor;
+  for (int i = 0; i < 1000; ++i) workingCycle(monitor);
+  EXPECT_EQ(monitor.fault(), Fault::kNone);
+  EXPECT_EQ(monitor.counters().sent, 4000u);
+  EXPECT_EQ(monitor.counters().received, 3000u);
+  EXPECT_EQ(monitor.counters().held_back, 0u);
+}
+
+TEST(BusMonitor, HoldsFramesBackWhileSomeAreUnconfirmedAndTakesAPassingStallForNoFault) {
+  for (int stall = 1; stall <= BusMonitor::kMaxUnconfirmedCycles; ++stall) {
+    BusMonitor monitor;
+    workingCycle(monitor);
+    monitor.onConfirmed(3);  // one is missing
+    for (int i = 0; i < stall; ++i) {
+      monitor.update();
+      EXPECT_FALSE(monitor.maySend());
+      EXPECT_FALSE(monitor.mayProbe());
+      EXPECT_EQ(monitor.fault(), Fault::kNone);
+    }
+    EXPECT_EQ(monitor.counters().held_back, static_cast<std::uint32_t>(stall));
+    workingCycle(monitor);
+    EXPECT_TRUE(monitor.counters().sent == 8u) << "sends again at once";
+    for (int i = 0; i < 10; ++i) workingCycle(monitor);
+    EXPECT_EQ(monitor.fault(), Fault::kNone);
+  }
+}
+
+TEST(BusMonitor, TakesABusForStalledThatConfirmsNothingForMoreThanThreeCycles) {
+  BusMonitor monitor;
+  workingCycle(monitor);
+  deadCycles(monitor, BusMonitor::kMaxUnconfirmedCycles);
+  EXPECT_EQ(monitor.fault(), Fault::kNone);
+  deadCycles(monitor, 1);
+  EXPECT_EQ(monitor.fault(), Fault::kBusStalled);
+}
+
+TEST(BusMonitor, TakesABusForStalledWhoseKernelQueueStaysFull) {
+  BusMonitor monitor;
+  for (int i = 0; i <= BusMonitor::kMaxUnconfirmedCycles; ++i) {
+    monitor.update();
+    ASSERT_TRUE(monitor.maySend()) << "nothing of ours is in the kernel, newer frames may do";
+    monitor.onSendError(ENOBUFS);
+    monitor.onSent(0, 4);
+  }
+  monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kBusStalled);
+  EXPECT_EQ(monitor.counters().refused, 16u);
+  EXPECT_EQ(monitor.counters().sent, 0u);
+}
+
+TEST(BusMonitor, WaitsOnlyForTheFramesThatTheKernelAccepted) {
+  BusMonitor monitor;
+  monitor.update();
+  monitor.onSent(2, 4);
+  EXPECT_EQ(monitor.counters().refused, 2u);
+  monitor.onConfirmed(2);
+  monitor.update();
+  EXPECT_TRUE(monitor.maySend());
+  EXPECT_EQ(monitor.fault(), Fault::kNone);
+}
+
+/// Each trouble, told as the kernel tells it, and its name in the very cycle.
+TEST(BusMonitor, NamesEachTroubleInItsCycle) {
+  const struct {
+    std::vector<CanFrame> errors;
+    int receive_error, send_error;
+    Fault fault;
+  } kRows[] = {
+      {{kPassive, kNoAcknowledge}, 0, 0, Fault::kBusUnacknowledged},
+      {{kNoAcknowledge, kPassive}, 0, 0, Fault::kBusUnacknowledged},
+      {{errorFrame(CAN_ERR_ACK | CAN_ERR_CRTL, CAN_ERR_CRTL_RX_PASSIVE)},
+       0,
+       0,
+       Fault::kBusUnacknowledged},
+      {{kPassive, errorFrame(CAN_ERR_PROT, 0, CAN_ERR_PROT_LOC_ACK)},
+       0,
+       0,
+       Fault::kBusUnacknowledged},
+      {{kBusOffFrame}, 0, 0, Fault::kBusOff},
+      {{errorFrame(CAN_ERR_RESTARTED)}, 0, 0, Fault::kBusOff},
+      {{kPassive, kNoAcknowledge, kBusOffFrame}, 0, 0, Fault::kBusOff},
+      {{kBusOffFrame}, ENETDOWN, 0, Fault::kBusDown},
+      {{}, ENETDOWN, 0, Fault::kBusDown},
+      {{}, ENODEV, 0, Fault::kBusDown},
+      {{}, 0, ENETDOWN, Fault::kBusDown},
+      {{}, 0, ENXIO, Fault::kBusDown},
+      // no trouble that stops a bus
+      {{}, EAGAIN, EAGAIN, Fault::kNone},
+      {{kPassive}, 0, 0, Fault::kNone},
+      {{kNoAcknowledge}, 0, 0, Fault::kNone},
+      {{kPassive, errorFrame(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_WARNING), kNoAcknowledge},
+       0,
+       0,
+       Fault::kNone},
+      {{kPassive, errorFrame(CAN_ERR_CRTL, CAN_ERR_CRTL_ACTIVE), kNoAcknowledge},
+       0,
+       0,
+       Fault::kNone},
+      {{errorFrame(CAN_ERR_LOSTARB | CAN_ERR_PROT | CAN_ERR_BUSERROR, CAN_ERR_CRTL_TX_PASSIVE,
+                   CAN_ERR_PROT_LOC_DATA),
+        kNoAcknowledge},
+       0,
+       0,
+       Fault::kNone},
+  };
+  for (std::size_t row = 0; row < std::size(kRows); ++row) {
+    SCOPED_TRACE(row);
+    BusMonitor monitor;
+    workingCycle(monitor);
+    monitor.onConfirmed(4);
+    for (const CanFrame& error : kRows[row].errors) monitor.onErrorFrame(error);
+    if (kRows[row].receive_error != 0) monitor.onReceiveError(kRows[row].receive_error);
+    if (kRows[row].send_error != 0) monitor.onSendError(kRows[row].send_error);
+    monitor.update();
+    EXPECT_EQ(monitor.fault(), kRows[row].fault);
+    EXPECT_EQ(monitor.maySend(), kRows[row].fault == Fault::kNone);
+    EXPECT_EQ(monitor.counters().error_frames, kRows[row].errors.size());
+  }
+}
+
+TEST(BusMonitor, TakesAPassiveBusForUnacknowledgedWithoutWaitingForThreeCycles) {
+  BusMonitor monitor;
+  workingCycle(monitor);
+  monitor.onErrorFrame(kPassive);
+  monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kBusUnacknowledged);
+}
+
+TEST(BusMonitor, AGraverTroubleTakesTheNameAndAMilderOneDoesNot) {
+  BusMonitor monitor;
+  workingCycle(monitor);
+  deadCycles(monitor, 4);
+  ASSERT_EQ(monitor.fault(), Fault::kBusStalled);
+  monitor.onErrorFrame(kBusOffFrame);
+  monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kBusOff);
+  monitor.onErrorFrame(kPassive);
+  monitor.onErrorFrame(kNoAcknowledge);
+  monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kBusOff);
+  monitor.onSendError(ENETDOWN);
+  monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kBusDown);
+}
+
+TEST(BusMonitor, ProbesADeadBusEveryHundredCyclesAndNothingElse) {
+  BusMonitor monitor;
+  monitor.update();
+  monitor.onErrorFrame(kBusOffFrame);
+  int probes = 0;
+  for (int cycle = 0; cycle < 10 * BusMonitor::kProbeCycles + 1; ++cycle) {
+    monitor.update();
+    EXPECT_FALSE(monitor.maySend());
+    if (!monitor.mayProbe()) continue;
+    EXPECT_EQ(cycle % BusMonitor::kProbeCycles, 0);
+    ++probes;
+    monitor.onSendError(ENOBUFS);
+    monitor.onSent(0, 1);
+  }
+  EXPECT_EQ(probes, 10);
+  EXPECT_EQ(monitor.fault(), Fault::kBusOff);
+}
+
+TEST(BusMonitor, RearmsOnceAProbeIsConfirmedAndCalmHasLasted) {
+  BusMonitor monitor;
+  monitor.onErrorFrame(kBusOffFrame);
+  monitor.update();
+  while (!monitor.mayProbe()) monitor.update();
+  monitor.onSent(1, 1);
+  EXPECT_FALSE(monitor.mayProbe());
+  for (int i = 0; i < 50; ++i) monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kBusOff) << "calm alone is no answer";
+  monitor.onConfirmed(1);
+  for (int i = 0; i < BusMonitor::kCalmCycles; ++i) {
+    monitor.update();
+    EXPECT_EQ(monitor.fault(), Fault::kBusOff);
+  }
+  monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kNone);
+  EXPECT_TRUE(monitor.maySend());
+}
+
+TEST(BusMonitor, AnErrorAfterTheAnswerTakesItBack) {
+  BusMonitor monitor;
+  monitor.onErrorFrame(kPassive);
+  monitor.onErrorFrame(kNoAcknowledge);
+  monitor.update();
+  while (!monitor.mayProbe()) monitor.update();
+  monitor.onSent(1, 1);
+  monitor.onConfirmed(1);  // as on vcan, where an echo proves nothing
+  for (int i = 0; i < BusMonitor::kCalmCycles - 1; ++i) monitor.update();
+  monitor.onErrorFrame(kNoAcknowledge);
+  for (int i = 0; i < BusMonitor::kProbeCycles; ++i) {
+    monitor.update();
+    EXPECT_EQ(monitor.fault(), Fault::kBusUnacknowledged);
+  }
+}
+
+TEST(BusMonitor, TakesThreeFullBatchesInARowForAFloodInWhichItStillSends) {
+  BusMonitor monitor;
+  for (int i = 0; i < BusMonitor::kMaxFullBatches - 1; ++i) {
+    monitor.onReceived(64, true);
+    monitor.update();
+    EXPECT_EQ(monitor.fault(), Fault::kNone) << "the backlog of a late cycle";
+  }
+  monitor.onReceived(10, false);
+  monitor.update();
+  for (int i = 0; i < BusMonitor::kMaxFullBatches; ++i) {
+    monitor.onReceived(64, true);
+    monitor.update();
+  }
+  EXPECT_EQ(monitor.fault(), Fault::kBusFlooded);
+  EXPECT_TRUE(monitor.maySend()) << "to stop the drives";
+  monitor.onSent(4, 4);
+  for (int i = 0; i < BusMonitor::kCalmCycles; ++i) {
+    EXPECT_EQ(monitor.fault(), Fault::kBusFlooded);
+    workingCycle(monitor);
+  }
+  EXPECT_EQ(monitor.fault(), Fault::kNone);
+}
+
+TEST(BusMonitor, AFloodedBusThatStopsConfirmingIsStalled) {
+  BusMonitor monitor;
+  workingCycle(monitor);
+  for (int i = 0; i < 5; ++i) {
+    monitor.onReceived(64, true);
+    monitor.update();
+  }
+  EXPECT_EQ(monitor.fault(), Fault::kBusStalled);
+  EXPECT_FALSE(monitor.maySend());
+}
+
+/// A kernel and its controller, first in first out: delivers and confirms while the bus lives,
+/// keeps frames while it is dead, may lose them without a word.
+class ModelBus {
+ public:
+  struct Item {
+    int cycle;
+    bool is_setpoint;
+  };
+
+  std::deque<Item> queue;
+  int stale_delivered = 0;  ///< set-points older than a passing stall
+
+  void deliver(int cycle, BusMonitor& monitor) {
+    for (; !queue.empty(); queue.pop_front()) {
+      const int age = cycle - queue.front().cycle;
+      if (queue.front().is_setpoint && age > BusMonitor::kMaxUnconfirmedCycles + 1)
+        ++stale_delivered;
+      monitor.onConfirmed(1);
+    }
+  }
+
+  void offer(int cycle, int count, bool are_setpoints, BusMonitor& monitor) {
+    int accepted = 0;
+    for (; accepted < count && queue.size() < 10; ++accepted)
+      queue.push_back({cycle, are_setpoints});
+    if (accepted == 0) monitor.onSendError(ENOBUFS);
+    monitor.onSent(accepted, count);
+  }
+
+  void expectOneCycleOfSetpoints() const {
+    int first = -1;
+    for (const Item& item : queue) {
+      if (!item.is_setpoint) continue;
+      if (first < 0) first = item.cycle;
+      ASSERT_EQ(item.cycle, first);
+    }
+  }
+};
+
+/// Outages of random length and silence: never more than a cycle's set-points in the kernel, never
+/// any handed over while the bus is taken for dead, and the bus comes back.
+TEST(BusMonitor, NeverLetsSetpointsPileUpAndComesBackAfterEveryOutage) {
+  std::mt19937 random(7);
+  for (int run = 0; run < 300; ++run) {
+    SCOPED_TRACE(run);
+    BusMonitor monitor;
+    ModelBus bus;
+    const int dies = 5 + static_cast<int>(random() % 20);
+    const int returns = dies + static_cast<int>(random() % 5000);
+    const bool tells = random() % 2 == 0;
+    const bool loses = random() % 4 == 0;
+    for (int cycle = 0; cycle < returns + 500; ++cycle) {
+      const bool is_alive = cycle < dies || cycle >= returns;
+      if (is_alive) bus.deliver(cycle, monitor);
+      if (loses && cycle == returns - 1) bus.queue.clear();
+      if (tells && !is_alive && cycle % 7 == 0) {
+        monitor.onErrorFrame(kPassive);
+        monitor.onErrorFrame(kNoAcknowledge);
+      }
+      monitor.update();
+      ASSERT_FALSE(monitor.maySend() && monitor.mayProbe());
+      if (monitor.maySend()) bus.offer(cycle, 4, true, monitor);
+      if (monitor.mayProbe()) bus.offer(cycle, 1, false, monitor);
+      bus.expectOneCycleOfSetpoints();
+      if (!is_alive && cycle > dies + BusMonitor::kMaxUnconfirmedCycles) {
+        ASSERT_NE(monitor.fault(), Fault::kNone) << cycle - dies;
+      }
+    }
+    EXPECT_LE(bus.stale_delivered, 4) << "the last cycle's before the bus died";
+    EXPECT_EQ(monitor.fault(), Fault::kNone);
+    EXPECT_TRUE(monitor.maySend() || bus.queue.size() == 4u);
+  }
+}
+
+bool isBusFault(Fault fault) {
+  return fault == Fault::kNone || fault == Fault::kBusStalled ||
+         fault == Fault::kBusUnacknowledged || fault == Fault::kBusOff ||
+         fault == Fault::kBusDown || fault == Fault::kBusFlooded;
+}
+
+/// One random event; true if it was a confirmation.
+bool tellSomething(std::mt19937& random, BusMonitor& monitor) {
+  switch (random() % 40) {
+    case 0: {
+      CanFrame frame = errorFrame(random() & 0x1FFFFFFFU);
+      if (random() % 2 == 0) frame.id = 1U << random() % 10;
+      for (std::uint8_t& byte : frame.data) byte = static_cast<std::uint8_t>(random());
+      monitor.onErrorFrame(frame);
+      return false;
+    }
+    case 1:
+      monitor.onSendError(static_cast<int>(random() % 140));
+      return false;
+    case 2:
+      monitor.onReceiveError(static_cast<int>(random() % 140));
+      return false;
+    case 3:
+      monitor.onForeignFrame();
+      return false;
+    case 4:
+      monitor.onConfirmed(static_cast<int>(1 + random() % 6));
+      return true;
+    default:
+      monitor.onReceived(3, random() % 8 == 0);
+      monitor.update();
+      if (monitor.maySend() && random() % 4 == 0) monitor.onSent(static_cast<int>(random() % 5), 4);
+      if (monitor.mayProbe()) monitor.onSent(1, 1);
+      return false;
+  }
+}
+
+bool isDead(Fault fault) { return fault != Fault::kNone && fault != Fault::kBusFlooded; }
+
+/// Whatever is told in whatever order: names are the bus's own, a dead bus gets nothing but probes,
+/// and comes back only after a confirmation. Without heap.
+TEST(BusMonitor, KeepsItsPromisesUnderRandomEvents) {
+  std::mt19937 random(11);
+  std::array<bool, 32> is_met{};
+  int broken = 0, recovered = 0;
+  BusMonitor monitor;
+  bool has_answered = false;
+  for (int i = 0; i < 2'000'000; ++i) {
+    const Fault before = monitor.fault();
+    {
+      const test::AllocationGuard guard;
+      if (i / 500 % 2 == 0) {  // else nothing would ever recover
+        has_answered |= tellSomething(random, monitor);
+      } else {
+        workingCycle(monitor);
+        has_answered = true;
+      }
+    }
+    const Fault after = monitor.fault();
+    is_met[static_cast<std::size_t>(after)] = true;
+    if (!isDead(before) && isDead(after)) has_answered = false;
+    if (isDead(before) && after == Fault::kNone) {
+      ++recovered;
+      broken += !has_answered;
+    }
+    broken += !isBusFault(after) + (isDead(after) && monitor.maySend()) +
+              (monitor.maySend() && monitor.mayProbe());
+    ASSERT_EQ(broken, 0) << "event " << i << ", fault " << static_cast<int>(after);
+  }
+  EXPECT_GT(recovered, 100);
+  for (const Fault fault : {Fault::kNone, Fault::kBusStalled, Fault::kBusUnacknowledged,
+                            Fault::kBusOff, Fault::kBusDown, Fault::kBusFlooded})
+    EXPECT_TRUE(is_met[static_cast<std::size_t>(fault)]) << faultName(fault);
+}
+
+}  // namespace
+}  // namespace tactus
