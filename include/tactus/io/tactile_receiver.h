@@ -27,7 +27,7 @@ struct TactileCounters {
 /// A sample is four frames of one sequence number, in any order; a frame of another new number
 /// begins another sample. A number is new if it is 1 to 127 after the last sample's, modulo 256,
 /// and others are ignored: a module that is stuck or replayed gives no samples, and one that
-/// started anew is heard again after at most 128. A frame that comes twice is ignored if it says
+/// started anew is heard again after at most 129. A frame that comes twice is ignored if it says
 /// the same, and spoils its sample if not.
 ///
 /// Status bit 0 and a channel at its rail (+-(2^23 - 1), -2^23) are saturation. Bit 1 is a broken
