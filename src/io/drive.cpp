@@ -115,7 +115,8 @@ void Drive::continueSetup(FrameBatch& out) noexcept {
   setup_.update(out);
   if (setup_.status() == DriveSetup::Status::kDone) {
     phase_ = Phase::kStarting;
-    is_operational_ = false;
+    is_operational_ = false;  // whatever was seen before, as in a start cut short by a boot-up
+    report_.has_position = false;
     starting_cycles_ = 0;
   } else if (setup_.status() == DriveSetup::Status::kFailed) {
     phase_ = Phase::kUnconfigured;
