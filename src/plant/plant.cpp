@@ -80,9 +80,7 @@ std::int64_t Plant::nextEvent_ns() const noexcept {
 }
 
 bool Plant::emergencyStop(std::int64_t t_ns) const noexcept {
-  for (int bus = 0; bus < kMaxBuses; ++bus)  // the line belongs to no bus
-    if (script_.isActive(Kind::kEmergencyStop, bus, 0, t_ns)) return true;
-  return false;
+  return script_.isActive(Kind::kEmergencyStop, t_ns);
 }
 
 PlantCounters Plant::counters() const noexcept {
@@ -118,16 +116,13 @@ void Plant::applyTroubles(std::int64_t t_ns) noexcept {
 void Plant::applyBusTroubles(int bus, std::int64_t t_ns) noexcept {
   Link& link = links_[bus];
   link.troubles.release(t_ns);
-  const bool is_powered = !script_.isActive(Kind::kPowerCut, bus, 0, t_ns);
+  const bool is_powered = !script_.isActive(Kind::kPowerCut, bus, t_ns);
   if (is_powered != link.bus.isPowered()) {
     link.bus.setPowered(is_powered, t_ns);
     for (Node& node : drives_)
       if (node.bus == bus) node.drive.setPowered(is_powered, t_ns);
   }
-  const bool is_off = script_.isActive(Kind::kBusOff, bus, 0, t_ns);
-  if (is_off == link.bus.isOtherSideOff()) return;
-  link.bus.setOtherSideOff(is_off, t_ns);
-  give(link, is_off ? busOffError() : busRestartedError());
+  link.bus.setOtherSideOff(script_.isActive(Kind::kBusOff, bus, t_ns), t_ns);
 }
 
 void Plant::moveBus(int bus, std::int64_t t_ns) noexcept {
@@ -140,7 +135,8 @@ void Plant::moveBus(int bus, std::int64_t t_ns) noexcept {
 void Plant::deliver(int bus, const BusDelivery& delivery, std::int64_t t_ns) noexcept {
   Link& link = links_[bus];
   if (delivery.sender != PlantBus::kOtherSide) {
-    if (!link.bus.isOtherSideOff()) give(link, delivery.item.frame);
+    if (delivery.sender == PlantBus::kController || !link.bus.isOtherSideOff())
+      give(link, delivery.item.frame);
     return;
   }
   const CanFrame& frame = delivery.item.frame;

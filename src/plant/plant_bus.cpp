@@ -16,7 +16,7 @@ constexpr std::uint8_t kTransmitterPassive = 0x20;
 // Each failed attempt adds 8 to the transmit error count; at 128 the controller becomes passive.
 constexpr int kAttemptsUntilPassive = 16;
 constexpr int kErrorFlagBits = 20;
-constexpr std::int64_t kBetweenErrors_ns = 10'000'000;
+constexpr std::int64_t kBetweenErrors_ns = 2'000'000;
 
 CanFrame errorFrame(std::uint32_t error_class) noexcept {
   CanFrame frame;
@@ -89,6 +89,7 @@ void PlantBus::setPowered(bool is_powered, std::int64_t t_ns) noexcept {
 void PlantBus::setOtherSideOff(bool is_off, std::int64_t t_ns) noexcept {
   if (is_off == is_other_side_off_) return;
   is_other_side_off_ = is_off;
+  next_report_ns_ = t_ns;
   if (!is_off) {
     free_from_ns_ = std::max(free_from_ns_, t_ns);
   } else if (phase_ != Phase::kIdle && sender_ == kOtherSide) {
@@ -97,11 +98,12 @@ void PlantBus::setOtherSideOff(bool is_off, std::int64_t t_ns) noexcept {
 }
 
 std::int64_t PlantBus::nextEvent_ns() const noexcept {
-  return phase_ == Phase::kIdle ? nextStart_ns() : phase_end_ns_;
+  return std::min(next_report_ns_, phase_ == Phase::kIdle ? nextStart_ns() : phase_end_ns_);
 }
 
 std::optional<BusDelivery> PlantBus::step() noexcept {
   const std::int64_t t_ns = nextEvent_ns();
+  if (t_ns == next_report_ns_) return report(t_ns);
   if (phase_ == Phase::kIdle) {
     start(t_ns);
     return std::nullopt;
@@ -114,6 +116,11 @@ std::optional<BusDelivery> PlantBus::step() noexcept {
   queues_[sender_].pop();
   becomeIdle(t_ns);
   return delivery;
+}
+
+std::optional<BusDelivery> PlantBus::report(std::int64_t t_ns) noexcept {
+  next_report_ns_ = is_other_side_off_ ? t_ns + kBetweenErrors_ns : kNever_ns;
+  return BusDelivery{kController, {is_other_side_off_ ? busOffError() : busRestartedError(), t_ns}};
 }
 
 bool PlantBus::mayStart(int node) const noexcept {

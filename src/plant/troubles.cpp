@@ -32,6 +32,18 @@ bool TroubleScript::isActive(const Trouble& trouble, std::int64_t t_ns) const no
   return hasStarted() && t_ns >= begin_ns(trouble) && t_ns < end_ns(trouble);
 }
 
+bool TroubleScript::isActive(Kind kind, std::int64_t t_ns) const noexcept {
+  return std::any_of(troubles_.begin(), troubles_.end(), [&](const Trouble& trouble) {
+    return trouble.kind == kind && isActive(trouble, t_ns);
+  });
+}
+
+bool TroubleScript::isActive(Kind kind, int bus, std::int64_t t_ns) const noexcept {
+  return std::any_of(troubles_.begin(), troubles_.end(), [&](const Trouble& trouble) {
+    return trouble.kind == kind && trouble.bus == bus && isActive(trouble, t_ns);
+  });
+}
+
 bool TroubleScript::isActive(Kind kind, int bus, std::uint32_t id,
                              std::int64_t t_ns) const noexcept {
   return std::any_of(troubles_.begin(), troubles_.end(), [&](const Trouble& trouble) {

@@ -13,5 +13,6 @@ void addCheckCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 void addExportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
+void addPlantCommand(CLI::App& app, int& exit_code);
 
 }  // namespace tactus

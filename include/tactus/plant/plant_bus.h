@@ -65,7 +65,8 @@ class PlantBus {
   /// Without power no node of the plant sends, hears or acknowledges: the other side's frame stays
   /// where it is and is tried again and again.
   void setPowered(bool is_powered, std::int64_t t_ns) noexcept;
-  /// Bus-off: nothing of the other side gets out, it waits.
+  /// Bus-off: nothing of the other side gets out, it waits; and it hears no more than that, again
+  /// and again, as an interface in that state refuses frames again and again.
   void setOtherSideOff(bool is_off, std::int64_t t_ns) noexcept;
 
   bool isPowered() const noexcept { return is_powered_; }
@@ -74,7 +75,8 @@ class PlantBus {
   std::size_t waiting(int node) const noexcept { return queues_[node].size(); }
 
   std::int64_t nextEvent_ns() const noexcept;
-  /// What happens at nextEvent_ns(): a frame begins, ends, or is given up for a while.
+  /// What happens at nextEvent_ns(): a frame begins, ends, or is given up for a while, or the other
+  /// side's controller has something to report.
   std::optional<BusDelivery> step() noexcept;
 
  private:
@@ -83,6 +85,7 @@ class PlantBus {
   bool mayStart(int node) const noexcept;
   std::int64_t nextStart_ns() const noexcept;
   void start(std::int64_t t_ns) noexcept;
+  std::optional<BusDelivery> report(std::int64_t t_ns) noexcept;
   void giveUp(std::int64_t t_ns) noexcept;
   void becomeIdle(std::int64_t t_ns) noexcept;
   std::int64_t duration_ns(int bits) const noexcept;
@@ -93,6 +96,7 @@ class PlantBus {
   int sender_ = kOtherSide;
   std::int64_t phase_end_ns_ = kNever_ns;
   std::int64_t free_from_ns_ = 0;
+  std::int64_t next_report_ns_ = kNever_ns;  ///< of bus-off, or of its end
   bool is_powered_ = true;
   bool is_other_side_off_ = false;
   std::uint64_t refused_ = 0;

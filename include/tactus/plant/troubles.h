@@ -21,6 +21,8 @@ class TroubleScript {
 
   /// When the next one begins or ends, after t_ns.
   std::int64_t nextChange_ns(std::int64_t t_ns) const noexcept;
+  bool isActive(Trouble::Kind kind, std::int64_t t_ns) const noexcept;
+  bool isActive(Trouble::Kind kind, int bus, std::int64_t t_ns) const noexcept;
   /// One of this kind, on this bus, for this frame or node id; the script's id 0 is any.
   bool isActive(Trouble::Kind kind, int bus, std::uint32_t id, std::int64_t t_ns) const noexcept;
   /// The longest of the delays that work on this id of the bus.

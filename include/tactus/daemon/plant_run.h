@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "tactus/daemon/scene.h"
+#include "tactus/plant/plant.h"
+
+namespace tactus {
+
+struct PlantRunResult {
+  PlantCounters plant;
+  std::uint64_t interface_refused = 0;  ///< frames of the plant that the kernel did not take
+};
+
+/// Plays the scene's robot, which has hardware, on its CAN interfaces, in real time, until SIGTERM
+/// or SIGINT. Says on `notes` when it is ready, what it goes without, and when the e-stop moves;
+/// e_stop_file (none if empty) then holds, or as a FIFO gets, a line 1 or 0. Throws
+/// std::system_error for an interface or file that can't be opened.
+PlantRunResult runPlant(const Scene& scene, const std::string& e_stop_file, std::FILE* notes);
+
+}  // namespace tactus
