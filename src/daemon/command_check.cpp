@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "tactus/daemon/bus_load_text.h"
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/json.h"
 #include "tactus/daemon/key_table.h"
@@ -63,6 +64,38 @@ void writeJoint(JsonWriter& json, const Scene& scene, int i) {
   json.endObject();
 }
 
+void writeBusLoad(JsonWriter& json, const std::string& interface, const BusLoad& load) {
+  json.beginObject();
+  json.key("interface").value(interface);
+  json.key("bit_rate_per_s").value(load.bit_rate_per_s);
+  json.key("terms").beginArray();
+  for (const BusLoadTerm& term : load.terms) {
+    json.beginObject();
+    json.key("name").value(term.name);
+    json.key("frames").value(term.frames);
+    json.key("bits_a_frame").value(worstCaseBits(term.data_bytes));
+    json.key("period_s").value(term.period_s);
+    json.endObject();
+  }
+  json.endArray();
+  json.key("bits_per_s").value(load.bitsPerSecond());
+  json.key("share").value(load.share());
+  json.key("max_share").value(kMaxBusLoad);
+  json.endObject();
+}
+
+/// Nothing for a robot that only simulates.
+void writeHardware(JsonWriter& json, const Scene& scene) {
+  if (!scene.hardware) return;
+  writeNames(json, "hardware_stages", hardwareStageNames(*scene.hardware));
+  const std::vector<BusLoad> loads = busLoads(*scene.hardware, scene.period_s);
+  json.key("buses").beginArray();
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    writeBusLoad(json, scene.hardware->buses[i].interface, loads[i]);
+  }
+  json.endArray();
+}
+
 std::string toJson(const Scene& scene, const StartPose& start) {
   JsonWriter json;
   json.beginObject();
@@ -80,6 +113,7 @@ std::string toJson(const Scene& scene, const StartPose& start) {
   for (const double x : start.p_BaseTool) json.value(x);
   json.endArray();
   json.key("smallest_singular_value_at_start").value(start.smallest_singular_value);
+  writeHardware(json, scene);
   json.endObject();
   return json.text();
 }
@@ -87,7 +121,7 @@ std::string toJson(const Scene& scene, const StartPose& start) {
 std::string toText(const Scene& scene, const StartPose& start) {
   const TaskConfig& task = scene.controller.task;
   std::string text;
-  const auto line = [&](const char* name, const std::string& value) {
+  const auto line = [&](const std::string& name, const std::string& value) {
     text += fmt::format("{:<9}{}\n", name, value);
   };
   line("scene", scene.name);
@@ -100,6 +134,12 @@ std::string toText(const Scene& scene, const StartPose& start) {
   line("start", fmt::format("tool at ({:.4f}, {:.4f}, {:.4f}) m, smallest singular value {:.3g}",
                             start.p_BaseTool.x(), start.p_BaseTool.y(), start.p_BaseTool.z(),
                             start.smallest_singular_value));
+  if (!scene.hardware) return text;
+  line("hardware", fmt::format("{}", fmt::join(hardwareStageNames(*scene.hardware), ", ")));
+  const std::vector<BusLoad> loads = busLoads(*scene.hardware, scene.period_s);
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    line(scene.hardware->buses[i].interface + " ", describeBusLoad(loads[i], scene.period_s));
+  }
   return text;
 }
 

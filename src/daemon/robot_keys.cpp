@@ -19,7 +19,7 @@ KeySpec calibrationTable() {
 }
 
 KeySpec tactileModuleSection() {
-  return section(
+  KeySpec spec = section(
       "tactile_module", "the sensing cover around one link",
       {
           text("link", "URDF link whose x axis runs along the cover from its start",
@@ -51,6 +51,8 @@ KeySpec tactileModuleSection() {
                            [](Draft& d) -> double& { return d.plant.module.counts_per_N; })),
           calibrationTable(),
       });
+  for (const KeySpec& row : moduleOnBusKeys()) spec.keys.push_back(row);
+  return spec;
 }
 
 }  // namespace
@@ -72,13 +74,11 @@ const std::vector<KeySpec>& robotKeys() {
       optional(number("stiffness_N_per_m", "N/m", above(0, 1e9),
                       "compliance of the arm, in series with every obstacle; absent: rigid",
                       [](Draft& d) -> double& { return d.plant.robot_stiffness_N_per_m; })),
-      defaulted("", section("drives", "the position-controlled drives",
-                            {defaulted("0.005", number("position_lag_s", "s", within(0, 1),
-                                                       "first-order lag; 0: ideal drives",
-                                                       [](Draft& d) -> double& {
-                                                         return d.plant.drive_lag_s;
-                                                       }))})),
+      optional(canSection()),
+      defaulted("", drivesSection()),
       optional(tactileModuleSection()),
+      optional(gpioSection()),
+      defaulted("", realTimeSection()),
   };
   return table;
 }

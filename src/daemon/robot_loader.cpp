@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "tactus/daemon/hardware_loader.h"
 #include "tactus/daemon/table_reader.h"
 
 namespace tactus {
@@ -87,7 +88,8 @@ LoadedRobot loadRobot(const std::string& path, SourceReader& reader, ConfigDraft
         toJointVector(draft.max_acceleration, root, "limits.acceleration", chain);
   }
   if (chain.module_link) draft.module.link = *chain.module_link;
-  return {std::move(root), std::move(chain)};
+  std::optional<HardwareConfig> hardware = loadHardware(root, draft, chain);
+  return {std::move(root), std::move(chain), std::move(hardware)};
 }
 
 }  // namespace tactus

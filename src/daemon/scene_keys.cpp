@@ -6,12 +6,7 @@ namespace {
 using namespace keys;
 using Draft = ConfigDraft;
 
-constexpr double kMaxTime_s = 86400.0;
-constexpr double kMaxStiffness_N_per_m = 1e9;
-
 Waypoint& waypoint(Draft& d) { return d.task.trajectory.waypoints.back(); }
-ObstacleConfig& obstacle(Draft& d) { return d.plant.obstacles.back(); }
-FoamLayer& foamLayer(Draft& d) { return obstacle(d).foam.back(); }
 void addWaypoint(Draft& d) { d.task.trajectory.waypoints.emplace_back(); }
 
 std::vector<KeySpec> lineKeys() {
@@ -206,55 +201,11 @@ KeySpec stiffnessSection() {
       });
 }
 
-std::vector<KeySpec> obstacleKeys() {
-  return {
-      number("x_m", "m", within(-100, 100), "place of the vertical line, base frame",
-             [](Draft& d) -> double& { return obstacle(d).x_m; }),
-      number("y_m", "m", within(-100, 100), "place of the vertical line, base frame",
-             [](Draft& d) -> double& { return obstacle(d).y_m; }),
-      number("stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m), "of the solid part",
-             [](Draft& d) -> double& { return obstacle(d).stiffness_N_per_m; }),
-      optional(sectionList(
-          "foam", {0, 16}, "layers before the solid part, outermost first",
-          {
-              number("stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m), "of the layer",
-                     [](Draft& d) -> double& { return foamLayer(d).stiffness_N_per_m; }),
-              number("until_force_N", "N", above(0, 1e5), "force at which the layer is compressed",
-                     [](Draft& d) -> double& { return foamLayer(d).until_force_N; }),
-          },
-          [](Draft& d) { obstacle(d).foam.emplace_back(); })),
-      defaulted("0", number("appears_s", "s", within(0, kMaxTime_s), "absent before",
-                            [](Draft& d) -> double& { return obstacle(d).appears_s; })),
-      optional(number("vanishes_s", "s", above(0, kMaxTime_s), "absent from then on",
-                      [](Draft& d) -> double& { return obstacle(d).vanishes_s; })),
-  };
-}
-
-KeySpec simulationSection() {
+KeySpec requirementSection() {
   return section(
-      "simulation", "the world that the robot meets",
-      {
-          number("duration_s", "s", above(0, kMaxTime_s), "length of the run",
-                 [](Draft& d) -> double& { return d.duration_s; }),
-          defaulted("", section("tactile_module", "imperfections of the simulated tactile module",
-                                {
-                                    defaulted("true", boolean("quantised", "24-bit channels",
-                                                              [](Draft& d) -> bool& {
-                                                                return d.plant.module.quantised;
-                                                              })),
-                                    defaulted("0", number("noise_N", "N", within(0, 100),
-                                                          "standard deviation of one channel",
-                                                          [](Draft& d) -> double& {
-                                                            return d.plant.module.noise_N;
-                                                          })),
-                                    defaulted("1", integer("seed", within(0, 1e15), "of the noise",
-                                                           [](Draft& d) -> std::uint64_t& {
-                                                             return d.plant.module.seed;
-                                                           })),
-                                })),
-          optional(sectionList("obstacles", {0, 64}, "vertical lines that push on the cover",
-                               obstacleKeys(), [](Draft& d) { d.plant.obstacles.emplace_back(); })),
-      });
+      "real_time", "what this scene asks of the machine that runs it on hardware",
+      {defaulted("true", boolean("required", "false: run even where real time is not granted",
+                                 [](Draft& d) -> bool& { return d.real_time.required; }))});
 }
 
 }  // namespace
@@ -286,6 +237,7 @@ const std::vector<KeySpec>& sceneKeys() {
       optional(controllerSection()),
       optional(stiffnessSection()),
       simulationSection(),
+      defaulted("", requirementSection()),
   };
   return table;
 }

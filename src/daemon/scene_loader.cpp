@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "tactus/daemon/hardware_checks.h"
+#include "tactus/daemon/hardware_loader.h"
 #include "tactus/daemon/robot_loader.h"
 #include "tactus/daemon/scene_checks.h"
 #include "tactus/daemon/source_reader.h"
@@ -89,6 +91,12 @@ ControllerConfig makeController(const YamlNode& root, const ConfigDraft& draft,
   return config;
 }
 
+/// What the scene needs of the robot's hardware: without a controller, the module is not read.
+std::optional<HardwareConfig> chooseHardware(const YamlNode& root, const LoadedRobot& robot) {
+  if (!robot.hardware || findGiven(root, "controller")) return robot.hardware;
+  return withoutTactileModule(*robot.hardware);
+}
+
 /// A scene's name is that of its file, and the name of a folder with its results.
 std::string sceneName(const std::string& path) {
   std::string name = std::filesystem::path(path).stem().string();
@@ -108,6 +116,8 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, File
   const LoadedRobot robot = loadRobot(robotPath(root, path, draft.robot, overrides), reader, draft);
   const JointVector q_start = readStart(root, draft, robot);
   checkScene(root, draft, robot, q_start);
+  const std::optional<HardwareConfig> hardware = chooseHardware(root, robot);
+  if (hardware) checkHardware(robot.root, draft, *hardware);
   return Scene{.name = sceneName(path),
                .controller = makeController(root, draft, robot, q_start),
                .variant = draft.variant,
@@ -118,7 +128,9 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, File
                .joint_names = robot.chain.joint_names,
                .sources = reader.files(),
                .overrides = overrides,
-               .numbers = std::move(draft.numbers)};
+               .numbers = std::move(draft.numbers),
+               .hardware = hardware,
+               .troubles = loadTroubles(root, draft, hardware)};
 }
 
 }  // namespace

@@ -14,4 +14,10 @@ std::vector<std::string> stageNames(const ControllerConfig& config) {
   return names;
 }
 
+std::vector<std::string> hardwareStageNames(const HardwareConfig& hardware) {
+  std::vector<std::string> names = {"can"};
+  if (hardware.gpio) names.push_back("gpio");
+  return names;
+}
+
 }  // namespace tactus

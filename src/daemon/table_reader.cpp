@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <concepts>
 
 #include "tactus/daemon/number_text.h"
 
@@ -33,13 +34,26 @@ T& target(const Reading& r) {
   return std::get<T& (*)(ConfigDraft&)>(r.spec.target)(r.draft);
 }
 
+std::from_chars_result fromChars(std::string_view text, double& value) {
+  return std::from_chars(text.data(), text.data() + text.size(), value);
+}
+
+/// Whole numbers may be hexadecimal: 0x100.
+template <std::integral T>
+std::from_chars_result fromChars(std::string_view text, T& value) {
+  const bool is_hex = text.starts_with("0x");
+  const std::string_view digits = text.substr(is_hex ? 2 : 0);
+  if (is_hex && digits.starts_with('-')) return {digits.data(), std::errc::invalid_argument};
+  return std::from_chars(digits.data(), text.data() + text.size(), value, is_hex ? 16 : 10);
+}
+
 template <class T>
 T parseNumber(const Reading& r, const YamlNode& node, const std::string& path) {
   if (node.kind != Kind::kScalar || node.quoted) r.fail(node, path, describe(node));
   T value{};
   const std::string_view text = withoutPlus(node.text);
   const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  const auto [stop, error] = fromChars(text, value);
   if (error == std::errc::result_out_of_range) {
     r.fail(node, path, inQuotes(node.text) + " is out of range");
   }

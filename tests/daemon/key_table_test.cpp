@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "support/scene_files.h"
+#include "support/hardware_files.h"
 #include "tactus/daemon/table_reader.h"
 
 namespace tactus {
@@ -58,7 +58,9 @@ TEST(KeyTable, KeysEndInTheirUnit) {
                                                                      {"rad/s", "_rad_per_s"},
                                                                      {"Hz", "_hz"},
                                                                      {"1/s", "_per_s"},
-                                                                     {"1/N", "_per_N"}};
+                                                                     {"1/N", "_per_N"},
+                                                                     {"1/m", "_per_m"},
+                                                                     {"1/rad", "_per_rad"}};
   walkBoth([&](const std::string& path, const KeySpec& spec) {
     for (const auto& [unit, suffix] : suffixes) {
       if (spec.unit != unit) continue;
@@ -131,25 +133,63 @@ std::vector<double> outside(const Range& range) {
   return values;
 }
 
-/// Every number of the scene's sections, set to a value just outside its range, is refused under
-/// its own key: no row is forgotten by the reader.
-TEST(KeyTable, NoNumberOutsideItsRangeIsRead) {
-  int checked = 0;
-  for (const KeySpec& section : sceneKeys()) {
-    walk(section.keys, section.key + ".", [&](const std::string& path, const KeySpec& spec) {
-      const bool is_in_list = path.find("obstacles") != std::string::npos ||
-                              path.find("waypoints") != std::string::npos;
-      if (spec.type != ValueType::kNumber || is_in_list) return;
-      for (const double value : outside(spec.range)) {
-        const std::string error =
-            test::loadError(test::SceneFiles{}.sources(), {{path, fmt::format("{}", value)}});
-        EXPECT_NE(error.find(": " + path + ": "), std::string::npos) << path << " " << error;
-        EXPECT_NE(error.find("is out of range"), std::string::npos) << error;
-        ++checked;
-      }
-    });
+/// Sets a number of a file, given as a tree, to `value` and reads it.
+std::string readError(YamlNode root, const std::vector<KeySpec>& keys, const std::string& path,
+                      double value) {
+  try {
+    applyOverride(root, {path, fmt::format("{}", value)});
+    ConfigDraft draft;
+    readSection(root, keys, "", draft);
+  } catch (const InputError& error) {
+    return error.what();
   }
-  EXPECT_GT(checked, 40);
+  return "";
+}
+
+/// Calls `visit` for every number; of lists, for their first entry.
+template <class Visit>
+void walkNumbers(const std::vector<KeySpec>& keys, const std::string& prefix, const Visit& visit) {
+  for (const KeySpec& spec : keys) {
+    const bool is_list = spec.type == ValueType::kSectionList;
+    if (spec.type == ValueType::kNumber || spec.type == ValueType::kInteger) {
+      visit(prefix + spec.key, spec);
+    }
+    walkNumbers(spec.keys, prefix + spec.key + (is_list ? "[0]." : "."), visit);
+  }
+}
+
+/// Every number, set to a value just outside its range, is refused under its own key: no row is
+/// forgotten by the reader.
+int countRefused(const std::string& text, const std::vector<KeySpec>& keys) {
+  const YamlNode root = parseYaml({"file.yaml", text});
+  int refused = 0;
+  walkNumbers(keys, "", [&](const std::string& path, const KeySpec& spec) {
+    for (double value : outside(spec.range)) {
+      if (spec.type == ValueType::kInteger) {
+        value = value < spec.range.lower ? spec.range.lower - 1 : spec.range.upper + 1;
+      }
+      const std::string error = readError(root, keys, path, value);
+      EXPECT_NE(error.find(": " + path + ": "), std::string::npos) << path << " " << error;
+      EXPECT_TRUE(error.find("out of range") != std::string::npos ||
+                  error.find("is not a whole number") != std::string::npos)
+          << path << " " << value << " " << error;
+      ++refused;
+    }
+  });
+  return refused;
+}
+
+TEST(KeyTable, NoNumberOutsideItsRangeIsRead) {
+  std::string scene = test::kSceneText;
+  scene = test::replaced(scene, "{x_m: 0.7, y_m: 0.1, stiffness_N_per_m: 60}",
+                         "{x_m: 1, y_m: 1, stiffness_N_per_m: 1, foam: [{stiffness_N_per_m: 1, "
+                         "until_force_N: 1}]}");
+  scene = test::replaced(scene, "redundancy:", "    waypoints: [{}]\nredundancy:");
+  scene += "  troubles: [{kind: drop, from_s: 1, until_s: 2}]\n";
+  EXPECT_GT(countRefused(scene, sceneKeys()), 80);
+  const std::string robot = test::replaced(test::kHardwareRobotText, "  brake: {line: 5}",
+                                           "  enable: {line: 4}\n  brake: {line: 5}");
+  EXPECT_GT(countRefused(robot, robotKeys()), 60);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 usage: bad_input_test.py TACTUS
 """
+import json
 import os
 import pathlib
 import re
@@ -60,6 +61,30 @@ class BadInput(unittest.TestCase):
     def test_start_outside_limits(self):
         scene = self.write("start: [9, 0, 0, 0, 0, 0, 0, 0, 0]\n")
         self.expect_refused(scene, "scene.yaml:2:9: start[0]: ")
+
+    def test_overloaded_bus(self):
+        """More than 80 % of a bus is refused with the arithmetic; a little less is accepted."""
+        free = CONFIG / "scenes/free_motion.yaml"
+        start = f"{CONFIG}/robots/crops9/robot.yaml:19:7: can.buses[0]: can0 is overloaded: 3 x 115 "
+        self.expect_refused(free, start, "period_s=0.0009")
+        result = self.run_tactus("check", "--json", free)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        report = json.loads(result.stdout)
+        self.assertEqual(report["hardware_stages"], ["can"])
+        self.assertNotIn("can", report["stages"])
+        self.assertEqual([bus["interface"] for bus in report["buses"]], ["can0", "can1", "can2"])
+        for bus in report["buses"]:
+            bits = sum(t["frames"] * t["bits_a_frame"] / t["period_s"] for t in bus["terms"])
+            self.assertAlmostEqual(bus["bits_per_s"], bits)
+            self.assertAlmostEqual(bus["share"], 0.758)
+        text = self.run_tactus("check", free).stdout
+        self.assertIn("\ncan2     3 x 115 (RPDO1) + ", text)
+        self.assertNotIn("can3", text, "nobody reads the module")
+
+    def test_trouble_on_no_bus(self):
+        trouble = "{kind: drop, from_s: 1, until_s: 2, interface: can9}"
+        scene = self.write(f"simulation:\n  troubles: [{trouble}]\n")
+        self.expect_refused(scene, "scene.yaml:3:61: simulation.troubles[0].interface: ")
 
     def test_broken_yaml(self):
         self.expect_refused(self.write("start: [1, 2\n"), "scene.yaml:")

@@ -5,6 +5,9 @@
 /// Short spellings for the rows of the key tables.
 namespace tactus::keys {
 
+inline constexpr double kMaxTime_s = 86400.0;
+inline constexpr double kMaxStiffness_N_per_m = 1e9;
+
 inline Range above(double lower, double upper) { return {lower, upper, true}; }
 inline Range within(double lower, double upper) { return {lower, upper, false}; }
 

@@ -77,9 +77,20 @@ struct KeySpec {
 const std::vector<KeySpec>& sceneKeys();
 const std::vector<KeySpec>& robotKeys();
 
-/// Spellings of `controller.variant`, and of `task.components` in the order of TaskConfig.
+/// Spellings of `controller.variant`, of `task.components` in the order of TaskConfig, and of the
+/// kinds of troubles in the order of Trouble::Kind.
 const std::vector<std::string>& variantNames();
 const std::vector<std::string>& componentNames();
+const std::vector<std::string>& troubleNames();
+
+KeySpec simulationSection();  ///< of a scene
+
+/// Rows of robot.yaml that make up HardwareConfig.
+KeySpec canSection();
+KeySpec drivesSection();
+std::vector<KeySpec> moduleOnBusKeys();
+KeySpec gpioSection();
+KeySpec realTimeSection();
 
 /// "a number > 0 in s", "a list of 3 numbers in m": what an error says it expected.
 std::string describeExpectation(const KeySpec& spec);

@@ -11,6 +11,7 @@ namespace tactus {
 struct LoadedRobot {
   YamlNode root;  ///< for the places of values
   UrdfChain chain;
+  std::optional<HardwareConfig> hardware;  ///< absent without `can`
 };
 
 /// Reads a robot.yaml and its URDF and checks their values against each other. Throws InputError.

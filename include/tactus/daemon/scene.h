@@ -1,10 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tactus/control/controller_config.h"
+#include "tactus/io/hardware_config.h"
+#include "tactus/plant/trouble.h"
 #include "tactus/sim/plant_config.h"
 
 namespace tactus {
@@ -36,9 +39,16 @@ struct Scene {
   std::vector<Override> overrides;
   /// Every number of scene and robot, defaults included, by dotted path: for the log's readers.
   std::vector<std::pair<std::string, double>> numbers;
+  /// What this scene needs of the machine, without buses on which nothing of it is; absent: the
+  /// robot only simulates.
+  std::optional<HardwareConfig> hardware{};
+  std::vector<Trouble> troubles{};  ///< of the plant on the buses; simulation has none
 };
 
 /// The stages that exist in this scene, in the order of a cycle, by the names of the contract.
 std::vector<std::string> stageNames(const ControllerConfig& config);
+
+/// The stages that a run on this hardware has besides.
+std::vector<std::string> hardwareStageNames(const HardwareConfig& hardware);
 
 }  // namespace tactus

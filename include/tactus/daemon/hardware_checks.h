@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tactus/daemon/config_draft.h"
+#include "tactus/daemon/yaml_tree.h"
+#include "tactus/io/hardware_config.h"
+#include "tactus/plant/trouble.h"
+
+namespace tactus {
+
+/// Checks a robot's hardware against the scene's cycle. `root` is robot.yaml's. Throws InputError.
+void checkHardware(const YamlNode& root, const ConfigDraft& draft, const HardwareConfig& hardware);
+
+/// The scene's troubles, checked against the hardware that they happen to. `root` is the scene's.
+/// Throws InputError.
+std::vector<Trouble> loadTroubles(const YamlNode& root, const ConfigDraft& draft,
+                                  const std::optional<HardwareConfig>& hardware);
+
+}  // namespace tactus
