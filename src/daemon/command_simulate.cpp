@@ -13,6 +13,7 @@
 
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/located_error.h"
+#include "tactus/daemon/run_folder.h"
 #include "tactus/daemon/run_summary.h"
 #include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/simulation.h"
@@ -21,8 +22,6 @@ namespace tactus {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kSummaryName = "summary.json";
 
 struct Options {
   std::vector<std::string> scenes;
@@ -48,36 +47,11 @@ std::vector<Scene> loadScenes(const Options& options) {
   return scenes;
 }
 
-[[noreturn]] void failAtOutput(const fs::path& path, const std::string& problem,
-                               const std::string& expectation) {
-  failAt({std::make_shared<std::string>(path.string()), 1, 1}, "-o", problem, expectation);
-}
-
-/// Makes a scene's folder and removes the summary of an earlier run: a run that fails leaves none.
-fs::path prepareFolder(const std::string& directory, const std::string& scene) {
-  const fs::path folder = fs::path(directory) / scene;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) {
-    error = {errno, std::generic_category()};
-  }
-  if (error) {
-    failAtOutput(folder, "cannot be written to: " + error.message(),
-                 "expected a folder or room to make one");
-  }
-  fs::remove(folder / kSummaryName, error);
-  if (error) {
-    failAtOutput(folder / kSummaryName, "cannot be replaced: " + error.message(),
-                 "expected an earlier summary or nothing");
-  }
-  return folder;
-}
-
 /// All folders are prepared before the first scene runs, too.
 std::vector<fs::path> prepareFolders(const Options& options, const std::vector<Scene>& scenes) {
-  if (options.directory.empty()) failAtOutput("", "no folder", "expected a path");
   std::vector<fs::path> folders;
-  for (const Scene& scene : scenes) folders.push_back(prepareFolder(options.directory, scene.name));
+  for (const Scene& scene : scenes)
+    folders.push_back(prepareRunFolder(options.directory, scene.name));
   return folders;
 }
 
@@ -120,7 +94,7 @@ SimulationResult simulateScene(const Scene& scene, const fs::path& folder) {
   const SimulationResult result =
       simulate(scene, (folder / "run.ulg").string(), [&line](double share) { line.show(share); });
   line.clear();
-  writeSummary((folder / kSummaryName).string(), scene, result.figures, result.real_time_factor);
+  writeSummary((folder / "summary.json").string(), scene, result.figures, result.real_time_factor);
   return result;
 }
 

@@ -41,6 +41,7 @@ void fillInput(const RobotInput& input, CycleRecord& record) noexcept {
 void fillRecord(double t_s, const RobotInput& input, const ControllerOutput& output,
                 const Vector3& tool_error_m, CycleRecord& record) noexcept {
   record.t_s = t_s;
+  record.task_time_s = t_s;
   fillInput(input, record);
   fillContact(output.contact, record);
   copy(output.q_desired, record.q);

@@ -41,7 +41,7 @@ constexpr std::array kFields = {
     RecordField{"w", "m or rad", kPerTaskComponent, kDouble, kOutput, AT(w)},
     RecordField{"wd", "m or rad", kPerTaskComponent, kDouble, kOutput, AT(wd)},
     RecordField{"wd_dot", "m/s or rad/s", kPerTaskComponent, kDouble, kOutput, AT(wd_dot)},
-    RecordField{"fault", "", kScalar, kUint64, kOutput, AT(fault)},
+    RecordField{"fault", "", kScalar, kUint64, kObservation, AT(fault)},
     RecordField{"wake_latency_ns", "ns", kScalar, kInt64, kObservation, AT(wake_latency_ns)},
     RecordField{"step_ns", "ns", kScalar, kInt64, kObservation, AT(step_ns)},
     RecordField{"q_measured", "m or rad", kPerJoint, kDouble, kInput, AT(q_measured)},
@@ -53,6 +53,10 @@ constexpr std::array kFields = {
     RecordField{"tool_error_x_m", "m", kScalar, kDouble, kObservation, kToolError},
     RecordField{"tool_error_y_m", "m", kScalar, kDouble, kObservation, kToolError + kWord},
     RecordField{"tool_error_z_m", "m", kScalar, kDouble, kObservation, kToolError + 2 * kWord},
+    RecordField{"task_time_s", "s", kScalar, kDouble, kInput, AT(task_time_s)},
+    RecordField{"mode", "", kScalar, kUint64, kInput, AT(mode)},
+    RecordField{"read_ns", "ns", kScalar, kInt64, kObservation, AT(read_ns)},
+    RecordField{"write_ns", "ns", kScalar, kInt64, kObservation, AT(write_ns)},
 };
 #undef AT
 

@@ -5,8 +5,13 @@
 #include <cstring>
 #include <string_view>
 
+#include "tactus/daemon/apply_mode.h"
+
 namespace tactus {
 namespace {
+
+/// A longer gap is none that a loop went on after.
+constexpr double kMaxMissedCycles = 1e6;
 
 constexpr std::array<std::string_view, 7> kLawColumns = {
     "force_contact_N", "stiffness_N_per_m", "gamma", "x_dot_eff_m_per_s", "u_n", "u_j", "u_t"};
@@ -44,7 +49,15 @@ Replayer::Replayer(const Controller& controller, int joints, double period_s)
 CycleRecord Replayer::replay(const CycleRecord& recorded) noexcept {
   CycleRecord replayed = recorded;
   const RobotInput input = recordedInput(recorded, joints_);
-  controller_.update(input, recorded.t_s, period_s_, state_, output_);
+  const Mode mode = static_cast<Mode>(recorded.mode);
+  const double cycle = std::round(recorded.t_s / period_s_);
+  const double missed = cycle - cycle_before_ - 1.0;
+  if (missed > 0.0 && missed <= kMaxMissedCycles)
+    controller_.coast(static_cast<int>(missed), period_s_, state_);
+  applyMode(controller_, mode, mode_before_, input, state_);
+  controller_.update(input, recorded.task_time_s, period_s_, state_, output_);
+  cycle_before_ = cycle;
+  mode_before_ = mode;
   fillRecord(recorded.t_s, input, output_, Eigen::Map<const Vector3>(recorded.tool_error_m),
              replayed);
   return replayed;

@@ -16,23 +16,8 @@ double norm(const double (&vector)[3]) noexcept {
   return std::sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
 }
 
-/// The smallest value that at least `fraction` of all values do not exceed.
-long long quantile(std::vector<std::int64_t>& values, double fraction) {
-  const double rank = std::ceil(fraction * static_cast<double>(values.size()));
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
-
-RunFigures::StepTime stepTime(std::vector<std::int64_t> values) {
-  if (values.empty()) return {};
-  const auto [min, max] = std::minmax_element(values.begin(), values.end());
-  RunFigures::StepTime result;
-  result.min = *min;
-  result.max = *max;
-  result.median = quantile(values, 0.5);
-  result.p99 = quantile(values, 0.99);
-  return result;
+RunFigures::StepTime stepTime(const Histogram& times) {
+  return {times.min_ns(), times.percentile_ns(50), times.percentile_ns(99), times.max_ns()};
 }
 
 void writeContact(const ContactSummary& contact, JsonWriter& json) {
@@ -69,9 +54,7 @@ void writeFigures(const RunFigures& figures, JsonWriter& json) {
 }  // namespace
 
 RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
-    : limits_(config.limits), contacts_(config.force_control.has_value(), expected_cycles) {
-  step_times_ns_.reserve(expected_cycles);
-}
+    : limits_(config.limits), contacts_(config.force_control.has_value(), expected_cycles) {}
 
 void RunSummary::add(const CycleRecord& record) {
   ++figures_.cycles;
@@ -88,7 +71,7 @@ void RunSummary::add(const CycleRecord& record) {
   squared_error_sum_m2_ += error_m * error_m;
   addJoints(record);
   contacts_.add(record);
-  step_times_ns_.push_back(record.step_ns);
+  step_times_.add(record.step_ns);
 }
 
 void RunSummary::addJoints(const CycleRecord& record) noexcept {
@@ -110,19 +93,24 @@ RunFigures RunSummary::figures() const {
         std::sqrt(squared_error_sum_m2_ / static_cast<double>(figures.cycles));
   }
   figures.contacts = contacts_.contacts();
-  figures.step_time_ns = stepTime(step_times_ns_);
+  figures.step_time_ns = stepTime(step_times_);
   return figures;
 }
 
-std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor) {
+std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
+                        const LoopFigures* loop) {
   JsonWriter json;
   json.beginObject();
   json.key("scene").value(scene.name);
   json.key("variant").value(scene.variant);
   json.key("stages").beginArray();
   for (const std::string& stage : stageNames(scene.controller)) json.value(stage);
+  if (loop) {
+    for (const std::string& stage : hardwareStageNames(*scene.hardware)) json.value(stage);
+  }
   json.endArray();
   writeFigures(figures, json);
+  if (loop) writeLoopFigures(*loop, json);
   json.key("real_time_factor").value(real_time_factor);
   json.key("outcome").value(figures.fault == Fault::kNone ? "completed" : faultName(figures.fault));
   json.endObject();
@@ -130,9 +118,9 @@ std::string summaryJson(const Scene& scene, const RunFigures& figures, double re
 }
 
 void writeSummary(const std::string& path, const Scene& scene, const RunFigures& figures,
-                  double real_time_factor) {
+                  double real_time_factor, const LoopFigures* loop) {
   OutputFile file(path);
-  file.append(summaryJson(scene, figures, real_time_factor));
+  file.append(summaryJson(scene, figures, real_time_factor, loop));
   file.close();
 }
 

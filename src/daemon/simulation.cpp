@@ -6,6 +6,7 @@
 
 #include "tactus/control/controller.h"
 #include "tactus/daemon/cycle_record.h"
+#include "tactus/daemon/tool_error.h"
 #include "tactus/daemon/ulog_writer.h"
 #include "tactus/sim/simulated_robot.h"
 
@@ -20,16 +21,6 @@ constexpr long long kMaxReservedCycles = 1'000'000;
 
 std::int64_t nanoseconds(Clock::duration duration) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
-}
-
-/// Desired minus actual tool position, in the directions that belong to the task.
-Vector3 toolError(const TaskConfig& task, const TaskVector& w_d, const Vector3& p_BaseTool) {
-  Vector3 error = Vector3::Zero();
-  for (int i = 0; i < task.size; ++i) {
-    const int component = task.components[i];
-    if (component < 3) error[component] = w_d[i] - p_BaseTool[component];
-  }
-  return error;
 }
 
 bool isOver(const ControllerOutput& output) {

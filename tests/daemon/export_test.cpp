@@ -82,7 +82,7 @@ TEST(Export, HeaderNamesTheColumns) {
   const auto columns = recordColumns(e.shape);
   ASSERT_EQ(header.size(), columns.size());
   EXPECT_EQ(header.front(), "t_s");
-  EXPECT_EQ(header.back(), "tool_error_z_m");
+  EXPECT_EQ(header.back(), "write_ns");
 }
 
 TEST(Export, CommandExportsACutLogUpToTheCut) {

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "tactus/control/controller.h"
+#include "tactus/control/mode.h"
 #include "tactus/control/robot.h"
 #include "tactus/math/types.h"
 
@@ -36,10 +37,14 @@ struct CycleRecord {
   double tactile_moment_y_Nm = 0.0, tactile_moment_z_Nm = 0.0;
   std::uint64_t tactile_sequence = 0;
   double tool_error_m[3] = {};  ///< desired minus actual position of the measured arm, base frame
+  double task_time_s = 0.0;     ///< the task's clock, which stands still while the arm holds
+  std::uint64_t mode = static_cast<std::uint64_t>(Mode::kRunning);  ///< the number of a Mode
+  std::int64_t read_ns = 0;   ///< from waking to all frames and lines read; hardware only
+  std::int64_t write_ns = 0;  ///< from the set-points to the last frame handed over; hardware only
 };
 
 static_assert(std::is_trivially_copyable_v<CycleRecord> && std::is_standard_layout_v<CycleRecord>);
-static_assert(sizeof(CycleRecord) == 8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3));
+static_assert(sizeof(CycleRecord) == 8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 4));
 
 /// Copies one cycle into a record; wake_latency_ns and step_ns are left to the caller, who alone
 /// knows a clock. tool_error_m: see CycleRecord. Entries of arrays beyond the robot's joints and

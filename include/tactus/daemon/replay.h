@@ -24,6 +24,8 @@ class Replayer {
   const Controller& controller_;
   int joints_;
   double period_s_;
+  double cycle_before_ = -1.0;
+  Mode mode_before_ = Mode::kBoot;
   ControllerState state_;
   ControllerOutput output_;
 };

@@ -6,7 +6,9 @@
 
 #include "tactus/daemon/contact_list.h"
 #include "tactus/daemon/cycle_record.h"
+#include "tactus/daemon/loop_figures.h"
 #include "tactus/daemon/scene.h"
+#include "tactus/rt/histogram.h"
 
 namespace tactus {
 
@@ -27,7 +29,7 @@ struct RunFigures {
   std::vector<ContactSummary> contacts;
   struct StepTime {
     long long min = 0, median = 0, p99 = 0, max = 0;
-  } step_time_ns;
+  } step_time_ns;              ///< median and p99 to 1/16
   Fault fault = Fault::kNone;  ///< of the last cycle; a fault stays until the end
 };
 
@@ -48,14 +50,16 @@ class RunSummary {
   RunFigures figures_;
   ContactList contacts_;
   double squared_error_sum_m2_ = 0.0;
-  std::vector<std::int64_t> step_times_ns_;
+  Histogram step_times_;
 };
 
-/// The text of summary.json. real_time_factor: duration of the run over the time it took.
-std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor);
+/// The text of summary.json. real_time_factor: duration of the run over the time it took; loop: of
+/// a run on hardware.
+std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
+                        const LoopFigures* loop = nullptr);
 
 /// Writes it to a file; throws InputError if that cannot be opened, RunError if not written.
 void writeSummary(const std::string& path, const Scene& scene, const RunFigures& figures,
-                  double real_time_factor);
+                  double real_time_factor, const LoopFigures* loop = nullptr);
 
 }  // namespace tactus

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "tactus/control/controller.h"
+#include "tactus/control/mode.h"
+
+namespace tactus {
+
+/// How the mode of a cycle and of the one before act on the controller. A function of what the log
+/// holds, so that a replay does the same.
+void applyMode(const Controller& controller, Mode mode, Mode before, const RobotInput& input,
+               ControllerState& state) noexcept;
+
+}  // namespace tactus

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "tactus/control/controller.h"
+#include "tactus/control/mode.h"
+#include "tactus/daemon/cycle_record.h"
+#include "tactus/daemon/scene.h"
+#include "tactus/io/can_robot.h"
+#include "tactus/io/gpio_lines.h"
+
+namespace tactus {
+
+/// What the world outside the frames says to a cycle.
+struct CycleInput {
+  bool stop_requested = false;
+  GpioInputs lines;
+  bool are_lines_lost = false;                ///< a GPIO line could not be read or written
+  std::array<Fault, kMaxBuses> bus_faults{};  ///< of each bus's monitor
+  int missed_cycles = 0;                      ///< skipped just before this one
+  int late_in_a_row = 0;                      ///< this one included
+  bool has_forbidden_call = false;            ///< the loop left its list of system calls
+};
+
+/// Where the loop is and why; `joint` or `bus` tells of whom the fault speaks, -1: of nobody.
+struct ModeReport {
+  Mode mode = Mode::kBoot;
+  Fault fault = Fault::kNone;
+  int joint = -1;
+  int bus = -1;
+  DriveReport drive;  ///< of that joint, as it was
+};
+
+/// One cycle of the daemon between frames in and frames out: read - judge - control - limit -
+/// write. Knows no socket, no line and no clock, so that the whole of it runs in virtual time, too.
+class ControlCycle {
+ public:
+  /// The scene must have hardware.
+  explicit ControlCycle(const Scene& scene);
+
+  void receive(int bus, std::span<const CanFrame> frames) noexcept { robot_.receive(bus, frames); }
+  void update(const CycleInput& input) noexcept;
+  const FrameBatch& outbox(int bus) const noexcept { return robot_.outbox(bus); }
+  const CanFrame& probe() const noexcept { return robot_.probe(); }
+  GpioOutputs lines() const noexcept;
+
+  const ModeReport& report() const noexcept { return report_; }
+  bool isFinished() const noexcept { return mode_.mode == Mode::kOff; }
+  /// From the first cycle of motion on, every cycle is recorded.
+  bool isRecorded() const noexcept { return is_started_; }
+  /// Of this cycle; the times of its phases are the caller's to fill in.
+  const CycleRecord& record() const noexcept { return record_; }
+  /// Cycles in which the task went on.
+  long long taskCycles() const noexcept { return task_cycles_; }
+
+ private:
+  Fault judge(const CycleInput& input) noexcept;
+  Fault judgeBuses(const CycleInput& input) noexcept;
+  Fault judgeDrives() noexcept;
+  Fault judgeTactile() noexcept;
+  ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
+  bool areConfigured() noexcept;
+  bool isAtStart() const noexcept;
+  void noteCulprit() noexcept;
+  void control(const CycleInput& input, Mode before) noexcept;
+  DriveGoal driveGoal() const noexcept;
+
+  /// What judge() found, and of whom it speaks.
+  struct Judged {
+    Fault fault = Fault::kNone;
+    int joint = -1;
+    int bus = -1;
+  };
+
+  Controller controller_;
+  CanRobot robot_;
+  JointVector q_start_;
+  double start_tolerance_;
+  double period_s_;
+  int max_late_cycles_;
+  bool has_enable_line_;
+  ModeConfig mode_config_;
+  ModeState mode_;
+  Judged judged_;
+  ModeReport report_;
+  ControllerState state_;
+  RobotInput input_;
+  ControllerOutput output_;
+  CycleRecord record_;
+  bool is_started_ = false;  ///< the controller has a state
+  bool is_first_ = true;
+  bool heartbeat_ = false;
+  long long cycles_ = 0;       ///< since the first cycle of motion, missed ones included
+  long long task_cycles_ = 0;  ///< of these, those in which the task's clock ran
+};
+
+}  // namespace tactus

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "tactus/daemon/control_cycle.h"
+#include "tactus/daemon/loop_link.h"
+#include "tactus/io/can_socket.h"
+#include "tactus/io/gpio_lines.h"
+#include "tactus/rt/periodic_schedule.h"
+#include "tactus/rt/system_call_filter.h"
+
+namespace tactus {
+
+/// The cycle on real buses and lines. Opens all of them, or throws one of the errors of CanSocket,
+/// InterfaceLock and GpioLines and opens nothing.
+class HardwareLoop {
+ public:
+  /// The run ends by itself after this many cycles of the task; 0: never. `filter` tells of system
+  /// calls that the loop should not have made.
+  HardwareLoop(const Scene& scene, long long max_task_cycles, const SystemCallFilter& filter,
+               LoopLink& link);
+
+  /// One cycle; false after the last one.
+  bool cycle(const Wake& wake) noexcept;
+
+  // Of a loop that has ended:
+  std::size_t buses() const noexcept { return buses_.size(); }
+  const BusCounters& counters(std::size_t bus) const noexcept {
+    return buses_[bus]->socket.monitor().counters();
+  }
+  long long cycles() const noexcept { return cycles_; }
+  long long missedCycles() const noexcept { return missed_cycles_; }
+  std::int64_t cpuTime_ns() const noexcept { return cpu_end_ns_ - cpu_start_ns_; }
+  const ModeReport& report() const noexcept { return cycle_.report(); }
+
+ private:
+  struct Bus {
+    Bus(const HardwareConfig& hardware, int index);
+    InterfaceLock lock;
+    CanSocket socket;
+    FrameBatch frames;
+  };
+
+  void readAll(const Wake& wake) noexcept;
+  void writeAll() noexcept;
+  void publish(const Wake& wake, std::int64_t read_ns, std::int64_t control_ns,
+               std::int64_t write_ns) noexcept;
+
+  LoopLink& link_;
+  const SystemCallFilter& filter_;
+  long long max_task_cycles_;
+  std::vector<std::unique_ptr<Bus>> buses_;
+  std::optional<GpioLines> lines_;
+  ControlCycle cycle_;
+  CycleInput input_;
+  bool are_lines_written_ = true;
+  LoopRecord record_;
+  ModeReport reported_;
+  long long cycles_ = 0;
+  long long missed_cycles_ = 0;
+  std::int64_t cpu_start_ns_ = 0, cpu_end_ns_ = 0;
+};
+
+}  // namespace tactus

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tactus/daemon/json.h"
+#include "tactus/io/bus_monitor.h"
+#include "tactus/rt/histogram.h"
+
+namespace tactus {
+
+/// The figures that only a run in real time has.
+struct LoopFigures {
+  struct Bus {
+    std::string interface;
+    BusCounters counters;
+  };
+
+  Histogram wake_latency, read, control, write;
+  long long cycles = 0;                   ///< of the loop, from the first to the last
+  long long missed_cycles = 0;            ///< skipped because the loop woke too late
+  long long dropped_records = 0;          ///< that the telemetry had no room for
+  long long page_faults = 0;              ///< of the loop's thread after its first cycle
+  double cpu_ns_per_cycle = 0.0;          ///< of the loop's thread
+  double process_cpu_ns_per_cycle = 0.0;  ///< of the whole daemon, log included
+  std::vector<Bus> buses;
+};
+
+/// The member "loop" of summary.json.
+void writeLoopFigures(const LoopFigures& figures, JsonWriter& json);
+
+}  // namespace tactus

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <exception>
+#include <optional>
+#include <string>
+
+#include "tactus/daemon/loop_figures.h"
+#include "tactus/daemon/loop_link.h"
+#include "tactus/daemon/run_summary.h"
+#include "tactus/daemon/scene.h"
+#include "tactus/daemon/ulog_writer.h"
+
+namespace tactus {
+
+/// What becomes of a run's cycles outside the loop: the log, the figures, and a line for each
+/// change of mode.
+class Telemetry {
+ public:
+  /// folder: of run.ulg and summary.json, which exists; empty: no files. Throws as UlogWriter.
+  Telemetry(const Scene& scene, const std::string& folder);
+
+  /// Takes what the loop has handed over since the last call. False: the log cannot be written, so
+  /// the run should end.
+  bool drain(LoopLink& link);
+
+  /// After the loop's end: closes the log and writes the summary. `loop` has all but the times.
+  /// Throws RunError, also for what drain() met.
+  void finish(LoopFigures loop);
+
+ private:
+  void log(const CycleRecord& cycle);
+
+  const Scene& scene_;
+  std::string folder_;
+  std::optional<UlogWriter> log_;
+  RunSummary summary_;
+  LoopFigures loop_;
+  LoopRecord record_;
+  std::exception_ptr error_;
+};
+
+/// "fault: drive_silent, drive 2 on can1 (joint j5), no feedback ...: quick stop" and so on.
+std::string describeMode(const ModeReport& report, const Scene& scene);
+
+}  // namespace tactus

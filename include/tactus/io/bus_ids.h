@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "tactus/io/can_socket.h"
+#include "tactus/io/hardware_config.h"
+
+namespace tactus {
+
+/// The ids that the daemon reads from and writes to a bus.
+struct BusIds {
+  std::vector<IdFilter> received, sent;
+};
+
+BusIds busIds(const HardwareConfig& hardware, int bus);
+
+}  // namespace tactus

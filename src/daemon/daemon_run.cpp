@@ -1,0 +1,127 @@
+#include "tactus/daemon/daemon_run.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <time.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "tactus/daemon/hardware_loop.h"
+#include "tactus/daemon/run_error.h"
+#include "tactus/daemon/telemetry.h"
+#include "tactus/rt/memory.h"
+#include "tactus/rt/periodic_thread.h"
+#include "tactus/rt/scheduling.h"
+#include "tactus/rt/system_call_filter.h"
+
+namespace tactus {
+namespace {
+
+/// For the telemetry, which allocates while the loop runs.
+constexpr std::size_t kHeapBytes = std::size_t{16} << 20;
+constexpr long kDrainPeriod_ns = 20'000'000;
+
+sigset_t stopSignals() noexcept {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
+  return signals;
+}
+
+/// True if one came while waiting.
+bool waitForStopSignal() noexcept {
+  const sigset_t signals = stopSignals();
+  const timespec timeout{0, kDrainPeriod_ns};
+  return sigtimedwait(&signals, nullptr, &timeout) > 0;
+}
+
+std::int64_t processTime_ns() noexcept {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
+}
+
+/// A machine that is not fit for real time is refused unless the scene does without.
+void judgeRefusals(const std::vector<Refusal>& refusals, bool is_required) {
+  std::string text;
+  for (const Refusal& refusal : refusals)
+    text += fmt::format("{}{}: {}; to grant it: {}", text.empty() ? "" : "\n", refusal.what,
+                        refusal.why_it_matters, refusal.how_to_grant);
+  if (refusals.empty()) return;
+  if (is_required)
+    throw RunError(text +
+                   "\nno real time, so nothing moves; a scene may do without it by "
+                   "real_time: {required: false}");
+  fmt::print(stderr, "{}\ntactusd: goes on without, as the scene says\n", text);
+}
+
+std::unique_ptr<HardwareLoop> openHardware(const Scene& scene, double duration_s,
+                                           const SystemCallFilter& filter, LoopLink& link) {
+  const long long max_task_cycles = std::llround(duration_s / scene.period_s);
+  try {
+    return std::make_unique<HardwareLoop>(scene, max_task_cycles, filter, link);
+  } catch (const std::runtime_error& error) {
+    throw RunError(error.what());
+  }
+}
+
+LoopFigures loopFigures(const Scene& scene, const HardwareLoop& loop, const LoopLink& link,
+                        const PeriodicThread& thread, std::int64_t process_ns) {
+  LoopFigures figures;
+  const auto cycles = static_cast<double>(loop.cycles());
+  figures.cycles = loop.cycles();
+  figures.missed_cycles = loop.missedCycles();
+  figures.dropped_records = static_cast<long long>(link.records.dropped());
+  figures.page_faults = thread.pageFaults().minor + thread.pageFaults().major;
+  figures.cpu_ns_per_cycle = static_cast<double>(loop.cpuTime_ns()) / cycles;
+  figures.process_cpu_ns_per_cycle = static_cast<double>(process_ns) / cycles;
+  for (std::size_t i = 0; i < loop.buses(); ++i)
+    figures.buses.push_back({scene.hardware->buses[i].interface, loop.counters(i)});
+  return figures;
+}
+
+}  // namespace
+
+Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
+  const sigset_t signals = stopSignals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  const RealTimeConfig& real_time = scene.hardware->real_time;
+
+  SystemCallFilter filter(kLoopSystemCalls);
+  LoopLink link;
+  const auto loop = openHardware(scene, options.duration_s, filter, link);
+  Telemetry telemetry(scene, options.folder);
+
+  std::vector<Refusal> refusals;
+  if (auto refusal = lockMemory(kHeapBytes)) refusals.push_back(*refusal);
+  const CpuLatencyHold latency_hold;
+  if (latency_hold.refusal()) refusals.push_back(*latency_hold.refusal());
+  PeriodicThreadConfig config;
+  config.period_ns = std::llround(1e9 * scene.period_s);
+  config.real_time = {real_time.priority, real_time.cpu};
+  config.filter = &filter;
+  std::atomic<bool> has_ended{false};
+  PeriodicThread thread(config, [&](const Wake& wake) noexcept {
+    const bool goes_on = loop->cycle(wake);
+    if (!goes_on) has_ended.store(true, std::memory_order_release);
+    return goes_on;
+  });
+  refusals.insert(refusals.end(), thread.refusals().begin(), thread.refusals().end());
+  judgeRefusals(refusals, real_time.required);
+
+  const std::int64_t process_start_ns = processTime_ns();
+  thread.start();
+  while (!has_ended.load(std::memory_order_acquire)) {
+    if (waitForStopSignal()) link.stop_requested.store(true, std::memory_order_relaxed);
+    if (!telemetry.drain(link)) link.stop_requested.store(true, std::memory_order_relaxed);
+  }
+  thread.join();
+  telemetry.drain(link);
+  telemetry.finish(loopFigures(scene, *loop, link, thread, processTime_ns() - process_start_ns));
+  return loop->report().fault;
+}
+
+}  // namespace tactus

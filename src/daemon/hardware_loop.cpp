@@ -1,0 +1,103 @@
+#include "tactus/daemon/hardware_loop.h"
+
+#include <time.h>
+
+#include <algorithm>
+
+#include "tactus/io/bus_ids.h"
+#include "tactus/rt/periodic_timer.h"
+
+namespace tactus {
+namespace {
+
+std::int64_t threadTime_ns() noexcept {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
+}
+
+CanSocket openSocket(const HardwareConfig& hardware, int bus) {
+  const BusIds ids = busIds(hardware, bus);
+  return CanSocket(hardware.buses[bus].interface, ids.received, ids.sent);
+}
+
+}  // namespace
+
+HardwareLoop::Bus::Bus(const HardwareConfig& hardware, int index)
+    : lock(hardware.buses[index].interface), socket(openSocket(hardware, index)) {}
+
+HardwareLoop::HardwareLoop(const Scene& scene, long long max_task_cycles,
+                           const SystemCallFilter& filter, LoopLink& link)
+    : link_(link), filter_(filter), max_task_cycles_(max_task_cycles), cycle_(scene) {
+  const HardwareConfig& hardware = *scene.hardware;
+  for (std::size_t i = 0; i < hardware.buses.size(); ++i)
+    buses_.push_back(std::make_unique<Bus>(hardware, static_cast<int>(i)));
+  if (hardware.gpio) lines_.emplace(*hardware.gpio, scene.period_s);
+}
+
+bool HardwareLoop::cycle(const Wake& wake) noexcept {
+  const std::int64_t woken_ns = now_ns();
+  if (cycles_ == 0) cpu_start_ns_ = threadTime_ns();
+  readAll(wake);
+  const std::int64_t read_ns = now_ns();
+  cycle_.update(input_);
+  const std::int64_t controlled_ns = now_ns();
+  writeAll();
+  const std::int64_t written_ns = now_ns();
+  ++cycles_;
+  missed_cycles_ += wake.skipped;
+  publish(wake, read_ns - woken_ns, controlled_ns - read_ns, written_ns - controlled_ns);
+  if (!cycle_.isFinished()) return true;
+  cpu_end_ns_ = threadTime_ns();
+  return false;
+}
+
+void HardwareLoop::readAll(const Wake& wake) noexcept {
+  for (std::size_t i = 0; i < buses_.size(); ++i) {
+    Bus& bus = *buses_[i];
+    bus.socket.receive(bus.frames);
+    bus.socket.monitor().update();
+    input_.bus_faults[i] = bus.socket.monitor().fault();
+    cycle_.receive(static_cast<int>(i), bus.frames.frames());
+  }
+  if (lines_) input_.lines = lines_->read();
+  const bool is_done = max_task_cycles_ > 0 && cycle_.taskCycles() + 1 >= max_task_cycles_;
+  input_.are_lines_lost = !input_.lines.is_valid || !are_lines_written_;
+  input_.stop_requested =
+      input_.stop_requested || is_done || link_.stop_requested.load(std::memory_order_relaxed);
+  input_.missed_cycles = static_cast<int>(std::min<std::int64_t>(wake.skipped, 1'000'000));
+  input_.late_in_a_row = static_cast<int>(std::min<std::int64_t>(wake.late_in_a_row, 1'000'000));
+  input_.has_forbidden_call = filter_.forbiddenCalls().count > 0;
+}
+
+void HardwareLoop::writeAll() noexcept {
+  for (std::size_t i = 0; i < buses_.size(); ++i) {
+    CanSocket& socket = buses_[i]->socket;
+    const FrameBatch& outbox = cycle_.outbox(static_cast<int>(i));
+    if (outbox.empty()) continue;
+    if (socket.monitor().mayProbe()) {
+      socket.probe(cycle_.probe());
+    } else {
+      socket.send(outbox.frames());
+    }
+  }
+  if (lines_) are_lines_written_ = lines_->write(cycle_.lines());
+}
+
+void HardwareLoop::publish(const Wake& wake, std::int64_t read_ns, std::int64_t control_ns,
+                           std::int64_t write_ns) noexcept {
+  record_.cycle = cycle_.record();
+  record_.cycle.wake_latency_ns = wake.latency_ns;
+  record_.cycle.read_ns = read_ns;
+  record_.cycle.step_ns = control_ns;
+  record_.cycle.write_ns = write_ns;
+  record_.is_in_motion = cycle_.isRecorded();
+  link_.records.push(record_);
+  const ModeReport& report = cycle_.report();
+  const bool is_new = report.mode != reported_.mode || report.fault != reported_.fault;
+  if (!is_new && cycles_ > 1) return;
+  reported_ = report;
+  link_.reports.push(report);
+}
+
+}  // namespace tactus

@@ -1,0 +1,45 @@
+#include "tactus/daemon/run_folder.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <memory>
+#include <system_error>
+
+#include "tactus/daemon/located_error.h"
+
+namespace tactus {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSummaryName = "summary.json";
+
+[[noreturn]] void failAtOutput(const fs::path& path, const std::string& problem,
+                               const std::string& expectation) {
+  failAt({std::make_shared<std::string>(path.string()), 1, 1}, "-o", problem, expectation);
+}
+
+}  // namespace
+
+fs::path prepareRunFolder(const std::string& directory, const std::string& scene) {
+  if (directory.empty()) failAtOutput("", "no folder", "expected a path");
+  const fs::path folder = fs::path(directory) / scene;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    error = {errno, std::generic_category()};
+  }
+  if (error) {
+    failAtOutput(folder, "cannot be written to: " + error.message(),
+                 "expected a folder or room to make one");
+  }
+  fs::remove(folder / kSummaryName, error);
+  if (error) {
+    failAtOutput(folder / kSummaryName, "cannot be replaced: " + error.message(),
+                 "expected an earlier summary or nothing");
+  }
+  return folder;
+}
+
+}  // namespace tactus

@@ -1,0 +1,62 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "tactus/daemon/commands.h"
+#include "tactus/daemon/daemon_run.h"
+#include "tactus/daemon/input_error.h"
+#include "tactus/daemon/run_folder.h"
+#include "tactus/daemon/scene_loader.h"
+
+namespace {
+
+struct Options {
+  std::string scene, folder;
+  std::vector<std::string> settings;
+  double duration_s = 0.0;
+};
+
+int run(const Options& options) {
+  std::vector<tactus::Override> overrides;
+  for (const std::string& setting : options.settings)
+    overrides.push_back(tactus::parseOverride(setting));
+  const tactus::Scene scene = tactus::loadScene(options.scene, overrides);
+  if (!scene.hardware)
+    throw tactus::InputError(options.scene +
+                             ":1:1: robot: has no can section, expected buses and "
+                             "drives to run on");
+  tactus::DaemonOptions run;
+  run.duration_s = options.duration_s;
+  if (!options.folder.empty())
+    run.folder = tactus::prepareRunFolder(options.folder, scene.name).string();
+  const tactus::Fault fault = tactus::runDaemon(scene, run);
+  return fault == tactus::Fault::kNone ? tactus::kExitDone : tactus::kExitFault;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Tactile feedback control of redundant robot arms: the daemon", "tactusd"};
+  app.add_option("SCENE", options.scene, "Scene file")->required();
+  app.add_option("-o,--output", options.folder,
+                 "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files");
+  app.add_option("--duration", options.duration_s, "End after so many seconds of motion")
+      ->check(CLI::Range(1e-3, 1e9));
+  app.add_option("--set", options.settings, "Replace a value: controller.damping=0.7")
+      ->allow_extra_args(false);
+  try {
+    app.parse(argc, argv);
+    return run(options);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? tactus::kExitDone : tactus::kExitUsage;
+  } catch (const tactus::InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return tactus::kExitBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tactusd: %s\n", error.what());
+    return tactus::kExitFault;
+  }
+}

@@ -1,0 +1,90 @@
+#include "tactus/daemon/telemetry.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "tactus/daemon/run_error.h"
+#include "tactus/daemon/tool_error.h"
+#include "tactus/io/sdo_abort.h"
+
+namespace tactus {
+namespace {
+
+std::string describeRefusal(const SetupFailure& failure) {
+  return fmt::format(", object {:04X}:{:02X}: {}", failure.index, failure.subindex,
+                     failure.abort_code == 0 ? "no answer" : sdoAbortName(failure.abort_code));
+}
+
+std::string describeDrive(const ModeReport& report, const Scene& scene) {
+  const DriveConfig& drive = scene.hardware->drives[report.joint];
+  std::string text =
+      fmt::format("drive {} on {} (joint {})", drive.node_id,
+                  scene.hardware->buses[drive.bus].interface, scene.joint_names[report.joint]);
+  if (report.drive.emergency_code != 0)
+    text += fmt::format(", emergency code 0x{:04X}", report.drive.emergency_code);
+  if (report.fault == Fault::kDriveSetupRefused)
+    text += describeRefusal(report.drive.setup_failure);
+  return text + fmt::format(", {}", driveStateName(report.drive.state));
+}
+
+std::string describeCulprit(const ModeReport& report, const Scene& scene) {
+  if (report.joint >= 0) return ", " + describeDrive(report, scene);
+  if (report.bus >= 0) return ", " + scene.hardware->buses[report.bus].interface;
+  return "";
+}
+
+}  // namespace
+
+std::string describeMode(const ModeReport& report, const Scene& scene) {
+  std::string text = modeName(report.mode);
+  if (report.fault == Fault::kNone) return text;
+  const FaultRow& row = faultRow(report.fault);
+  return text + fmt::format(": {}{}: {}; reaction: {}", row.name, describeCulprit(report, scene),
+                            row.detection, reactionName(row.reaction));
+}
+
+Telemetry::Telemetry(const Scene& scene, const std::string& folder)
+    : scene_(scene), folder_(folder), summary_(scene.controller, 0) {
+  if (!folder_.empty()) log_.emplace(folder_ + "/run.ulg", describeLog(scene));
+}
+
+bool Telemetry::drain(LoopLink& link) {
+  while (link.records.pop(record_)) {
+    CycleRecord& cycle = record_.cycle;
+    loop_.wake_latency.add(cycle.wake_latency_ns);
+    loop_.read.add(cycle.read_ns);
+    loop_.control.add(cycle.step_ns);
+    loop_.write.add(cycle.write_ns);
+    if (!record_.is_in_motion) continue;
+    fillToolError(scene_.controller, cycle);
+    log(cycle);
+    summary_.add(cycle);
+  }
+  ModeReport report;
+  while (link.reports.pop(report))
+    fmt::print(stderr, "tactusd: {}\n", describeMode(report, scene_));
+  return !error_;
+}
+
+void Telemetry::log(const CycleRecord& cycle) {
+  if (!log_ || error_) return;
+  try {
+    log_->write(cycle);
+  } catch (const RunError&) {
+    error_ = std::current_exception();
+  }
+}
+
+void Telemetry::finish(LoopFigures loop) {
+  if (error_) std::rethrow_exception(error_);
+  if (!log_) return;
+  log_->close();
+  loop.wake_latency = loop_.wake_latency;
+  loop.read = loop_.read;
+  loop.control = loop_.control;
+  loop.write = loop_.write;
+  writeSummary(folder_ + "/summary.json", scene_, summary_.figures(), 1.0, &loop);
+}
+
+}  // namespace tactus

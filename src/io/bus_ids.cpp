@@ -1,0 +1,29 @@
+#include "tactus/io/bus_ids.h"
+
+#include "tactus/io/canopen.h"
+
+namespace tactus {
+
+BusIds busIds(const HardwareConfig& hardware, int bus) {
+  BusIds ids;
+  for (const DriveConfig& drive : hardware.drives) {
+    if (drive.bus != bus) continue;
+    const auto node = static_cast<std::uint32_t>(drive.node_id);
+    for (const std::uint32_t base :
+         {cob_id::kEmergency, cob_id::kTpdo1, cob_id::kSdoAnswer, cob_id::kHeartbeat})
+      ids.received.push_back({base + node});
+    for (const std::uint32_t base : {cob_id::kRpdo1, cob_id::kSdoRequest})
+      ids.sent.push_back({base + node});
+  }
+  if (!ids.sent.empty()) {
+    const auto master = static_cast<std::uint32_t>(hardware.canopen.master_node_id);
+    for (const std::uint32_t id : {cob_id::kNmt, cob_id::kSync, cob_id::kHeartbeat + master})
+      ids.sent.push_back({id});
+  }
+  if (hardware.tactile && hardware.tactile->bus == bus) {
+    for (std::uint32_t k = 0; k < 4; ++k) ids.received.push_back({hardware.tactile->first_id + k});
+  }
+  return ids;
+}
+
+}  // namespace tactus

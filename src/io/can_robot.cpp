@@ -1,0 +1,95 @@
+#include "tactus/io/can_robot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/io/canopen.h"
+
+namespace tactus {
+namespace {
+
+/// A drive that has gone silent cannot be seen to be off: its own heartbeat watch stops it.
+bool isOff(const DriveReport& report) noexcept {
+  if (!report.is_configured || report.fault == Fault::kDriveSilent) return true;
+  return report.state != DriveState::kOperationEnabled &&
+         report.state != DriveState::kQuickStopActive &&
+         report.state != DriveState::kFaultReactionActive;
+}
+
+}  // namespace
+
+CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
+    : outboxes_(hardware.buses.size()),
+      has_drives_(hardware.buses.size(), false),
+      heartbeat_(heartbeatFrame(hardware.canopen.master_node_id, NmtState::kOperational)),
+      cycles_a_heartbeat_(
+          std::max(1, static_cast<int>(hardware.canopen.heartbeat_period_s / period_s + 0.5))),
+      q_commanded_(JointVector::Zero(static_cast<int>(hardware.drives.size()))) {
+  drives_.reserve(hardware.drives.size());
+  for (const DriveConfig& drive : hardware.drives) {
+    drives_.emplace_back(drive, hardware.canopen, period_s);
+    has_drives_[drive.bus] = true;
+  }
+  if (!hardware.tactile) return;
+  tactile_.emplace(*hardware.tactile);
+  tactile_bus_ = hardware.tactile->bus;
+}
+
+void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
+  for (const CanFrame& frame : frames) {
+    for (Drive& drive : drives_) {
+      if (drive.bus() == bus) drive.receive(frame);
+    }
+    if (bus == tactile_bus_) tactile_->receive(frame);
+  }
+}
+
+void CanRobot::read(RobotInput& input) noexcept {
+  input.q_measured.resize(static_cast<int>(drives_.size()));
+  for (std::size_t i = 0; i < drives_.size(); ++i)
+    input.q_measured[static_cast<int>(i)] = drives_[i].report().position;
+  if (tactile_) input.tactile = tactile_->sample();
+}
+
+void CanRobot::command(DriveGoal goal, bool is_restart, const JointVector& q) noexcept {
+  goal_ = goal;
+  is_restart_ = is_restart;
+  q_commanded_ = q;
+}
+
+void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
+  for (FrameBatch& outbox : outboxes_) outbox.clear();
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const int joint = static_cast<int>(i);
+    drives_[i].update(goal_, is_restart_, velocity_setpoint[joint], q_commanded_[joint],
+                      outboxes_[drives_[i].bus()]);
+  }
+  const bool is_heartbeat_due = cycles_to_heartbeat_ == 0;
+  cycles_to_heartbeat_ = (is_heartbeat_due ? cycles_a_heartbeat_ : cycles_to_heartbeat_) - 1;
+  for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
+    if (!has_drives_[bus]) continue;
+    outboxes_[bus].push(syncFrame());
+    if (is_heartbeat_due) outboxes_[bus].push(heartbeat_);
+  }
+}
+
+DrivesReport CanRobot::drives() const noexcept {
+  DrivesReport all{true, true, true, Fault::kNone, -1};
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const DriveReport& report = drives_[i].report();
+    all.are_configured = all.are_configured && report.is_configured;
+    all.are_enabled = all.are_enabled && report.state == DriveState::kOperationEnabled;
+    all.are_disabled = all.are_disabled && isOff(report);
+    if (report.fault == Fault::kNone || all.fault != Fault::kNone) continue;
+    all.fault = report.fault;
+    all.joint = static_cast<int>(i);
+  }
+  return all;
+}
+
+bool CanRobot::hasPositions() const noexcept {
+  return std::all_of(drives_.begin(), drives_.end(),
+                     [](const Drive& drive) { return drive.report().has_position; });
+}
+
+}  // namespace tactus

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "support/telemetry.h"
+#include "support/virtual_robot_cell.h"
+#include "tactus/daemon/run_summary.h"
+#include "tactus/daemon/scene_loader.h"
+#include "tactus/daemon/simulation.h"
+#include "tactus/daemon/tool_error.h"
+
+/// The daemon's cycle against the plant on buses of bit time.
+namespace tactus {
+namespace {
+
+Scene load(const std::string& name, const std::vector<Override>& overrides = {}) {
+  return loadScene(std::string(TACTUS_SOURCE_DIR) + "/config/scenes/" + name + ".yaml", overrides);
+}
+
+RunFigures runOnBuses(const Scene& scene, int cycles) {
+  test::VirtualRobotCell cell(scene);
+  RunSummary summary(scene.controller, 0);
+  EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000)) << faultName(cell.cycle.report().fault);
+  for (int i = 0; i < cycles; ++i) {
+    CycleRecord record = cell.cycle.record();
+    fillToolError(scene.controller, record);
+    summary.add(record);
+    EXPECT_EQ(cell.cycle.report().mode, Mode::kRunning)
+        << i << ": " << faultName(cell.cycle.report().fault);
+    if (cell.cycle.report().mode != Mode::kRunning) break;
+    cell.step();
+  }
+  EXPECT_EQ(cell.plant.counters().stale_setpoints_applied, 0u);
+  return summary.figures();
+}
+
+class SceneOnBuses : public testing::TestWithParam<const char*> {};
+
+TEST_P(SceneOnBuses, HasTheForcesOfTheSimulation) {
+  const Scene scene = load(GetParam());
+  const test::TemporaryFile log(GetParam());
+  const RunFigures expected = simulate(scene, log.path(), [](double) {}).figures;
+  const RunFigures figures = runOnBuses(scene, 13000);
+  EXPECT_NEAR(figures.peak_force_N, expected.peak_force_N, 0.02 * expected.peak_force_N);
+  EXPECT_NEAR(figures.final_force_N, expected.final_force_N, 0.02 * expected.final_force_N);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SceneOnBuses,
+                         testing::Values("free_motion", "scenario1_none", "scenario1_null_space",
+                                         "scenario1_joint_space", "scenario1_multi_space",
+                                         "scenario2_assumed", "scenario2_estimated",
+                                         "scenario3_assumed", "scenario3_estimated",
+                                         "scenario3_estimated_fast"),
+                         [](const auto& scene) { return scene.param; });
+
+}  // namespace
+}  // namespace tactus
