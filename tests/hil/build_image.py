@@ -64,10 +64,10 @@ def initramfs(folder, kernel, programs, folders):
 
 
 def build(folder, programs=(), folders=(), cache=CACHE):
-    """Writes vmlinuz, initrd and gpio.aml into the folder, which has to exist."""
+    """Writes vmlinux, initrd and gpio.aml into the folder, which has to exist."""
     folder = Path(folder)
     kernel = kernel_folder(Path(cache))
-    shutil.copyfile(kernel / "vmlinuz", folder / "vmlinuz")
+    shutil.copyfile(kernel / "vmlinux", folder / "vmlinux")
     (folder / "initrd").write_bytes(initramfs(folder, kernel, list(programs), folders))
     subprocess.run([installed("iasl"), "-p", folder / "gpio", HERE / "gpio.asl"],
                    stdout=subprocess.DEVNULL, check=True)  # fmt: skip

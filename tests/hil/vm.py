@@ -10,6 +10,7 @@ the script's status, or 125 where the machine did not get so far."""
 
 import argparse
 import io
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -24,17 +25,18 @@ MACHINE_FAILED = 125
 
 
 class MachineFailed(RuntimeError):
-    pass
+    """The script's status is not known."""
 
 
 def _command(folder, test, shift):
     options = f"console=ttyS0 quiet panic=-1 iomem=relaxed memmap=64K$0x3f000000 test={test}"
     return [
+        "setpriv", "--pdeathsig", "KILL",  # whoever kills this script kills the machine
         installed("qemu-system-x86_64"), "-M", "pc", "-cpu", "max", "-m", "1024", "-smp", "1",
         "-accel", "tcg", "-icount", f"shift={shift},sleep=off", "-seed", "42",
         "-rtc", "base=2025-01-01T00:00:00,clock=vm",
         "-nodefaults", "-no-reboot", "-display", "none", "-monitor", "none",
-        "-kernel", folder / "vmlinuz", "-initrd", folder / "initrd", "-append", options,
+        "-kernel", folder / "vmlinux", "-initrd", folder / "initrd", "-append", options,
         "-acpitable", f"file={folder}/gpio.aml",
         "-serial", f"file:{folder}/console", "-serial", "null",
         "-object", f"memory-backend-file,id=shared,share=on,size={SHARED_MIB}M,"
@@ -52,13 +54,27 @@ def _handed_over(path):
         return int(header[1]), shared.read(int(header[2]))
 
 
+def clear(out):
+    """Results of an earlier run must not pass for this one's."""
+    if out.exists() and any(out.iterdir()):
+        if not (out / "console.txt").exists():
+            raise RuntimeError(f"{out} holds files, but no console.txt: not a folder of results")
+        shutil.rmtree(out)
+    out.mkdir(parents=True, exist_ok=True)
+
+
+def print_console(out):
+    if (out / "console.txt").exists():
+        sys.stdout.write((out / "console.txt").read_text(errors="replace"))
+
+
 def run(test, out, programs=(), folders=(), shift=0, timeout_s=600, cache=None):
     """Returns the script's exit status. Raises MachineFailed; the console's output is in
     out/console.txt even then."""
     if not (HERE / "guest" / f"{test}.sh").exists():
         raise MachineFailed(f"there is no tests/hil/guest/{test}.sh")
     cache.mkdir(parents=True, exist_ok=True)
-    out.mkdir(parents=True, exist_ok=True)
+    clear(out)
     with tempfile.TemporaryDirectory(prefix="run-", dir=cache) as scratch:
         folder = Path(scratch)
         build(folder, programs, folders, cache)
@@ -91,11 +107,10 @@ def main():
         try:
             status = run(options.test, out, options.program, options.folder, options.shift,
                          options.timeout, options.cache)  # fmt: skip
-        except MachineFailed as failure:
+        except RuntimeError as failure:
             print(f"vm: {failure}", file=sys.stderr)
             status = MACHINE_FAILED
-        if (out / "console.txt").exists():
-            sys.stdout.write((out / "console.txt").read_text(errors="replace"))
+        print_console(out)
     return status
 
 

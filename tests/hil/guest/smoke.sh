@@ -1,5 +1,5 @@
 # Whether the virtual machine has what the other tests stand on.
-. /guest/common.sh
+. "$ROOT/guest/common.sh"
 
 uname -a
 case $(uname -v) in *PREEMPT_RT*) ;; *) fail "no PREEMPT_RT kernel" ;; esac
