@@ -32,11 +32,33 @@ bool touchHeap(std::size_t bytes) {
   return true;
 }
 
-std::string memoryLimit() {
+rlim_t memoryLimit() {
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
-  if (limit.rlim_cur == RLIM_INFINITY) return "is unlimited";
-  return "is " + std::to_string(limit.rlim_cur / 1024) + " KiB";
+  return limit.rlim_cur;
+}
+
+/// Once future memory is locked, too, a limit makes allocations fail that went well before.
+bool isLimited() {
+  const rlim_t limit = memoryLimit();
+  if (limit == RLIM_INFINITY) return false;
+  void* const beyond = mmap(nullptr, limit + 1, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (beyond == MAP_FAILED) return true;
+  munmap(beyond, limit + 1);
+  return false;
+}
+
+int lockAll() {
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) return errno;
+  if (!isLimited()) return 0;
+  munlockall();
+  return EPERM;
+}
+
+std::string limitText() {
+  const rlim_t limit = memoryLimit();
+  if (limit == RLIM_INFINITY) return "is unlimited";
+  return "is " + std::to_string(limit / 1024) + " KiB";
 }
 
 Refusal refusal(const std::string& what, int error) {
@@ -44,14 +66,14 @@ Refusal refusal(const std::string& what, int error) {
           "a page that is not in memory delays a cycle by microseconds to many milliseconds",
           "LimitMEMLOCK=infinity in the systemd unit, or 'USER - memlock unlimited' in "
           "/etc/security/limits.d/, or CAP_IPC_LOCK in a container (RLIMIT_MEMLOCK " +
-              memoryLimit() + ")"};
+              limitText() + ")"};
 }
 
 }  // namespace
 
 std::optional<Refusal> lockMemory(std::size_t heap_bytes) {
   keepHeapInOnePiece();
-  const int error = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+  const int error = lockAll();
   const bool is_touched = touchHeap(heap_bytes);  // useful without the lock, too
   if (error != 0) return refusal("locking memory", error);
   if (!is_touched)

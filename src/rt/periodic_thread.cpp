@@ -29,6 +29,7 @@ void check(int error, const char* what) {
 }  // namespace
 
 void PeriodicThread::setUp() {
+  PeriodicSchedule(0, config_.period_ns);  // throws here, where it can be caught
   PeriodicTimer timer(kAskAgain_ns);
   create();
   while (stage_.load() == Stage::kSettingUp) timer.wait();

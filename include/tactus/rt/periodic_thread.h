@@ -32,8 +32,8 @@ struct PeriodicThreadConfig {
 ///     thread.join();
 class PeriodicThread {
  public:
-  /// `cycle` returns whether there is to be another one. Throws std::system_error if there is no
-  /// thread to be had.
+  /// `cycle` returns whether there is to be another one. Throws std::invalid_argument for a period
+  /// that is none, std::system_error if there is no such thread to be had.
   template <typename Cycle>
   PeriodicThread(const PeriodicThreadConfig& config, Cycle cycle)
       : config_(config), cycle_(std::move(cycle)), stack_(config.stack_bytes) {

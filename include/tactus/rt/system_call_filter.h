@@ -15,7 +15,8 @@
 
 namespace tactus {
 
-/// All that the daemon's loop asks of the kernel.
+/// All that the daemon's loop asks of the kernel, on a ThreadStack (glibc gives its own stacks back
+/// with madvise() when a thread ends).
 inline constexpr std::array<int, 10> kLoopSystemCalls{
     SYS_clock_nanosleep,  // to the next cycle
     SYS_clock_gettime,    // where the vDSO cannot read the clock, and for CPU time
