@@ -62,7 +62,7 @@ def run_on_host(test, out, programs, folders, timeout_s):
 
 def choose(test, wanted):
     """The layer, and why."""
-    first_lines = (HERE / "guest" / f"{test}.sh").read_text().split("\n")[:5]
+    first_lines = vm.guest_script(test).read_text().split("\n")[:5]
     if wanted:
         return wanted, "as asked for"
     if "# layers: host vm" not in first_lines:
@@ -81,10 +81,10 @@ def main():
     add_content_options(parser)
     options = parser.parse_args()
     content = (options.program, options.folder)
-    layer, reason = choose(options.test, options.layer)
-    print(f"hil {options.test}: layer {layer} ({reason})", flush=True)
     start = time.monotonic()
     try:
+        layer, reason = choose(options.test, options.layer)
+        print(f"hil {options.test}: layer {layer} ({reason})", flush=True)
         if layer == "host":
             status = run_on_host(options.test, options.out, *content, options.timeout)
         else:

@@ -54,6 +54,13 @@ def _handed_over(path):
         return int(header[1]), shared.read(int(header[2]))
 
 
+def guest_script(test):
+    script = HERE / "guest" / f"{test}.sh"
+    if not script.exists():
+        raise RuntimeError(f"there is no {script}")
+    return script
+
+
 def clear(out):
     """Results of an earlier run must not pass for this one's."""
     if out.exists() and any(out.iterdir()):
@@ -71,8 +78,7 @@ def print_console(out):
 def run(test, out, programs=(), folders=(), shift=0, timeout_s=600, cache=None):
     """Returns the script's exit status. Raises MachineFailed; the console's output is in
     out/console.txt even then."""
-    if not (HERE / "guest" / f"{test}.sh").exists():
-        raise MachineFailed(f"there is no tests/hil/guest/{test}.sh")
+    guest_script(test)
     cache.mkdir(parents=True, exist_ok=True)
     clear(out)
     with tempfile.TemporaryDirectory(prefix="run-", dir=cache) as scratch:
@@ -83,7 +89,7 @@ def run(test, out, programs=(), folders=(), shift=0, timeout_s=600, cache=None):
                            timeout=timeout_s, check=True)  # fmt: skip
             status, archive = _handed_over(folder / "shared")
         except subprocess.TimeoutExpired as late:
-            raise MachineFailed(f"the machine did not end within {late.timeout} s") from late
+            raise MachineFailed(f"the machine did not end within {timeout_s} s") from late
         except subprocess.CalledProcessError as failed:
             raise MachineFailed(f"QEMU exits with {failed.returncode}") from failed
         finally:
