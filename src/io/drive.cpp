@@ -15,9 +15,8 @@ namespace {
 constexpr int kSettledCycles = 3;
 
 PowerGoal powerGoal(DriveGoal goal, bool has_fault) noexcept {
-  if (goal == DriveGoal::kQuickStop) return PowerGoal::kQuickStop;
-  if (goal != DriveGoal::kEnabled) return PowerGoal::kDisabled;
-  return has_fault ? PowerGoal::kQuickStop : PowerGoal::kEnabled;
+  if (has_fault || goal == DriveGoal::kQuickStop) return PowerGoal::kQuickStop;
+  return goal == DriveGoal::kEnabled ? PowerGoal::kEnabled : PowerGoal::kDisabled;
 }
 
 }  // namespace
@@ -90,8 +89,8 @@ void Drive::update(DriveGoal goal, bool restart, double velocity, double positio
   if (goal == DriveGoal::kConfigure && restart) startSetup();
   if (goal == DriveGoal::kConfigure) continueSetup(out);
   if (phase_ == Phase::kConfigured) {
-    watchSilence();
     takeFeedback();
+    watchSilence();
     watchFault(goal);
     watchOperation(goal);
     if (isRunning(goal)) watchPosition(velocity, position);
@@ -136,15 +135,14 @@ void Drive::awaitOperation() noexcept {
 void Drive::onConfigured() noexcept {
   phase_ = Phase::kConfigured;
   report_.is_configured = true;
-  cycles_without_feedback_ = 0;
-  cycles_without_heartbeat_ = 0;
   has_old_fault_ = true;  // until its first valid state shows otherwise
   reset_cycles_ = 0;
-  enabled_cycles_ = 0;
 }
 
 void Drive::takeFeedback() noexcept {
+  ++cycles_without_feedback_;
   if (!feedback_) return;
+  cycles_without_feedback_ = 0;
   state_ = decodeStatusWord(feedback_->status_word);
   report_.state = state_.value_or(DriveState::kNotReady);
   report_.has_position = true;
@@ -153,10 +151,10 @@ void Drive::takeFeedback() noexcept {
 }
 
 void Drive::watchSilence() noexcept {
-  cycles_without_feedback_ = feedback_ ? 0 : cycles_without_feedback_ + 1;
   ++cycles_without_heartbeat_;
   const bool is_silent = cycles_without_feedback_ > kMaxSilentCycles ||
                          cycles_without_heartbeat_ > heartbeat_timeout_cycles_;
+  report_.is_silent = is_silent;
   if (is_silent) fail(Fault::kDriveSilent);
 }
 
@@ -193,8 +191,7 @@ bool Drive::isRunning(DriveGoal goal) const noexcept {
 std::uint16_t Drive::controlWord(DriveGoal goal) const noexcept {
   const bool has_fault = report_.fault != Fault::kNone;
   const bool is_resetting = goal == DriveGoal::kEnabled && has_old_fault_ && !has_fault;
-  if (is_resetting && state_ == DriveState::kFault && reset_cycles_ > 1)  // bit 7 was low before
-    return control_word::kFaultReset;
+  if (is_resetting && state_ == DriveState::kFault) return control_word::kFaultReset;
   if (!state_) return control_word::kQuickStop;
   return controlWordTowards(powerGoal(goal, has_fault), *state_);
 }

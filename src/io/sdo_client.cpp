@@ -32,7 +32,6 @@ SdoClient::SdoClient(int node_id, int timeout_cycles) noexcept
 void SdoClient::begin(const ObjectEntry& entry) noexcept {
   entry_ = entry;
   status_ = SdoStatus::kBusy;
-  value_ = 0;
   abort_code_ = 0;
   waited_cycles_ = 0;
   has_pending_ = true;

@@ -170,6 +170,35 @@ TEST(DriveFaults, ToleratesEmergenciesOfAnOldFault) {
   EXPECT_EQ(rig.report().state, DriveState::kOperationEnabled);
 }
 
+TEST(DriveFaults, AnOldFaultStaysOneAsLongAsItIsNotLeft) {
+  DriveRig rig;
+  rig.slave.power = ScriptedDrive::kFault;
+  rig.configure();
+  rig.cycle(DriveGoal::kDisabled);
+  rig.slave.say(0x080, {0x10, 0x23, 0x02, 0, 0, 0, 0, 0});
+  rig.cycle(DriveGoal::kDisabled);
+  rig.slave.take();  // in place of its feedback, one that nobody knows
+  rig.slave.say(0x180, {0x7F, 0, 0, 0, 0, 0});
+  rig.cycle(DriveGoal::kDisabled);
+  rig.cycles(5, DriveGoal::kDisabled);
+  EXPECT_EQ(rig.report().fault, Fault::kNone);
+  EXPECT_EQ(rig.report().state, DriveState::kFault);
+  rig.position = rig.report().position;
+  rig.cycles(20, DriveGoal::kEnabled);
+  EXPECT_EQ(rig.report().state, DriveState::kOperationEnabled);
+}
+
+TEST(DriveFaults, LosingOperationSoonAfterItWasGivenIsOneToo) {
+  DriveRig rig;
+  rig.configure();
+  rig.until([&] { return rig.report().state == DriveState::kOperationEnabled; },
+            DriveGoal::kEnabled);
+  rig.cycles(2, DriveGoal::kEnabled);
+  rig.slave.power = ScriptedDrive::kOn;
+  rig.cycles(3, DriveGoal::kEnabled);
+  EXPECT_EQ(rig.report().fault, Fault::kDriveStateLost);
+}
+
 TEST(DriveFaults, NewFaultWhileDisabledIsOneToo) {
   DriveRig rig;
   rig.configure();

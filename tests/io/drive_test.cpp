@@ -70,6 +70,16 @@ TEST(Drive, DoesNotStrayAtVelocitiesBelowACount) {
   EXPECT_NEAR(static_cast<double>(sum), -6800.0, 1.0);
 }
 
+TEST(Drive, ForgetsTheRestOfAnEarlierMotion) {
+  DriveRig rig;
+  rig.enable();
+  EXPECT_EQ(commandOf(rig.cycle(DriveGoal::kEnabled, 2e-6)).velocity, 0);  // -0.4 counts/s
+  rig.cycles(10, DriveGoal::kDisabled);
+  rig.cycles(10, DriveGoal::kEnabled);
+  EXPECT_EQ(commandOf(rig.cycle(DriveGoal::kEnabled, 2e-6)).velocity, 0);
+  EXPECT_EQ(commandOf(rig.cycle(DriveGoal::kEnabled, 2e-6)).velocity, -1);
+}
+
 TEST(Drive, IsPulledToTheCommandedPosition) {
   DriveConfig config = test::driveConfig();
   config.tracking_gain_per_s = 20.0;
@@ -182,6 +192,15 @@ TEST(Drive, ResetsAnOldFaultOnceOnItsWayToOperation) {
   rig.cycles(10, DriveGoal::kEnabled);
   EXPECT_EQ(rig.slave.control, 0x0F);
   EXPECT_EQ(rig.report().fault, Fault::kNone);
+}
+
+TEST(Drive, ResetsAnOldFaultAfterEveryRestart) {
+  DriveRig rig;
+  for (int restart = 1; restart <= 60; ++restart) {
+    rig.slave.power = ScriptedDrive::kFault;
+    rig.enable();
+    ASSERT_EQ(rig.slave.resets, restart);
+  }
 }
 
 TEST(Drive, IsFaultyIfAnOldFaultDoesNotGo) {

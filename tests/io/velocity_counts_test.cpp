@@ -53,6 +53,10 @@ TEST(VelocityCounts, Saturates) {
   EXPECT_EQ(counts.next(-std::numeric_limits<double>::infinity()), kMax);
   EXPECT_EQ(counts.next(0.0), 0) << "nothing of it is carried";
   EXPECT_EQ(counts.next(-2147.483646), kMax - 1);
+  VelocityCounts other(1.0);
+  EXPECT_EQ(other.next(0.4), 0);
+  EXPECT_EQ(other.next(1e12), kMax);
+  EXPECT_EQ(other.next(0.3), 0) << "nor of what was before";
 }
 
 TEST(VelocityCounts, ForgetsTheRestOnReset) {

@@ -26,6 +26,7 @@ enum class DriveGoal : std::uint8_t {
 struct DriveReport {
   bool is_configured = false;
   DriveState state = DriveState::kNotReady;
+  bool is_silent = false;  ///< now: out of reach, so that `state` is an old one
   bool has_position = false;
   double position = 0.0;  ///< m or rad
   /// kDriveSilent, kDriveFault, kDriveStateLost, kFollowingError, kDriveSetupRefused, or
@@ -40,9 +41,9 @@ struct DriveReport {
 /// 6041 and 6064, both synchronous. SYNC and the master's heartbeat are the bus's, not the drive's,
 /// and have to go out in every phase, also while drives are configured.
 ///
-/// A drive with a fault gets no velocity but 0, and a quick stop where it was to be enabled. One
-/// that is in fault when it is configured is reset once, on its way to kEnabled; a fault that comes
-/// later is never cleared but by a restart.
+/// A drive with a fault gets no velocity but 0, and a quick stop whatever is asked for. One that is
+/// in fault when it is configured is reset once, on its way to kEnabled; a fault that comes later
+/// is never cleared but by a restart.
 class Drive {
  public:
   /// Feedback missing for more cycles than this is kDriveSilent.

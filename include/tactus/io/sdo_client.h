@@ -37,7 +37,7 @@ class SdoClient {
 
   SdoStatus status() const noexcept { return status_; }
   const ObjectEntry& entry() const noexcept { return entry_; }
-  std::uint32_t value() const noexcept { return value_; }  ///< uploaded; upper bytes are 0
+  std::uint32_t value() const noexcept { return value_; }  ///< last uploaded; upper bytes are 0
   /// Of kAborted, the node's or the one told to it.
   std::uint32_t abortCode() const noexcept { return abort_code_; }
 
