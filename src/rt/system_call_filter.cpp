@@ -22,6 +22,15 @@ constexpr int kCausedBySeccomp = 1;  // si_code; the kernel's SYS_SECCOMP, which
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free);  // for the signal handler
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+// What a sanitizer does in any thread: its own memory and locks, its report, and the thread's end.
+constexpr int kSanitizerCalls[] = {SYS_mmap,        SYS_munmap,    SYS_mprotect, SYS_madvise,
+                                   SYS_futex,       SYS_gettid,    SYS_write,    SYS_sigaltstack,
+                                   SYS_sched_yield, SYS_exit_group};
+#else
+constexpr std::array<int, 0> kSanitizerCalls{};
+#endif
+
 void failWithEnosys(ucontext_t& context) noexcept {
 #if defined(__x86_64__)
   context.uc_mcontext.gregs[REG_RAX] = -ENOSYS;
@@ -49,6 +58,7 @@ Context makeContext(std::span<const int> allowed) {
   check(seccomp_attr_set(context.get(), SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_TRAP),
         "making the loop's system call filter");
   for (const int number : allowed) allow(context, number);
+  for (const int number : kSanitizerCalls) allow(context, number);
   allow(context, SYS_rt_sigreturn);  // the way out of the handler
   return context;
 }

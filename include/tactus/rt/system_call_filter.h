@@ -17,14 +17,13 @@ namespace tactus {
 
 /// All that the daemon's loop asks of the kernel, on a ThreadStack (glibc gives its own stacks back
 /// with madvise() when a thread ends).
-inline constexpr std::array<int, 10> kLoopSystemCalls{
+inline constexpr std::array<int, 9> kLoopSystemCalls{
     SYS_clock_nanosleep,  // to the next cycle
     SYS_clock_gettime,    // where the vDSO cannot read the clock, and for CPU time
     SYS_recvmmsg,         // CAN, once a bus and cycle
     SYS_sendmmsg,         // CAN, once a bus and cycle
-    SYS_ioctl,            // GPIO lines: values
-    SYS_ppoll,            // GPIO lines: is there an edge event?
-    SYS_read,             // GPIO lines: edge events
+    SYS_ioctl,            // GPIO lines, levels of inputs and outputs
+    SYS_read,             // GPIO lines, edge events (without waiting)
     SYS_getrusage,        // page faults, once after the last cycle
     SYS_rt_sigprocmask,   // glibc ends a thread with signals blocked
     SYS_exit,             // of the thread
