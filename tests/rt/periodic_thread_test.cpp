@@ -139,13 +139,15 @@ TEST(PeriodicThread, leavesSignalsToOtherThreads) {
 
 /// Touches this much of the stack below the caller.
 [[gnu::noinline]] void useStack() noexcept {
-  volatile char bytes[192 * 1024];
-  for (std::size_t i = 0; i < sizeof bytes; i += 1024) bytes[i] = 1;
+  volatile char bytes[512 * 1024];
+  for (std::size_t i = 0; i < sizeof bytes; i += 4096) bytes[i] = 1;
 }
 
 TEST(PeriodicThread, canUseItsStackWithoutPageFaults) {
   int cycles = 0;
-  PeriodicThread thread(quick(), [&](const Wake&) noexcept {
+  PeriodicThreadConfig config = quick();
+  config.stack_bytes = 2 << 20;
+  PeriodicThread thread(config, [&](const Wake&) noexcept {
     useStack();
     return ++cycles < 3;
   });
@@ -153,7 +155,7 @@ TEST(PeriodicThread, canUseItsStackWithoutPageFaults) {
   thread.join();
   EXPECT_EQ(cycles, 3);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // whose shadow memory faults
-  EXPECT_LT(thread.pageFaults().minor, 8) << "of 48 pages of stack";
+  EXPECT_LT(thread.pageFaults().minor, 8) << "of 128 pages of stack";
 #endif
 }
 

@@ -62,7 +62,7 @@ class FilteredThread {
   SystemCallFilter& filter_;
   Function function_;
   int load_error_ = -1;
-  ThreadStack stack_{256 * 1024};
+  ThreadStack stack_{1 << 20};
   pthread_t thread_{};
 };
 

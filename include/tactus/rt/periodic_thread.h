@@ -20,8 +20,8 @@ namespace tactus {
 struct PeriodicThreadConfig {
   std::int64_t period_ns = 1'000'000;
   RealTimeRequest real_time;
-  SystemCallFilter* filter = nullptr;  ///< loaded before the first cycle; nullptr: none
-  std::size_t stack_bytes = 256 * 1024;
+  SystemCallFilter* filter = nullptr;              ///< loaded before the first cycle; nullptr: none
+  std::size_t stack_bytes = std::size_t{1} << 20;  ///< thread-local data included
 };
 
 /// Runs a function once a period in a thread of its own. Prepare before, finish after:
