@@ -22,8 +22,11 @@
 namespace tactus {
 namespace {
 
-/// In bytes of kernel memory, which the kernel doubles: about twenty frames. A cycle has fewer.
-constexpr int kSendBuffer = 8192;
+// Bytes of kernel memory, which the kernel doubles; a frame takes 768.
+constexpr int kSendBuffer = 8192;  ///< about twenty frames: a cycle has fewer
+/// Two batches: what came before the first cycle or in a late one is read within two cycles, and is
+/// no flood.
+constexpr int kReceiveBuffer = 2 * static_cast<int>(FrameBatch::kCapacity) * 768 / 2;
 
 [[noreturn]] void fail(int error_number, const std::string& interface, const std::string& problem) {
   throw std::system_error(error_number, std::system_category(), interface + ": " + problem);
@@ -90,8 +93,9 @@ void setOptions(int descriptor, const std::string& interface) {
   setOption(descriptor, interface, CAN_RAW_ERR_FILTER, &all_errors, 1, "CAN_RAW_ERR_FILTER");
   const int on = 1;
   setOption(descriptor, interface, CAN_RAW_RECV_OWN_MSGS, &on, 1, "CAN_RAW_RECV_OWN_MSGS");
-  if (setsockopt(descriptor, SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof(kSendBuffer)) != 0)
-    fail(errno, interface, "the kernel refuses a short send buffer (SO_SNDBUF)");
+  if (setsockopt(descriptor, SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof(kSendBuffer)) != 0 ||
+      setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof(kReceiveBuffer)) != 0)
+    fail(errno, interface, "the kernel refuses short buffers (SO_SNDBUF, SO_RCVBUF)");
 }
 
 void bindTo(int descriptor, const std::string& interface) {

@@ -47,6 +47,12 @@ void deadCycles(BusMonitor& monitor, int count) {
   }
 }
 
+/// Quiet cycles up to the one in which a probe may go.
+void cyclesToProbe(BusMonitor& monitor) {
+  for (int i = 0; i <= BusMonitor::kProbeCycles && !monitor.mayProbe(); ++i) monitor.update();
+  ASSERT_TRUE(monitor.mayProbe());
+}
+
 TEST(BusMonitor, LetsFramesGoOnABusThatConfirmsThem) {
   BusMonitor monitor;
   for (int i = 0; i < 1000; ++i) workingCycle(monitor);
@@ -215,7 +221,7 @@ TEST(BusMonitor, RearmsOnceAProbeIsConfirmedAndCalmHasLasted) {
   BusMonitor monitor;
   monitor.onErrorFrame(kBusOffFrame);
   monitor.update();
-  while (!monitor.mayProbe()) monitor.update();
+  cyclesToProbe(monitor);
   monitor.onSent(1, 1);
   EXPECT_FALSE(monitor.mayProbe());
   for (int i = 0; i < 50; ++i) monitor.update();
@@ -230,12 +236,54 @@ TEST(BusMonitor, RearmsOnceAProbeIsConfirmedAndCalmHasLasted) {
   EXPECT_TRUE(monitor.maySend());
 }
 
+/// Frames that the kernel dropped need no confirmation: the first probe does.
+TEST(BusMonitor, AFirstProbeIsEnoughAfterTroublesThatEmptyTheKernel) {
+  for (const bool is_down : {false, true}) {
+    BusMonitor monitor;
+    workingCycle(monitor);
+    if (is_down)
+      monitor.onReceiveError(ENETDOWN);
+    else
+      monitor.onErrorFrame(kBusOffFrame);
+    monitor.update();
+    cyclesToProbe(monitor);
+    monitor.onSent(1, 1);
+    monitor.onConfirmed(1);
+    for (int i = 0; i <= BusMonitor::kCalmCycles; ++i) monitor.update();
+    EXPECT_EQ(monitor.fault(), Fault::kNone);
+  }
+}
+
+TEST(BusMonitor, AConfirmationRefutesAMissingAcknowledgement) {
+  BusMonitor monitor;
+  workingCycle(monitor);
+  monitor.onErrorFrame(kNoAcknowledge);
+  monitor.onConfirmed(4);
+  monitor.onErrorFrame(kPassive);
+  monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kNone);
+}
+
+TEST(BusMonitor, ForgetsAfterTheRearmThatTheBusWasPassive) {
+  BusMonitor monitor;
+  workingCycle(monitor);
+  monitor.onErrorFrame(kPassive);
+  monitor.update();
+  ASSERT_EQ(monitor.fault(), Fault::kBusUnacknowledged);
+  monitor.onConfirmed(4);
+  for (int i = 0; i <= BusMonitor::kCalmCycles; ++i) monitor.update();
+  ASSERT_EQ(monitor.fault(), Fault::kNone);
+  monitor.onSent(4, 4);
+  monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kNone) << "a passing stall like any other";
+}
+
 TEST(BusMonitor, AnErrorAfterTheAnswerTakesItBack) {
   BusMonitor monitor;
   monitor.onErrorFrame(kPassive);
   monitor.onErrorFrame(kNoAcknowledge);
   monitor.update();
-  while (!monitor.mayProbe()) monitor.update();
+  cyclesToProbe(monitor);
   monitor.onSent(1, 1);
   monitor.onConfirmed(1);  // as on vcan, where an echo proves nothing
   for (int i = 0; i < BusMonitor::kCalmCycles - 1; ++i) monitor.update();

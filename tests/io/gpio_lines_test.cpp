@@ -142,12 +142,14 @@ TEST(GpioLines, WithoutEventsThePulseIsMissedAndALevelIsNot) {
 }
 
 TEST(GpioLines, ReleaseAloneIsNoPress) {
-  resetFakeChip();
-  drive(1, 1);
-  GpioLines lines(allLines(), kPeriod_s);
-  EXPECT_TRUE(lines.read().emergency_stop) << "pressed at the start";
-  drive(1, 0);
-  EXPECT_FALSE(lines.read().emergency_stop);
+  for (const bool is_active_low : {false, true}) {
+    resetFakeChip();
+    drive(1, !is_active_low);
+    GpioLines lines(allLines(is_active_low), kPeriod_s);
+    EXPECT_TRUE(lines.read().emergency_stop) << "pressed at the start";
+    drive(1, is_active_low);
+    EXPECT_FALSE(lines.read().emergency_stop);
+  }
 }
 
 TEST(GpioLines, AnEnableThatBouncesIsNoEnable) {

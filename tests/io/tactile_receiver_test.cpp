@@ -288,7 +288,7 @@ TEST(TactileReceiver, RefusesToTareInContactWhileUnsteadyOrFaulty) {
     EXPECT_EQ(tare(receiver, sequence, touched), TareState::kRefused);
     touched[place] = forceY(0.71);
     EXPECT_EQ(tare(receiver, sequence, touched), TareState::kRefused);
-    touched[place] = {8388607, 8388607};  // cancels out in F
+    touched[place] = {8388607, 8388107};  // F as at rest
     EXPECT_EQ(tare(receiver, sequence, touched), TareState::kRefused);
   }
   std::vector<Counts> turning;  // |F| stays, F does not
@@ -301,6 +301,8 @@ TEST(TactileReceiver, RefusesToTareInContactWhileUnsteadyOrFaulty) {
   receive(receiver, tactileFrames(++sequence, forceY(0.5)));
   EXPECT_NEAR(receiver.sample().force_y_N, 0.0, 1e-9) << "the offset before the refusals holds";
   EXPECT_EQ(tare(receiver, sequence, std::vector<Counts>(50, forceY(1.99))), TareState::kDone);
+  receive(receiver, tactileFrames(++sequence, forceY(0.5)));
+  EXPECT_NEAR(receiver.sample().force_y_N, -1.49, 1e-9) << "begins anew, also after a refusal";
 }
 
 TEST(TactileReceiver, FiltersEachComponentAtTheModulesRate) {

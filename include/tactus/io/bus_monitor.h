@@ -35,7 +35,8 @@ class BusMonitor {
   static constexpr int kMaxUnconfirmedCycles = 3;
   static constexpr int kProbeCycles = 100;
   static constexpr int kCalmCycles = 20;
-  /// Batches in a row that were full: more than copper carries, hence not a late cycle's backlog.
+  /// Batches in a row that were full: more than copper carries, and than the socket keeps while
+  /// nobody reads.
   static constexpr int kMaxFullBatches = 3;
 
   void onErrorFrame(const CanFrame& frame) noexcept;
