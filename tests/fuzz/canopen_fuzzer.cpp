@@ -107,7 +107,7 @@ class Run {
     const bool is_near = (operation & 7) == 7;
     const double here = is_near ? bus_.drive().report().position : 0.0;
     for (int i = 0; i < (is_near ? 3 : 1); ++i) {
-      hearSlave();
+      if ((operation & 7) != 6) hearSlave();
       cycle(goal, (operation & 0x80) != 0 && i == 0, velocity, here + 0.05 * bytes.number());
     }
   }
