@@ -86,16 +86,20 @@ TEST(LockMemory, leavesAHeapThatDoesNotFault) {
   })) << "the test sees no faults at all";
 }
 
-TEST(LockMemory, leavesItToOtherThreads) {
-  EXPECT_TRUE(holdsInChild([] {
-    lockMemory(kHeap);
-    long faults = -1;
-    std::thread([&] {
-      faultsOfUsingTheHeap(1 << 20);
-      faults = faultsOfUsingTheHeap(kHeap / 2);
-    }).join();
-    return faults == 0;
-  }));
+bool isHeapReadyInOtherThreads() {
+  lockMemory(kHeap);
+  long faults = -1;
+  std::thread([&] {
+    faultsOfUsingTheHeap(1 << 20);
+    faults = faultsOfUsingTheHeap(kHeap / 2);
+  }).join();
+  return faults == 0;
+}
+
+TEST(LockMemoryDeathTest, leavesTheHeapToOtherThreads) {
+  // Starts the program anew: threads of other tests would have left heaps of their own behind.
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(_exit(isHeapReadyInOtherThreads() ? 0 : 1), ::testing::ExitedWithCode(0), "");
 }
 #endif
 
