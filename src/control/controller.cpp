@@ -145,13 +145,14 @@ Fault Controller::readTactileModule(const RobotInput& input, double period_s,
   const TactileModuleConfig& module = *config_.tactile_module;
   if (input.tactile.sequence == state.sample_sequence) {
     state.sample_age_s += period_s;
-    return state.sample_age_s > module.max_sample_age_s ? Fault::kTactileStale : Fault::kNone;
+    return state.sample_age_s > module.max_sample_age_s ? Fault::kTactileStale : state.sample_fault;
   }
   state.sample_sequence = input.tactile.sequence;
   state.sample_age_s = 0.0;
-  if (!isValid(input.tactile, module)) return Fault::kTactileInvalid;
-  locateContact(input.tactile, module.length_m, state.contact_point);
-  return Fault::kNone;
+  const bool is_valid = isValid(input.tactile, module);
+  state.sample_fault = is_valid ? Fault::kNone : Fault::kTactileInvalid;
+  if (is_valid) locateContact(input.tactile, module.length_m, state.contact_point);
+  return state.sample_fault;
 }
 
 }  // namespace tactus

@@ -69,8 +69,8 @@ Fault ControlCycle::judge(const CycleInput& input) noexcept {
   if (input.are_lines_lost && found(Fault::kGpioLost)) return judged_.fault;
   if (found(judgeBuses(input)) || found(judgeDrives())) return judged_.fault;
   const bool is_moving = mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding;
-  if (is_moving && input.late_in_a_row > max_late_cycles_ && found(Fault::kOverrun))
-    return judged_.fault;
+  const bool is_late = mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_;
+  if (is_late && found(Fault::kOverrun)) return judged_.fault;
   if (found(judgeTactile())) return judged_.fault;
   found(is_moving ? output_.fault : Fault::kNone);
   return judged_.fault;

@@ -10,7 +10,7 @@ namespace {
 
 /// A drive that has gone silent cannot be seen to be off: its own heartbeat watch stops it.
 bool isOff(const DriveReport& report) noexcept {
-  if (!report.is_configured || report.fault == Fault::kDriveSilent) return true;
+  if (!report.is_configured || report.is_silent) return true;
   return report.state != DriveState::kOperationEnabled &&
          report.state != DriveState::kQuickStopActive &&
          report.state != DriveState::kFaultReactionActive;

@@ -256,6 +256,18 @@ TEST(RobotWithCan, NeedsItsDrives) {
                      "a list of one drive a moving joint"});
 }
 
+/// Cut after every byte: never anything but a scene or a proper error.
+TEST(RobotWithCan, MayBeTruncatedAnywhere) {
+  const SceneFiles whole = test::hardwareFiles();
+  for (std::size_t length = 0; length < whole.robot.size(); ++length) {
+    SceneFiles files = whole;
+    files.robot.resize(length);
+    const std::string error = test::loadError(files.sources());
+    if (error.empty()) continue;
+    EXPECT_NE(error.find(", expected "), std::string::npos) << error;
+  }
+}
+
 TEST(RobotWithCan, CannotHaveJointsThatTurnForever) {
   SceneFiles files = test::hardwareFiles();
   files.urdf = test::kUrdfText;

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
 #include <vector>
 
 #include "tactus/daemon/control_cycle.h"
@@ -22,17 +25,31 @@ class VirtualRobotCell {
       : cycle(scene),
         plant(scene.controller, scene.plant, *scene.hardware, scene.period_s, scene.troubles),
         monitors(scene.hardware->buses.size()),
+        joints_(scene.controller.chain.size()),
         period_ns_(std::llround(1e9 * scene.period_s)) {}
 
-  /// One period; the frames of the daemon go out this much after it woke.
-  void step(std::int64_t send_after_ns = 100'000) {
-    plant.advance(t_ns);
+  /// One period.
+  void step() {
     exchangeInput();
-    input.lines.emergency_stop |= plant.emergencyStop(t_ns);
     cycle.update(input);
-    sendOutput(t_ns + send_after_ns);
+    sendOutput();
+  }
+
+  void exchangeInput() {
+    plant.advance(t_ns);
+    for (int bus = 0; bus < plant.buses(); ++bus) exchangeInput(bus);
+    input.lines.emergency_stop |= plant.emergencyStop(t_ns);
+  }
+
+  void sendOutput() {
+    for (int bus = 0; bus < plant.buses(); ++bus) sendOutput(bus, t_ns + kSendAfter_ns);
     t_ns += period_ns_;
-    ++cycles;
+  }
+
+  static int velocityCounts(const CanFrame& rpdo) {
+    std::int32_t counts = 0;
+    std::memcpy(&counts, rpdo.data.data() + 2, sizeof(counts));
+    return counts;
   }
 
   bool runUntil(Mode mode, int max_cycles) {
@@ -40,44 +57,80 @@ class VirtualRobotCell {
     return cycle.report().mode == mode;
   }
 
+  /// Largest velocity that the daemon sends to any drive in this cycle, counts/s.
+  int largestSetpoint() const {
+    int largest = 0;
+    for (std::size_t bus = 0; bus < monitors.size(); ++bus) {
+      if (!monitors[bus].maySend()) continue;  // it stays with the daemon
+      for (const CanFrame& frame : cycle.outbox(static_cast<int>(bus))) {
+        const bool is_setpoint = frame.id > 0x200 && frame.id < 0x280;
+        if (is_setpoint) largest = std::max(largest, std::abs(velocityCounts(frame)));
+      }
+    }
+    return largest;
+  }
+
+  /// No drive of the plant has power.
+  bool areDrivesOff() const {
+    for (int joint = 0; joint < joints_; ++joint) {
+      const PowerState state = plant.drive(joint).powerState();
+      if (state == PowerState::kOperationEnabled || state == PowerState::kQuickStopActive ||
+          state == PowerState::kFaultReactionActive)
+        return false;
+    }
+    return true;
+  }
+
   ControlCycle cycle;
   Plant plant;
+  std::function<void(int bus, CanFrame& frame)> on_frame;    ///< may change what the daemon gets
+  std::function<void(int bus, BusMonitor& monitor)> on_bus;  ///< may add to what a bus meets
   std::vector<BusMonitor> monitors;
   CycleInput input;
   std::int64_t t_ns = 0;
-  long long cycles = 0;
 
  private:
-  void exchangeInput() {
-    for (std::size_t bus = 0; bus < monitors.size(); ++bus) {
-      FrameBatch frames, data;
-      plant.take(static_cast<int>(bus), frames);
-      for (const CanFrame& frame : frames) {
-        if (frame.kind == FrameKind::kError) {
-          monitors[bus].onErrorFrame(frame);
-        } else {
-          data.push(frame);
-        }
+  static constexpr std::int64_t kSendAfter_ns = 100'000;  ///< after waking
+
+  void exchangeInput(int bus) {
+    BusMonitor& monitor = monitors[bus];
+    FrameBatch frames, data;
+    plant.take(bus, frames);
+    for (CanFrame frame : frames) {
+      if (on_frame) on_frame(bus, frame);
+      if (frame.kind == FrameKind::kError) {
+        monitor.onErrorFrame(frame);
+      } else {
+        data.push(frame);
       }
-      monitors[bus].onReceived(static_cast<int>(data.size()), false);
-      monitors[bus].update();
-      input.bus_faults[bus] = monitors[bus].fault();
-      cycle.receive(static_cast<int>(bus), data.frames());
     }
+    monitor.onReceived(static_cast<int>(data.size()), false);
+    if (on_bus) on_bus(bus, monitor);
+    monitor.update();
+    input.bus_faults[bus] = monitor.fault();
+    cycle.receive(bus, data.frames());
   }
 
   /// As on vcan: what is handed over is confirmed at once.
-  void sendOutput(std::int64_t at_ns) {
-    for (std::size_t bus = 0; bus < monitors.size(); ++bus) {
-      const FrameBatch& outbox = cycle.outbox(static_cast<int>(bus));
-      if (outbox.empty() || !monitors[bus].maySend()) continue;
-      const int count = static_cast<int>(outbox.size());
-      for (const CanFrame& frame : outbox) plant.send(static_cast<int>(bus), frame, at_ns);
-      monitors[bus].onSent(count, count);
-      monitors[bus].onConfirmed(count);
+  void sendOutput(int bus, std::int64_t at_ns) {
+    BusMonitor& monitor = monitors[bus];
+    const FrameBatch& outbox = cycle.outbox(bus);
+    if (outbox.empty()) return;
+    if (monitor.mayProbe()) {
+      plant.send(bus, cycle.probe(), at_ns);
+      confirm(monitor, 1);
     }
+    if (!monitor.maySend()) return;
+    for (const CanFrame& frame : outbox) plant.send(bus, frame, at_ns);
+    confirm(monitor, static_cast<int>(outbox.size()));
   }
 
+  static void confirm(BusMonitor& monitor, int frames) {
+    monitor.onSent(frames, frames);
+    monitor.onConfirmed(frames);
+  }
+
+  int joints_;
   std::int64_t period_ns_;
 };
 

@@ -31,6 +31,7 @@ struct ControllerState {
   bool is_stopping = false;     ///< set by the caller: ramp to rest and stay there
   std::uint32_t sample_sequence = 0;
   double sample_age_s = 0.0;
+  Fault sample_fault = Fault::kNone;  ///< of the newest sample
   ContactPointState contact_point;
   ContactControllerState contact;
 };
