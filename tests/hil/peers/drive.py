@@ -160,7 +160,8 @@ class Drive:
         index, subindex, bits = value >> 16, value >> 8 & 0xFF, value & 0xFF
         mapped = self.node.object_dictionary.get(index)
         can_map = mapped is not None and subindex == 0 and getattr(mapped, "pdo_mappable", False)
-        if not can_map or len(mapped) != bits or not (mapped.writable if is_receive else mapped.readable):
+        can_map = can_map and len(mapped) == bits
+        if not can_map or not (mapped.writable if is_receive else mapped.readable):
             raise SdoAbortedError(ABORT_CANNOT_MAP)
 
     # --- process data and motion

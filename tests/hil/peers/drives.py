@@ -23,7 +23,8 @@ from drive import Drive
 BUSES = ("can0", "can1", "can2")
 NODE_IDS = (1, 2, 3)
 COLUMNS = (
-    "t_s", "bus", "node_id", "control_word", "target_velocity", "status_word", "position", "velocity", "periods",
+    "t_s", "bus", "node_id", "control_word", "target_velocity", "status_word",
+    "position", "velocity", "periods",
 )  # fmt: skip
 REPORTED = {
     "mode": (0x6060, 0), "interpolation_value": (0x60C2, 1), "interpolation_index": (0x60C2, 2),
