@@ -80,6 +80,11 @@ TEST(LockMemory, leavesAHeapThatDoesNotFault) {
     lockMemory(kHeap);
     return faultsOfUsingTheHeap(kHeap / 2) == 0 && faultsOfUsingTheHeap(kHeap / 2) == 0;
   }));
+  EXPECT_TRUE(holdsInChild([] {
+    if (!test::setLimit(RLIMIT_MEMLOCK, 0) || !test::dropCapabilities()) return false;
+    faultsOfUsingTheHeap(1 << 20);
+    return lockMemory(kHeap).has_value() && faultsOfUsingTheHeap(kHeap / 2) == 0;
+  })) << "where the lock is refused";
   EXPECT_FALSE(holdsInChild([] {
     faultsOfUsingTheHeap(1 << 20);
     return faultsOfUsingTheHeap(kHeap / 2) == 0;

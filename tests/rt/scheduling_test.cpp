@@ -57,6 +57,15 @@ TEST(RealTime, saysGrantedExactlyIfItIs) {
   }
 }
 
+TEST(RealTime, isGrantedWhereTheMachineGrantsIt) {
+  bool has_right = false;
+  std::thread([&] {
+    const sched_param param{10};
+    has_right = sched_setscheduler(0, SCHED_FIFO, &param) == 0;
+  }).join();
+  EXPECT_EQ(apply({10, -1}).first.policy_error == 0, has_right);
+}
+
 TEST(RealTime, runsOnEachCpuThatTheProcessMayUse) {
   const Seen here = schedulingOfThisThread();
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
