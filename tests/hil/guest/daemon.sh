@@ -1,0 +1,44 @@
+# Read by guest scripts that run the daemon against the plant.
+
+# start_plant NAME SCENE: returns once it answers on all buses. Its counters go to
+# /out/NAME/plant.json.
+start_plant() {
+  mkdir -p "$ROOT/out/$1"
+  tactus plant --json "$2" >"$ROOT/out/$1/plant.json" 2>"$ROOT/out/$1/plant.txt" & plant=$!
+  wait_for ready "$ROOT/out/$1/plant.txt"
+}
+
+stop_plant() {
+  kill "$plant"
+  wait "$plant" || fail "the plant exits with $?"
+}
+
+# wait_for TEXT FILE [COUNT]: until so many lines of it hold the text.
+wait_for() {
+  for _ in $(seq 500); do
+    [ "$(grep -c "$1" "$2")" -ge "${3:-1}" ] && return
+    sleep 0.01
+  done
+  cat "$2"
+  fail "no '$1' in $2"
+}
+
+# The lines of robot_with_lines.yaml; the e-stop is active low.
+e_stop=0 enable=4 brake=8
+
+# line LINE [LEVEL]: sets or shows it, with the time.
+line() { gpio_poke gpiochip0 "$@"; }
+
+# permit_motion: nobody presses the e-stop, the enable line is on.
+permit_motion() {
+  line $e_stop 1 >/dev/null
+  line $enable 1 >/dev/null
+}
+
+# run_scene NAME SCENE DURATION_S: on the daemon, with the plant behind the buses.
+run_scene() {
+  echo "$1"
+  start_plant "$1" "$2"
+  tactusd "$2" --duration "$3" -o "$ROOT/out" || fail "$1: tactusd exits with $?"
+  stop_plant
+}

@@ -1,0 +1,7 @@
+# One scene, with contact and GPIO lines: what comes out must be the same in each boot.
+. "$ROOT/guest/common.sh"
+. "$ROOT/guest/daemon.sh"
+
+start_buses
+permit_motion
+run_scene in_contact "$ROOT/tests/hil/scenes/in_contact.yaml" 1.5

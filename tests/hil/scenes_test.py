@@ -1,0 +1,63 @@
+#!/usr/bin/python3
+"""The paper's scenes on the daemon, over vcan, in virtual time, against `tactus simulate`.
+
+usage: scenes_test.py --tactus FILE --tactusd FILE --out FOLDER [--keep]
+"""
+
+import sys
+import unittest
+
+from machine import Build, summary
+
+CYCLES = 13000
+STOPPING_CYCLES = 10  # until the drives have switched off
+
+
+class Scenes(unittest.TestCase):
+    def test_scenes_as_simulated(self):
+        runs = sorted(path.parent for path in results.glob("*/summary.json"))
+        self.assertGreaterEqual(len(runs), 4)
+        table = []
+        for run in runs:
+            with self.subTest(run.name):
+                daemon, simulated = summary(run), build.simulate(run.name)
+                table.append(row(run.name, daemon, simulated))
+                self.check_loop(daemon)
+                self.check_motion(daemon, simulated)
+                self.assertIn("equal to the bit", build.call("replay", run / "run.ulg"))
+        print("\n".join([row_of_names(), *table]))
+
+    def check_loop(self, daemon):
+        loop = daemon["loop"]
+        self.assertEqual(daemon["outcome"], "completed")
+        self.assertGreaterEqual(daemon["cycles"], CYCLES)
+        self.assertLessEqual(daemon["cycles"], CYCLES + STOPPING_CYCLES)
+        self.assertEqual(loop["missed_cycles"], 0)
+        self.assertEqual(loop["dropped_records"], 0)
+        self.assertEqual(loop["page_faults"], 0)
+        for bus in loop["buses"]:
+            for counter in ["refused", "held_back", "error_frames", "foreign"]:
+                self.assertEqual(bus[counter], 0, f"{bus['interface']}: {counter}")
+
+    def check_motion(self, daemon, simulated):
+        for force in ["peak_force_N", "final_force_N"]:
+            self.assertAlmostEqual(daemon[force] / simulated[force], 1.0, delta=0.02, msg=force)
+        self.assertEqual(len(daemon["contacts"]), len(simulated["contacts"]))
+
+
+def row_of_names():
+    return f"{'scene':24}{'cycles':>8}{'missed':>8}{'peak N':>18}{'final N':>18}"
+
+
+def row(name, daemon, simulated):
+    def pair(key):
+        return f"{daemon[key]:9.3f} /{simulated[key]:7.3f}"
+
+    return (f"{name:24}{daemon['cycles']:8}{daemon['loop']['missed_cycles']:8}"
+            f"{pair('peak_force_N')}{pair('final_force_N')}  daemon / simulate")  # fmt: skip
+
+
+if __name__ == "__main__":
+    build = Build()
+    results = build.run("scenes")
+    unittest.main(argv=sys.argv[:1])
