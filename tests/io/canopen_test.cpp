@@ -85,7 +85,7 @@ TEST(Canopen, WritesNumbersLittleEndianAndNothingBeside) {
   for (int i = 0; i < 1000; ++i) {
     const int size = random.integer(1, 4);
     const int offset = random.integer(0, 8 - size);
-    const auto value = static_cast<std::uint32_t>(random.index(1 << 30) * 4 + random.index(4));
+    const auto value = static_cast<std::uint32_t>(random.index(1 << 30)) << random.index(3);
     writeLittleEndian(frame, offset, size, value);
     EXPECT_EQ(readLittleEndian(frame, offset, size), value & (0xFFFFFFFFu >> (32 - 8 * size)));
   }
