@@ -10,6 +10,8 @@ namespace {
 
 /// To switch on, and to come to rest and switch off; far more than drives need.
 constexpr double kSwitchingTime_s = 2.0;
+/// Between the last setpoint and power off, for the drives to have followed it.
+constexpr double kRestTime_s = 0.02;
 /// Beyond the drives' own limit, which names the drive: for tare and first feedback.
 constexpr double kTareTime_s = 2.0;
 
@@ -31,6 +33,7 @@ ControlCycle::ControlCycle(const Scene& scene)
       period_s_(scene.period_s),
       max_late_cycles_(scene.hardware->real_time.max_late_cycles),
       has_enable_line_(scene.hardware->gpio && scene.hardware->gpio->enable),
+      max_rest_cycles_(static_cast<int>(std::ceil(kRestTime_s / scene.period_s))),
       mode_config_(modeConfig(*scene.hardware, scene.period_s)),
       state_(controller_.initialState()) {
   output_.velocity = JointVector::Zero(q_start_.size());
@@ -48,9 +51,14 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   report_.mode = mode_.mode;
   report_.fault = mode_.fault;
   control(input, before);
+  rest_cycles_ = output_.velocity.isZero(0.0) ? std::min(rest_cycles_, max_rest_cycles_) + 1 : 0;
   const bool is_boot_new = mode_.mode == Mode::kBoot && mode_.cycles_in_mode == 0;
   robot_.command(driveGoal(), is_boot_new || is_first_, output_.q_desired);
-  robot_.write(output_.velocity);
+  if (mode_.mode == Mode::kOff) {
+    robot_.release();
+  } else {
+    robot_.write(output_.velocity);
+  }
   is_first_ = false;
   heartbeat_ = !heartbeat_;
 }
@@ -162,7 +170,7 @@ DriveGoal ControlCycle::driveGoal() const noexcept {
     case Mode::kHolding:
       return DriveGoal::kEnabled;
     case Mode::kStopping:
-      return output_.velocity.isZero(0.0) ? DriveGoal::kDisabled : DriveGoal::kEnabled;
+      return rest_cycles_ > max_rest_cycles_ ? DriveGoal::kDisabled : DriveGoal::kEnabled;
     case Mode::kFault:
       return DriveGoal::kQuickStop;
     case Mode::kReady:

@@ -38,10 +38,28 @@ bool waitForStopSignal() noexcept {
   return sigtimedwait(&signals, nullptr, &timeout) > 0;
 }
 
+/// Whatever ends the telemetry, the loop must not go on alone: its thread is waited for.
+struct StopAtEnd {
+  LoopLink& link;
+  ~StopAtEnd() { link.stop_requested.store(true, std::memory_order_relaxed); }
+};
+
 std::int64_t processTime_ns() noexcept {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
+}
+
+/// What waits in a long queue is old when it gets onto the bus.
+void warnOfLongQueues(const HardwareConfig& hardware) {
+  for (const BusConfig& bus : hardware.buses) {
+    const int length = transmitQueueLength(bus.interface);
+    if (length <= kMaxTransmitQueue) continue;
+    fmt::print(stderr,
+               "tactusd: {}: transmit queue of {} frames; better: ip link set {} txqueuelen "
+               "10\n",
+               bus.interface, length, bus.interface);
+  }
 }
 
 /// A machine that is not fit for real time is refused unless the scene does without.
@@ -93,6 +111,7 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   SystemCallFilter filter(kLoopSystemCalls);
   LoopLink link;
   const auto loop = openHardware(scene, options.duration_s, filter, link);
+  warnOfLongQueues(*scene.hardware);
   Telemetry telemetry(scene, options.folder);
 
   std::vector<Refusal> refusals;
@@ -112,6 +131,7 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   refusals.insert(refusals.end(), thread.refusals().begin(), thread.refusals().end());
   judgeRefusals(refusals, real_time.required);
 
+  const StopAtEnd stop_at_end{link};
   const std::int64_t process_start_ns = processTime_ns();
   thread.start();
   while (!has_ended.load(std::memory_order_acquire)) {

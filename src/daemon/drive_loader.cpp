@@ -74,6 +74,7 @@ DriveConfig makeDrive(const LoadingRobot& l, std::size_t i) {
   drive.counts_per_unit = units.counts_per_unit;
   drive.offset = units.offset;
   drive.max_following_error = units.max_following_error;
+  drive.max_velocity = l.chain.limits.max_velocity[drive.joint];
   checkCounts(l, drive, path);
   return drive;
 }

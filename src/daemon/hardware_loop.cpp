@@ -74,10 +74,9 @@ void HardwareLoop::writeAll() noexcept {
   for (std::size_t i = 0; i < buses_.size(); ++i) {
     CanSocket& socket = buses_[i]->socket;
     const FrameBatch& outbox = cycle_.outbox(static_cast<int>(i));
-    if (outbox.empty()) continue;
     if (socket.monitor().mayProbe()) {
       socket.probe(cycle_.probe());
-    } else {
+    } else if (!outbox.empty()) {
       socket.send(outbox.frames());
     }
   }

@@ -16,10 +16,11 @@ BusIds busIds(const HardwareConfig& hardware, int bus) {
       ids.sent.push_back({base + node});
   }
   if (!ids.sent.empty()) {
-    const auto master = static_cast<std::uint32_t>(hardware.canopen.master_node_id);
-    for (const std::uint32_t id : {cob_id::kNmt, cob_id::kSync, cob_id::kHeartbeat + master})
-      ids.sent.push_back({id});
+    for (const std::uint32_t id : {cob_id::kNmt, cob_id::kSync}) ids.sent.push_back({id});
   }
+  // Also where only the module is: to probe a bus that was down.
+  const auto master = static_cast<std::uint32_t>(hardware.canopen.master_node_id);
+  ids.sent.push_back({cob_id::kHeartbeat + master});
   if (hardware.tactile && hardware.tactile->bus == bus) {
     for (std::uint32_t k = 0; k < 4; ++k) ids.received.push_back({hardware.tactile->first_id + k});
   }

@@ -58,18 +58,26 @@ void CanRobot::command(DriveGoal goal, bool is_restart, const JointVector& q) no
 }
 
 void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
-  for (FrameBatch& outbox : outboxes_) outbox.clear();
+  const bool is_heartbeat_due = cycles_to_heartbeat_ == 0;
+  cycles_to_heartbeat_ = (is_heartbeat_due ? cycles_a_heartbeat_ : cycles_to_heartbeat_) - 1;
+  for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
+    outboxes_[bus].clear();
+    if (has_drives_[bus] && is_heartbeat_due) outboxes_[bus].push(heartbeat_);
+  }
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const int joint = static_cast<int>(i);
     drives_[i].update(goal_, is_restart_, velocity_setpoint[joint], q_commanded_[joint],
                       outboxes_[drives_[i].bus()]);
   }
-  const bool is_heartbeat_due = cycles_to_heartbeat_ == 0;
-  cycles_to_heartbeat_ = (is_heartbeat_due ? cycles_a_heartbeat_ : cycles_to_heartbeat_) - 1;
   for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
-    if (!has_drives_[bus]) continue;
-    outboxes_[bus].push(syncFrame());
-    if (is_heartbeat_due) outboxes_[bus].push(heartbeat_);
+    if (has_drives_[bus]) outboxes_[bus].push(syncFrame());
+  }
+}
+
+void CanRobot::release() noexcept {
+  for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
+    outboxes_[bus].clear();
+    if (has_drives_[bus]) outboxes_[bus].push(nmtFrame({NmtCommand::kResetCommunication, 0}));
   }
 }
 

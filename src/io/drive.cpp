@@ -203,7 +203,8 @@ std::int32_t Drive::velocityCounts(DriveGoal goal, double velocity, double posit
   }
   const double limit = config_.max_following_error;  // also where the measured position is old
   const double lag = std::clamp(position - report_.position, -limit, limit);
-  return velocity_counts_.next(velocity + config_.tracking_gain_per_s * lag);
+  const double tracking = velocity + config_.tracking_gain_per_s * lag;
+  return velocity_counts_.next(std::clamp(tracking, -config_.max_velocity, config_.max_velocity));
 }
 
 void Drive::fail(Fault fault) noexcept {

@@ -115,12 +115,11 @@ class VirtualRobotCell {
   void sendOutput(int bus, std::int64_t at_ns) {
     BusMonitor& monitor = monitors[bus];
     const FrameBatch& outbox = cycle.outbox(bus);
-    if (outbox.empty()) return;
     if (monitor.mayProbe()) {
       plant.send(bus, cycle.probe(), at_ns);
       confirm(monitor, 1);
     }
-    if (!monitor.maySend()) return;
+    if (outbox.empty() || !monitor.maySend()) return;
     for (const CanFrame& frame : outbox) plant.send(bus, frame, at_ns);
     confirm(monitor, static_cast<int>(outbox.size()));
   }

@@ -80,6 +80,7 @@ class ControlCycle {
   double period_s_;
   int max_late_cycles_;
   bool has_enable_line_;
+  int max_rest_cycles_;
   ModeConfig mode_config_;
   ModeState mode_;
   Judged judged_;
@@ -91,6 +92,7 @@ class ControlCycle {
   bool is_started_ = false;  ///< the controller has a state
   bool is_first_ = true;
   bool heartbeat_ = false;
+  int rest_cycles_ = 0;        ///< in a row with zero velocity, as many as matter
   long long cycles_ = 0;       ///< since the first cycle of motion, missed ones included
   long long task_cycles_ = 0;  ///< of these, those in which the task's clock ran
 };

@@ -21,7 +21,7 @@ struct LoopFigures {
   long long cycles = 0;                   ///< of the loop, from the first to the last
   long long missed_cycles = 0;            ///< skipped because the loop woke too late
   long long dropped_records = 0;          ///< that the telemetry had no room for
-  long long page_faults = 0;              ///< of the loop's thread after its first cycle
+  long long page_faults = 0;              ///< of the loop's thread from its first cycle on
   double cpu_ns_per_cycle = 0.0;          ///< of the loop's thread
   double process_cpu_ns_per_cycle = 0.0;  ///< of the whole daemon, log included
   std::vector<Bus> buses;

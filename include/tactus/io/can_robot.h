@@ -36,7 +36,12 @@ class CanRobot final : public Robot {
   void command(DriveGoal goal, bool is_restart, const JointVector& q) noexcept;
   void write(const JointVector& velocity_setpoint) noexcept override;
 
-  /// What write() wants on the bus, in this order: set-points, SYNC, the master's heartbeat.
+  /// In place of write(), when all is over: drives forget mapping, heartbeat watch and setpoints,
+  /// so that the end of the master's heartbeat is no fault to them.
+  void release() noexcept;
+
+  /// What write() wants on the bus, in this order: the master's heartbeat, which behind SYNC
+  /// would wait for all feedback; setpoints; SYNC.
   const FrameBatch& outbox(int bus) const noexcept { return outboxes_[bus]; }
 
   /// A frame that tells a dead bus's return and moves nothing.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,7 +30,9 @@ struct DriveConfig {
   double offset = 0.0;                ///< m or rad: the joint's position at 0 counts
   int sign = 1;                       ///< +1 or -1
   double max_following_error = 0.05;  ///< m or rad, between command and measured position
-  double tracking_gain_per_s = 0.0;   ///< pulls the drive to the commanded position; 0: none
+  double max_velocity =
+      std::numeric_limits<double>::infinity();  ///< m/s or rad/s, tracking included
+  double tracking_gain_per_s = 0.0;  ///< pulls the drive to the commanded position; 0: none
 };
 
 /// CANopen settings common to all drives.
