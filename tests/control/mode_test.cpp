@@ -54,6 +54,7 @@ TEST(FaultTable, HasOneRowAFaultInTheOrderOfTheNumbers) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
     EXPECT_EQ(row.reaction == Reaction::kNone, row.fault == Fault::kNone);
     EXPECT_EQ(std::string(row.detection).empty(), row.fault == Fault::kNone);
+    EXPECT_EQ(std::string(row.within).empty(), row.fault == Fault::kNone);
   }
   EXPECT_EQ(faultRow(static_cast<Fault>(200)).fault, Fault::kNone);
   EXPECT_STREQ(faultName(static_cast<Fault>(200)), "unknown");

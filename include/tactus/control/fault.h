@@ -44,7 +44,8 @@ enum class Reaction : std::uint8_t {
 struct FaultRow {
   Fault fault;
   const char* name;       ///< as in the log and in summary.json
-  const char* detection;  ///< what is seen, and when
+  const char* detection;  ///< what is seen
+  const char* within;     ///< time from there to the first command of the reaction
   Reaction reaction;
 };
 
