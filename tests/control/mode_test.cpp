@@ -135,7 +135,9 @@ TEST(Mode, AHarsherFaultOverridesAMilderOneButNeverTheOtherWayRound) {
       EXPECT_GE(robot.state.reaction, first.reaction);
       EXPECT_GE(robot.state.reaction, second.reaction);
       EXPECT_EQ(robot.state.fault, first.fault);
-      if (second.reaction >= Reaction::kQuickStop) EXPECT_EQ(robot.state.mode, Mode::kFault);
+      if (second.reaction >= Reaction::kQuickStop) {
+        EXPECT_EQ(robot.state.mode, Mode::kFault);
+      }
     }
   }
 }
