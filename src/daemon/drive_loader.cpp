@@ -79,25 +79,25 @@ DriveConfig makeDrive(const LoadingRobot& l, std::size_t i) {
   return drive;
 }
 
-/// Against the drives before it in the list.
-void checkIsDistinct(const LoadingRobot& l, const std::vector<DriveConfig>& drives, std::size_t i) {
+/// From the entries before it.
+void checkIsDistinct(const LoadingRobot& l, std::size_t i) {
   const std::string path = fmt::format("drives.joints[{}]", i);
-  const DriveConfig& drive = drives[i];
-  if (drive.node_id == l.draft.canopen.master_node_id) {
-    l.fail(path + ".node_id", fmt::format("{} is the master's", drive.node_id),
+  const DriveDraft& drive = l.draft.drives[i];
+  if (drive.config.node_id == l.draft.canopen.master_node_id) {
+    l.fail(path + ".node_id", fmt::format("{} is the master's", drive.config.node_id),
            "another one than can.master_node_id");
   }
   for (std::size_t k = 0; k < i; ++k) {
-    if (drives[k].joint == drive.joint) {
-      l.fail(
-          path + ".joint",
-          inQuotes(l.draft.drives[i].joint) + " has a drive already, in entry " + std::to_string(k),
-          "each joint once");
+    const DriveDraft& other = l.draft.drives[k];
+    if (other.joint == drive.joint) {
+      l.fail(path + ".joint",
+             fmt::format("{} has a drive already, in entry {}", inQuotes(drive.joint), k),
+             "each joint once");
     }
-    if (drives[k].bus == drive.bus && drives[k].node_id == drive.node_id) {
+    if (other.interface == drive.interface && other.config.node_id == drive.config.node_id) {
       l.fail(path + ".node_id",
-             fmt::format("{} is that of joint {} on the same bus", drive.node_id,
-                         inQuotes(l.draft.drives[k].joint)),
+             fmt::format("{} is that of joint {} on the same bus", drive.config.node_id,
+                         inQuotes(other.joint)),
              "each node id once a bus");
     }
   }
@@ -126,8 +126,8 @@ std::vector<DriveConfig> loadDrives(const LoadingRobot& l) {
   }
   std::vector<DriveConfig> drives;
   for (std::size_t i = 0; i < l.draft.drives.size(); ++i) {
+    checkIsDistinct(l, i);
     drives.push_back(makeDrive(l, i));
-    checkIsDistinct(l, drives, i);
   }
   for (std::size_t j = 0; j < l.chain.joint_names.size(); ++j) {
     if (std::ranges::count(drives, static_cast<int>(j), &DriveConfig::joint) == 1) continue;

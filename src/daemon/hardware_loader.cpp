@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "tactus/daemon/drive_loader.h"
+#include "tactus/io/canopen.h"
 
 namespace tactus {
 namespace {
@@ -81,16 +82,16 @@ std::vector<UsedId> usedIds(const HardwareConfig& hardware, int bus) {
     const auto add = [&](std::uint32_t base, const char* name) {
       ids.push_back({base + drive.node_id, fmt::format("{} of node {}", name, drive.node_id)});
     };
-    add(0x080, "EMCY");
-    add(0x180, "TPDO1");
-    add(0x200, "RPDO1");
-    add(0x580, "SDO answer");
-    add(0x600, "SDO request");
-    add(0x700, "heartbeat");
+    add(cob_id::kEmergency, "EMCY");
+    add(cob_id::kTpdo1, "TPDO1");
+    add(cob_id::kRpdo1, "RPDO1");
+    add(cob_id::kSdoAnswer, "SDO answer");
+    add(cob_id::kSdoRequest, "SDO request");
+    add(cob_id::kHeartbeat, "heartbeat");
   }
   if (ids.empty()) return ids;
-  ids.push_back({0x080, "SYNC"});
-  ids.push_back({0x700u + hardware.canopen.master_node_id, "heartbeat of the master"});
+  ids.push_back({cob_id::kSync, "SYNC"});
+  ids.push_back({cob_id::kHeartbeat + hardware.canopen.master_node_id, "heartbeat of the master"});
   return ids;
 }
 

@@ -51,7 +51,7 @@ TEST(HardwareLoad, PutsDrivesIntoTheOrderOfTheJoints) {
   EXPECT_EQ(shoulder.offset, -0.5);
   EXPECT_EQ(roll.joint, 2);
   EXPECT_EQ(roll.bus, 1);
-  EXPECT_EQ(roll.node_id, 3);
+  EXPECT_EQ(roll.node_id, 9);
   EXPECT_EQ(roll.counts_per_unit, 2e6);
   EXPECT_EQ(roll.sign, -1);
   EXPECT_EQ(roll.tracking_gain_per_s, 10.0);

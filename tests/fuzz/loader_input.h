@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <regex>
 #include <stdexcept>
 #include <string>
@@ -9,6 +11,7 @@
 #include "tactus/control/controller.h"
 #include "tactus/daemon/input_error.h"
 #include "tactus/daemon/scene_loader.h"
+#include "tactus/io/bus_load.h"
 #include "tactus/sim/simulated_robot.h"
 
 /// One input of the loader's fuzzer: the files of a scene in one text, each behind a line
@@ -41,6 +44,44 @@ inline LoaderInput splitInput(std::string_view text) {
   return input;
 }
 
+inline void require(bool is_true, const char* what) {
+  if (!is_true) throw std::logic_error(what);
+}
+
+/// What the daemon takes for granted of a scene's hardware: it never looks again.
+inline void checkHardware(const Scene& scene) {
+  const HardwareConfig& hardware = *scene.hardware;
+  const auto isBus = [&](int bus) {
+    return bus >= 0 && bus < static_cast<int>(hardware.buses.size());
+  };
+  require(hardware.drives.size() == scene.joint_names.size(), "not one drive a joint");
+  for (std::size_t i = 0; i < hardware.drives.size(); ++i) {
+    const DriveConfig& drive = hardware.drives[i];
+    require(drive.joint == static_cast<int>(i), "drives out of order");
+    require(isBus(drive.bus), "a drive on no bus");
+    require(drive.node_id >= 1 && drive.node_id <= 127, "a node id that is none");
+    require(drive.sign == 1 || drive.sign == -1, "a sign that is none");
+    const JointLimits& limits = scene.controller.limits;
+    const double largest = std::max({std::abs(limits.lower[drive.joint] - drive.offset),
+                                     std::abs(limits.upper[drive.joint] - drive.offset),
+                                     limits.max_velocity[drive.joint]});
+    require(drive.counts_per_unit * largest <= 2147483647.0, "counts that overflow");
+    for (std::size_t k = 0; k < i; ++k) {
+      require(hardware.drives[k].bus != drive.bus || hardware.drives[k].node_id != drive.node_id,
+              "a node id twice");
+    }
+  }
+  if (hardware.tactile) {
+    require(isBus(hardware.tactile->bus) && hardware.tactile->first_id <= 0x7FC, "a lost module");
+  }
+  for (const BusLoad& load : busLoads(hardware, scene.period_s)) {
+    require(!load.terms.empty() && load.share() <= kMaxBusLoad + 1e-6, "an overloaded bus");
+  }
+  for (const Trouble& trouble : scene.troubles) {
+    require(isBus(trouble.bus) && trouble.until_s > trouble.from_s, "a trouble that is none");
+  }
+}
+
 /// A scene that loads has to run: no exception, and nothing but finite commands.
 inline void run(const Scene& scene) {
   const Controller controller(scene.controller);
@@ -60,7 +101,9 @@ inline void run(const Scene& scene) {
 inline void loadAndRun(std::string_view text) {
   const LoaderInput input = splitInput(text);
   try {
-    run(loadScene(input.files, input.overrides));
+    const Scene scene = loadScene(input.files, input.overrides);
+    if (scene.hardware) checkHardware(scene);
+    run(scene);
   } catch (const InputError& error) {
     const std::string message = error.what();
     static const std::regex form(":[1-9][0-9]*:[1-9][0-9]*: [^:].*, expected ");

@@ -20,7 +20,7 @@ can:
 drives:
   start_tolerance: 0.03
   joints:
-    - {joint: roll, interface: can1, node_id: 3, counts_per_rad: 2e6, sign: -1, tracking_gain_per_s: 10}
+    - {joint: roll, interface: can1, node_id: 9, counts_per_rad: 2e6, sign: -1, tracking_gain_per_s: 10}
     - {joint: lift, interface: can0, node_id: 1, counts_per_m: 1e7, offset_m: 0.25, max_following_error_m: 0.01}
     - {joint: shoulder, interface: can0, node_id: 2, counts_per_rad: 1e6, offset_rad: -0.5}
 tactile_module:
