@@ -1,0 +1,192 @@
+#!/usr/bin/python3
+"""Faults injected while the arm moves in contact: how long until setpoints are zero and drives are
+off, and whether it restarts in the documented way alone. Frames on the buses are the evidence.
+
+usage: faults_test.py --tactus FILE --tactusd FILE --program FORBIDDEN_CALL_CHECK --out FOLDER
+"""
+
+import sys
+import unittest
+from dataclasses import dataclass
+
+import candump_log
+from fault_case import CYCLE_US, FaultCase
+from machine import Build
+
+DRIVES = 9
+HEARTBEAT_LOST, SYNC_LOST = 0x8130, 0x8700
+POWER_RETURNS_US = 5_000_000
+
+
+@dataclass(frozen=True)
+class Expected:
+    """Limits are cycles from the fault to zero setpoints, to a quick stop, to all drives off; None:
+    does not come to that."""
+
+    mode: str
+    fault: str
+    reaction: str
+    zero: int
+    quick_stop: int | None = None
+    off: int | None = None
+    lost: tuple = ()  # buses and drives out of reach
+    restarts: bool = True
+
+
+# Drives need some 115 ms for their own quick stop, with the ramp that they have from the plant.
+QUICK_STOP_LASTS = 130
+# The setpoint is zero at once; drives lag behind it by position_lag_s, and get time for that.
+RAMP_LASTS = 40
+EXPECTED = {
+    "e_stop": Expected("fault", "emergency_stop", "quick stop and brake", 2, 2, QUICK_STOP_LASTS),
+    "enable_off": Expected("holding", "", "", 25),  # debounced for 20 ms
+    "sigterm": Expected("stopping", "", "", 5, None, RAMP_LASTS, restarts=False),
+    "forbidden_call": Expected("stopping", "forbidden_system_call", "ramp", 4, None, RAMP_LASTS,
+                               restarts=False),
+    # The kernel empties the queue first and lets some cycles pass until it says that it is down.
+    "interface_down": Expected("fault", "bus_stalled", "quick stop", 6, 6, QUICK_STOP_LASTS, ("can1",)),
+    # Feedback is missing for more than five cycles.
+    "node_reset": Expected("fault", "drive_silent", "quick stop", 10, 10, QUICK_STOP_LASTS,
+                           (("can0", 2),)),
+    "drive_silent": Expected("fault", "drive_silent", "quick stop", 8, 8, QUICK_STOP_LASTS),
+    "overrun": Expected("stopping", "overrun", "ramp", 6, None, RAMP_LASTS),
+    "bus_off": Expected("fault", "bus_off", "quick stop", 3, 3, QUICK_STOP_LASTS, ("can2",)),
+    "drive_fault": Expected("fault", "drive_fault", "quick stop", 3, 3, QUICK_STOP_LASTS),
+    "tactile_stale": Expected("holding", "tactile_stale", "hold", 26),  # max_sample_age_s: 20 ms
+    # Sixteen attempts without acknowledgement, and the controller is error-passive.
+    "power_cut": Expected("fault", "bus_unacknowledged", "quick stop", 5, 5, QUICK_STOP_LASTS,
+                          ("can1",)),
+}  # fmt: skip
+
+
+class Faults(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.cases = {name: FaultCase(results / name, expected.lost)
+                     for name, expected in EXPECTED.items()}  # fmt: skip
+        print("\n".join([TITLE, *map(row, cls.cases.values())]))
+
+    def test_each_fault(self):
+        checks = [self.was_moving, self.is_named, self.is_in_time, self.stays_at_rest,
+                  self.restarts_only_if_asked_to, self.ends_at_rest]  # fmt: skip
+        for name, expected in EXPECTED.items():
+            for check in checks:
+                with self.subTest(name, check=check.__name__):
+                    check(self.cases[name], expected)
+
+    def was_moving(self, case, _):
+        self.assertEqual(len(case.commands), DRIVES)
+        for node, own in case.commands.items():
+            before = [c for c in own if c.t_us < case.fault_us][-5:]
+            words = {c.control_word for c in before}
+            self.assertEqual(words, {candump_log.ENABLE_OPERATION}, node)
+        speeds = [abs(own[-1].velocity) for own in self._before_fault(case)]
+        self.assertGreaterEqual(sum(speed > 0 for speed in speeds), 5)
+
+    def _before_fault(self, case):
+        return [[c for c in own if c.t_us < case.fault_us] for own in case.commands.values()]
+
+    def is_named(self, case, expected):
+        after = case.messages.split("tactusd: running\n", 1)[1]
+        self.assertRegex(after, f"^tactusd: {expected.mode}")
+        if expected.fault:
+            self.assertRegex(after.split("\n")[0], f": {expected.fault}.*: {expected.reaction}$")
+
+    def is_in_time(self, case, expected):
+        measured = {"zero": case.zero_us(), "quick_stop": case.quick_stop_us(),
+                    "off": case.off_us()}  # fmt: skip
+        for what, time_us in measured.items():
+            limit = getattr(expected, what)
+            if limit is None:
+                self.assertIsNone(time_us, what)
+            else:
+                self.assertIsNotNone(time_us, what)
+                self.assertLessEqual(time_us, limit * CYCLE_US, what)
+
+    def stays_at_rest(self, case, expected):
+        from_us = case.fault_us + expected.zero * CYCLE_US
+        # Until it was zero: a stop on a ramp or a hold leaves the drives enabled meanwhile.
+        if expected.off and not expected.quick_stop:
+            from_us = case.fault_us + expected.off * CYCLE_US
+        late = case.forbidden_commands(from_us, may_hold=expected.off is None)
+        self.assertEqual(late, [])
+        self.assertEqual(case.plant["stale_setpoints_applied"], 0)
+
+    def restarts_only_if_asked_to(self, case, expected):
+        for node, own in case.commands.items():
+            moves = any(c.velocity != 0 for c in own if c.t_us > case.restart_us)
+            self.assertEqual(moves, expected.restarts, node)
+
+    def ends_at_rest(self, case, _):
+        for node, own in case.commands.items():
+            self.assertEqual(own[-1].velocity, 0, node)
+        for node, own in case.statuses.items():
+            self.assertTrue(own[-1].is_off, node)
+
+    def test_brake_falls_with_the_e_stop(self):
+        marks = (results / "e_stop" / "marks.txt").read_text()
+        self.assertRegex(marks, r"(?m)^brake_before .* out=1 driven=1$")
+        self.assertRegex(marks, r"(?m)^brake .* out=0 driven=1$")
+
+    def test_nothing_waits_for_power_to_return(self):
+        """From a cut bus on, no setpoint goes to it; the drives come back before the restart."""
+        case = self.cases["power_cut"]
+        cut_us = case.fault_us + EXPECTED["power_cut"].zero * CYCLE_US
+        return_us = case.fault_us + POWER_RETURNS_US
+        for node, own in case.commands.items():
+            if node[0] == "can1":
+                self.assertEqual([c for c in own if cut_us < c.t_us < return_us], [])
+        boots = [f.t_us for f in case.until_restart(case.frames) if f.bus == "can1"
+                 and f.id > candump_log.HEARTBEAT and f.data == b"\0"]  # fmt: skip
+        self.assertEqual(len(boots), 3)
+        self.assertTrue(all(t > return_us for t in boots))
+
+    def test_second_daemon_says_why_it_refuses(self):
+        text = (results / "enable_off" / "second.txt").read_text()
+        self.assertIn("another tactusd already runs", text)
+
+    def test_forbidden_call_is_named(self):
+        text = (results / "forbidden_call" / "stdout.txt").read_text()
+        self.assertIn(" 1 forbidden calls, first: getpid\n", text)
+
+
+class Killed(unittest.TestCase):
+    """Nobody is left to stop the drives but themselves."""
+
+    def test_drives_stop_by_their_own_watch(self):
+        case = FaultCase(results / "sigkill")
+        codes = candump_log.emergencies(case.frames)
+        positions = candump_log.positions(case.frames)
+        self.assertEqual(len(positions), DRIVES)
+        stops_us = []
+        for node, own in positions.items():
+            t_us, code = next(emergency for emergency in codes[node]
+                              if emergency[0] > case.fault_us)  # fmt: skip
+            self.assertIn(code, (HEARTBEAT_LOST, SYNC_LOST))
+            stops_us.append(t_us - case.fault_us)
+            after = [position for t, position in own if t > case.fault_us + 150 * CYCLE_US]
+            self.assertGreaterEqual(len(after), 2, node)
+            self.assertEqual(len(set(after)), 1, node)
+        for node, own in case.statuses.items():
+            self.assertTrue(own[-1].is_off, node)
+        print(f"{'sigkill':16}drives stop by themselves, from cycle {max(stops_us) / CYCLE_US:.1f} on")  # fmt: skip
+
+
+TITLE = (f"{'injected':16}{'fault':24}{'reaction':22}{'zero':>8}{'quick stop':>12}{'off':>8}"
+         "   cycles after the fault")  # fmt: skip
+
+
+def row(case):
+    def cycles(time_us):
+        return "-" if time_us is None else f"{time_us / CYCLE_US:.1f}"
+
+    expected = EXPECTED[case.name]
+    return (f"{case.name:16}{expected.fault or expected.mode:24}{expected.reaction:22}"
+            f"{cycles(case.zero_us()):>8}{cycles(case.quick_stop_us()):>12}"
+            f"{cycles(case.off_us()):>8}")  # fmt: skip
+
+
+if __name__ == "__main__":
+    build = Build()
+    results = build.run("faults")
+    unittest.main(argv=sys.argv[:1])
