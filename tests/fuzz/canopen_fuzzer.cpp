@@ -83,6 +83,7 @@ tactus::DriveConfig configOf(std::uint8_t options) {
   config.sign = (options & 1) != 0 ? 1 : -1;
   config.tracking_gain_per_s = (options & 2) != 0 ? 50.0 : 0.0;
   config.max_following_error = (options & 4) != 0 ? 1e9 : 0.05;
+  config.max_velocity = (options & 4) != 0 ? 2.0 : std::numeric_limits<double>::infinity();
   return config;
 }
 

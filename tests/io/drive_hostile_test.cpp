@@ -102,6 +102,7 @@ TEST(HostileFrames, NeverMakeADriveMoveOtherwiseThanAsked) {
   for (int run = 0; run < 300; ++run) {
     DriveConfig config = test::driveConfig();
     config.tracking_gain_per_s = random.chance(0.5) ? 0.0 : random.logUniform(0.1, 100.0);
+    if (random.chance(0.5)) config.max_velocity = random.uniform(0.1, 2.0);
     HostileRun hostile(random, config);
     for (int cycle = 0; cycle < 1000; ++cycle) {
       const char* problem = hostile.cycle(cycle);

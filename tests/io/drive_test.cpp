@@ -96,6 +96,18 @@ TEST(Drive, IsPulledToTheCommandedPosition) {
   EXPECT_NEAR(commandOf(rig.cycle(DriveGoal::kEnabled)).velocity, -20.0 * 0.05 * 2e5, 1.0);
 }
 
+TEST(Drive, IsNotPulledFasterThanItsJointMayMove) {
+  DriveConfig config = test::driveConfig();
+  config.tracking_gain_per_s = 100.0;
+  config.max_velocity = 0.5;
+  DriveRig rig(config);
+  rig.enable();
+  rig.position += 0.04;
+  EXPECT_EQ(commandOf(rig.cycle(DriveGoal::kEnabled)).velocity, -100000);  // 0.5 * 2e5
+  rig.position = rig.report().position - 0.04;
+  EXPECT_EQ(commandOf(rig.cycle(DriveGoal::kEnabled, -2.0)).velocity, 100000);
+}
+
 TEST(Drive, SendsOneSetpointACycleAndNothingElseWhileConfigured) {
   DriveRig rig;
   rig.enable();

@@ -66,6 +66,9 @@ class HostileDriveBus {
     const double asked = velocity * config_.sign;
     const double low = (asked - pull) * config_.counts_per_unit - 1.0;
     const double high = (asked + pull) * config_.counts_per_unit + 1.0;
+    if (std::abs(counts) > config_.max_velocity * config_.counts_per_unit + 1.0)
+      return "a velocity beyond the joint's";
+    if (config_.max_velocity < std::abs(velocity)) return nullptr;  // clamped: judged above
     if (counts < std::fmin(low, 2147483647.0) || counts > std::fmax(high, -2147483647.0))
       return "another velocity than was asked for";
     return nullptr;
