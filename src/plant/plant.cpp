@@ -105,9 +105,7 @@ void Plant::step(std::int64_t t_ns) noexcept {
 void Plant::applyTroubles(std::int64_t t_ns) noexcept {
   for (int bus = 0; bus < buses(); ++bus) applyBusTroubles(bus, t_ns);
   for (Node& node : drives_) {
-    const bool is_failing = script_.isActive(Kind::kDriveFault, node.bus, node.id, t_ns);
-    if (is_failing != node.is_failing) node.drive.setFailing(is_failing);
-    node.is_failing = is_failing;
+    node.drive.setFailing(script_.isActive(Kind::kDriveFault, node.bus, node.id, t_ns));
     collect(node, t_ns);
   }
   next_trouble_ns_ = script_.nextChange_ns(t_ns);
@@ -184,7 +182,6 @@ void Plant::sendSample(std::int64_t t_ns) noexcept {
   if (!hardware_.tactile || seen_.tactile.sequence == sample_sequence_) return;
   sample_sequence_ = seen_.tactile.sequence;
   PlantBus& bus = links_[hardware_.tactile->bus].bus;
-  if (!bus.isPowered()) return;
   for (const CanFrame& frame :
        moduleFrames(hardware_.tactile->first_id, static_cast<std::uint8_t>(sample_sequence_),
                     world_.module()->counts(), false))

@@ -64,6 +64,7 @@ PlantBus::PlantBus(double bit_rate_per_s, int nodes)
     : bit_ns_(1e9 / bit_rate_per_s), queues_(static_cast<std::size_t>(nodes)) {}
 
 bool PlantBus::send(int node, const CanFrame& frame, std::int64_t t_ns) noexcept {
+  if (node != kOtherSide && !is_powered_) return false;
   if (queues_[node].push({frame, t_ns})) return true;
   ++refused_;
   return false;
@@ -74,7 +75,6 @@ void PlantBus::setPowered(bool is_powered, std::int64_t t_ns) noexcept {
   is_powered_ = is_powered;
   if (is_powered) {
     if (phase_ == Phase::kUnacknowledged) becomeIdle(t_ns);
-    free_from_ns_ = std::max(free_from_ns_, t_ns);
     return;
   }
   for (std::size_t node = kOtherSide + 1; node < queues_.size(); ++node) queues_[node].clear();
@@ -125,7 +125,7 @@ std::optional<BusDelivery> PlantBus::report(std::int64_t t_ns) noexcept {
 
 bool PlantBus::mayStart(int node) const noexcept {
   if (queues_[node].empty()) return false;
-  return node == kOtherSide ? !is_other_side_off_ : is_powered_;
+  return node != kOtherSide || !is_other_side_off_;
 }
 
 std::int64_t PlantBus::nextStart_ns() const noexcept {

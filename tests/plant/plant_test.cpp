@@ -91,21 +91,23 @@ TEST_F(PlantOfReferenceRobot, MovesAsItsSetpointsSay) {
   }
 }
 
-TEST_F(PlantOfReferenceRobot, FeedbackComesTwoCyclesAfterTheSetpoint) {
-  build({});
+TEST_F(PlantOfReferenceRobot, FeedbackComesTwoCyclesAfterTheSetpointWhateverThePhase) {
   PlantConfig ideal = test::crops9Plant({});
   ideal.drive_lag_s = 0.0;
-  plant_.emplace(robot_, ideal, hardware_, kPeriod_s, std::vector<Trouble>{});
-  master_.emplace(*plant_, hardware_);
-  master_->start();
-  master_->cycles(10);
-  master_->setVelocity(0, 0.1);
-  master_->cycle();  // the setpoint goes out
-  master_->setVelocity(0, 0.0);
-  master_->cycle();  // it has moved the arm; this cycle's SYNC asks where it is
-  EXPECT_NEAR(master_->position(0), robot_.q_start[0], 1e-6);
-  master_->cycle();
-  EXPECT_NEAR(master_->position(0), robot_.q_start[0] + 1e-4, 1e-6);
+  for (int tenths = 0; tenths < 10; ++tenths) {
+    plant_.emplace(robot_, ideal, hardware_, kPeriod_s, std::vector<Trouble>{});
+    master_.emplace(*plant_, hardware_);
+    master_->phase_ns = tenths * kPeriod_ns / 10;
+    master_->start();
+    master_->cycles(10);
+    master_->setVelocity(0, 0.1);
+    master_->cycle();  // the setpoint goes out
+    master_->setVelocity(0, 0.0);
+    master_->cycle();  // it has moved the arm; this cycle's SYNC asks where it is
+    EXPECT_NEAR(master_->position(0), robot_.q_start[0], 1e-6);
+    master_->cycle();
+    EXPECT_NEAR(master_->position(0), robot_.q_start[0] + 1e-4, 1e-6);
+  }
 }
 
 /// The four frames of each sample, decoded as a reader would.
@@ -187,16 +189,19 @@ TEST_F(PlantOfReferenceRobot, AModuleAtItsLimitsSaysSo) {
   EXPECT_EQ((batch.end() - 1)->data[1] & 1, 1);
 }
 
-TEST_F(PlantOfReferenceRobot, ASampleArrivesBeforeTheMasterWakesNext) {
-  build({});
-  master_->start();
-  master_->cycles(8);
-  master_->forget();
-  for (int cycle = 0; cycle < 400; ++cycle) {
-    master_->cycle();
-    ASSERT_EQ(master_->timesHeard(3, 0x100), master_->timesHeard(3, 0x103)) << "cut in two";
+TEST_F(PlantOfReferenceRobot, NoSampleIsCutInTwoByTheMastersWakingWhateverThePhase) {
+  for (int tenths = 0; tenths < 10; ++tenths) {
+    build({});
+    master_->phase_ns = tenths * kPeriod_ns / 10;
+    master_->start();
+    master_->cycles(8);
+    master_->forget();
+    for (int cycle = 0; cycle < 400; ++cycle) {
+      master_->cycle();
+      ASSERT_EQ(master_->timesHeard(3, 0x100), master_->timesHeard(3, 0x103)) << "cut in two";
+    }
+    EXPECT_EQ(master_->timesHeard(3, 0x103), 100);
   }
-  EXPECT_EQ(master_->timesHeard(3, 0x103), 100);
 }
 
 TEST_F(PlantOfReferenceRobot, ObstaclesCountTheirTimeFromEnabling) {

@@ -54,7 +54,7 @@ class ScriptedMaster {
     waitUntil(60'000'000);
     for (const DriveConfig& drive : drives_) configure(drive);
     for (int bus = 0; bus < plant_.buses(); ++bus) plant_.send(bus, canFrame(0, {1, 0}), t_ns_);
-    waitUntil((t_ns_ / kPeriod_ns + 1) * kPeriod_ns);
+    waitUntil((t_ns_ / kPeriod_ns + 1) * kPeriod_ns + phase_ns);
     for (const int word : {0x06, 0x07, 0x0F}) {
       control_word = word;
       for (int i = 0; i < 3; ++i) cycle();
@@ -100,6 +100,7 @@ class ScriptedMaster {
   void forget() { heard_.clear(); }
 
   int control_word = 0;
+  std::int64_t phase_ns = 0;  ///< of the cycles, against the plant's time
   bool is_silent = false;
 
  private:

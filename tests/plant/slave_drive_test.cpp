@@ -225,6 +225,37 @@ TEST_F(DriveOfNode5, IgnoresShortSetpointsAndComplains) {
   EXPECT_EQ(drive_.velocity(), -0.7);
 }
 
+TEST_F(DriveOfNode5, AnInvalidPdoIsNeitherHeardNorSent) {
+  configure();
+  enable();
+  write(0x1400, 1, 0x8000'0205, 4);
+  write(0x1800, 1, 0x8000'0185, 4);
+  said_.clear();
+  cycle(0x0F, 700);
+  EXPECT_EQ(drive_.velocity(), 0.0);
+  EXPECT_EQ(timesSaid(0x185), 0);
+}
+
+TEST_F(DriveOfNode5, ForgetsALatchedSetpointWhenItLeavesOperational) {
+  configure();
+  hear(canFrame(0x205, {0x06, 0, 0, 0, 0, 0}));
+  hear(canFrame(0, {128, 5}));
+  hear(canFrame(0, {1, 5}));
+  hear(canFrame(0x80, {}));
+  EXPECT_EQ(drive_.powerState(), PowerState::kSwitchOnDisabled);
+}
+
+TEST_F(DriveOfNode5, EnabledBySdoItWaitsForSyncAsLongAsAnyOther) {
+  wait(1000);
+  write(0x60C2, 1, 2, 1);  // 2 ms
+  for (const std::uint32_t word : {0x06U, 0x07U, 0x0FU}) write(0x6040, 0, word, 2);
+  ASSERT_EQ(drive_.powerState(), PowerState::kOperationEnabled);
+  wait(9);
+  EXPECT_EQ(drive_.powerState(), PowerState::kOperationEnabled);
+  wait(1);
+  EXPECT_EQ(drive_.powerState(), PowerState::kFaultReactionActive);
+}
+
 TEST_F(DriveOfNode5, FollowsOnlyInVelocityMode) {
   configure();
   write(0x6060, 0, 0, 1);
@@ -290,6 +321,28 @@ TEST_F(DriveOfNode5, MissesTheMastersHeartbeat) {
   for (int i = 0; i < 100; ++i) cycle(0x0F, 500);
   EXPECT_EQ(drive_.velocity(), 0.0);
   EXPECT_EQ(statusWord() & 0x4F, 0x08);
+}
+
+TEST_F(DriveOfNode5, HearsNoHeartbeatInOtherFrames) {
+  configure();
+  write(0x1016, 1, 0x007F'003C, 4);
+  hear(canFrame(0x77F, {5, 0}));
+  wait(1000);
+  EXPECT_EQ(timesSaid(0x85), 0) << "armed by a frame that is no heartbeat";
+  hear(canFrame(0x77F, {5}));
+  wait(59);
+  hear(canFrame(0x77F, {5, 0}));
+  wait(2);
+  EXPECT_EQ(timesSaid(0x85), 1) << "kept quiet by a frame that is no heartbeat";
+}
+
+TEST_F(DriveOfNode5, StopsListeningWhenItIsTold) {
+  configure();
+  write(0x1016, 1, 0x007F'003C, 4);
+  hear(canFrame(0x77F, {5}));
+  write(0x1016, 1, 0, 4);
+  wait(1000);
+  EXPECT_EQ(timesSaid(0x85), 0);
 }
 
 TEST_F(DriveOfNode5, MissesSync) {
@@ -362,6 +415,20 @@ TEST_F(DriveOfNode5, WithoutPowerItIsSilentAndComesToRest) {
   for (int i = 0; i < 10; ++i) cycle(0x0F, 100);
   EXPECT_EQ(drive_.velocity(), 0.0) << "not without being set up anew";
   EXPECT_EQ(drive_.objects().getSigned(0x6064), 100);
+}
+
+TEST_F(DriveOfNode5, ALastingFaultOutlivesAPowerCut) {
+  configure();
+  drive_.setFailing(true);
+  drive_.setPowered(false, t_ns_);
+  drive_.setPowered(true, t_ns_);
+  said_.clear();
+  wait(60);
+  drive_.move(0.001);
+  EXPECT_EQ(statusWord() & 0x4F, 0x08);
+  ASSERT_EQ(said_.size(), 2u);
+  EXPECT_EQ(said_[0], canFrame(0x705, {0}));
+  EXPECT_EQ(number(said_[1], 0, 2), 0x2310u);
 }
 
 TEST_F(DriveOfNode5, CountsStaleSetpointsOnlyWhereTheyMoveIt) {

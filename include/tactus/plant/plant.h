@@ -71,7 +71,6 @@ class Plant {
     int bus;
     int number;  ///< on the bus, from 1
     std::uint32_t id;
-    bool is_failing = false;
   };
 
   void step(std::int64_t t_ns) noexcept;

@@ -60,7 +60,8 @@ class PlantBus {
   /// nodes: with the other side, which is node 0.
   PlantBus(double bit_rate_per_s, int nodes);
 
-  bool send(int node, const CanFrame& frame, std::int64_t t_ns) noexcept;  ///< false: queue full
+  /// False: the queue is full, which is counted, or the node has no power.
+  bool send(int node, const CanFrame& frame, std::int64_t t_ns) noexcept;
 
   /// Without power no node of the plant sends, hears or acknowledges: the other side's frame stays
   /// where it is and is tried again and again.
