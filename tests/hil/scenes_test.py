@@ -10,7 +10,7 @@ import unittest
 from machine import Build, summary
 
 CYCLES = 13000
-STOPPING_CYCLES = 10  # until the drives have switched off
+STOPPING_CYCLES = 40  # until the drives have followed the last setpoint and are off
 
 
 class Scenes(unittest.TestCase):
