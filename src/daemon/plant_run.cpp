@@ -24,7 +24,7 @@ namespace {
 constexpr std::size_t kHeapBytes = std::size_t{1} << 20;
 constexpr int kPriority = 70;  // below the daemon's loop
 /// Events are handled up to this much late, to wake up less often.
-constexpr std::int64_t kGrid_ns = 50'000;
+constexpr std::int64_t kGrid_ns = 100'000;
 constexpr std::int64_t kLongestWait_ns = 1'000'000'000;
 
 volatile sig_atomic_t is_stopping = 0;
@@ -115,6 +115,7 @@ class PlantPump {
   void pump() {
     const std::int64_t t_ns = now_ns() - start_ns_;
     for (int bus = 0; bus < plant_.buses(); ++bus) {
+      if (polled_[bus].revents == 0) continue;
       sockets_[bus]->receive(frames_);
       for (const CanFrame& frame : frames_) plant_.send(bus, frame, t_ns);
     }

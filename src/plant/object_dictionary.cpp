@@ -14,7 +14,7 @@ constexpr auto kNever = PdoMapping::kNever;
 constexpr auto kReceived = PdoMapping::kReceived;
 constexpr auto kTransmitted = PdoMapping::kTransmitted;
 
-// In order, to be found by bisection.
+// In order.
 constexpr auto kObjects = std::to_array<ObjectDescription>({
     {0x1000, 0, 4, kRo, kNever, 0x0002'0192},  // device type: servo drive, profile 402
     {0x1001, 0, 1, kRo, kTransmitted, 0},      // error register
@@ -74,6 +74,41 @@ constexpr bool isBefore(const ObjectDescription& a, const ObjectDescription& b) 
 }
 static_assert(std::is_sorted(kObjects.begin(), kObjects.end(), isBefore));
 
+/// Found by hashing: a plant asks for objects a thousand times a cycle, and half of what it took
+/// went into bisection.
+class Positions {
+ public:
+  constexpr Positions() {
+    positions_.fill(kFree);
+    for (std::size_t i = 0; i < kObjects.size(); ++i) {
+      std::size_t slot = firstSlot(kObjects[i].index, kObjects[i].subindex);
+      while (positions_[slot] != kFree) slot = next(slot);
+      positions_[slot] = static_cast<std::uint8_t>(i);
+    }
+  }
+
+  constexpr const ObjectDescription* find(std::uint16_t index, std::uint8_t subindex) const {
+    for (std::size_t slot = firstSlot(index, subindex); positions_[slot] != kFree;
+         slot = next(slot)) {
+      const ObjectDescription& object = kObjects[positions_[slot]];
+      if (object.index == index && object.subindex == subindex) return &object;
+    }
+    return nullptr;
+  }
+
+ private:
+  static constexpr std::size_t kSlots = 256;  // most of them free
+  static constexpr std::uint8_t kFree = 0xFF;
+
+  static constexpr std::size_t firstSlot(std::uint16_t index, std::uint8_t subindex) {
+    return (index ^ index >> 8 ^ subindex << 5) % kSlots;
+  }
+  static constexpr std::size_t next(std::size_t slot) { return (slot + 1) % kSlots; }
+
+  std::array<std::uint8_t, kSlots> positions_{};
+};
+constexpr Positions kPositions;
+
 constexpr std::uint32_t mask(const ObjectDescription& object) {
   return object.size == 4 ? 0xFFFF'FFFFU : (1U << 8 * object.size) - 1U;
 }
@@ -99,10 +134,7 @@ void ObjectDictionary::reset(std::uint16_t first_index, std::uint16_t last_index
 
 const ObjectDescription* ObjectDictionary::find(std::uint16_t index,
                                                 std::uint8_t subindex) noexcept {
-  const ObjectDescription wanted{index, subindex, 0, kRo, kNever, 0};
-  const auto* found = std::lower_bound(kObjects.begin(), kObjects.end(), wanted, isBefore);
-  const bool is_found = found != kObjects.end() && !isBefore(wanted, *found);
-  return is_found ? found : nullptr;
+  return kPositions.find(index, subindex);
 }
 
 bool ObjectDictionary::hasIndex(std::uint16_t index) noexcept { return find(index, 0) != nullptr; }
