@@ -34,6 +34,7 @@ void enter(ModeState& state, Mode mode) noexcept {
   if (!isLegal(state.mode, mode)) mode = kFault;  // cannot happen; the safe side if it does
   state.mode = mode;
   state.cycles_in_mode = 0;
+  state.enabled_cycles = 0;
 }
 
 void note(ModeState& state, Fault fault) noexcept {
@@ -74,7 +75,8 @@ void enabling(const ModeConfig& config, const ModeInput& input, ModeState& state
   if (state.reaction >= Reaction::kQuickStop) return enter(state, kFault);
   if (input.stop_requested || !input.enable || state.fault != Fault::kNone)
     return enter(state, kStopping);
-  if (input.are_enabled && state.cycles_in_mode >= config.brake_cycles) enter(state, kRunning);
+  state.enabled_cycles = input.are_enabled ? state.enabled_cycles + 1 : 0;
+  if (state.enabled_cycles > config.brake_cycles) enter(state, kRunning);
 }
 
 void running(const ModeInput& input, ModeState& state) noexcept {

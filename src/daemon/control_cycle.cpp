@@ -15,10 +15,19 @@ constexpr double kRestTime_s = 0.02;
 /// Beyond the drives' own limit, which names the drive: for tare and first feedback.
 constexpr double kTareTime_s = 2.0;
 
+int wholeCycles(double duration_s, double period_s) {
+  return static_cast<int>(std::ceil(duration_s / period_s - 1e-6));
+}
+
+double brakeTime_s(const HardwareConfig& hardware) {
+  return hardware.gpio && hardware.gpio->brake ? hardware.gpio->brake_switching_s : 0.0;
+}
+
 ModeConfig modeConfig(const HardwareConfig& hardware, double period_s) {
   ModeConfig config;
-  config.boot_cycles = static_cast<int>((hardware.canopen.boot_timeout_s + kTareTime_s) / period_s);
-  config.enabling_cycles = static_cast<int>(kSwitchingTime_s / period_s);
+  config.brake_cycles = wholeCycles(brakeTime_s(hardware), period_s);
+  config.boot_cycles = wholeCycles(hardware.canopen.boot_timeout_s + kTareTime_s, period_s);
+  config.enabling_cycles = wholeCycles(kSwitchingTime_s, period_s) + config.brake_cycles;
   config.stopping_cycles = config.enabling_cycles;
   return config;
 }
@@ -33,7 +42,8 @@ ControlCycle::ControlCycle(const Scene& scene)
       period_s_(scene.period_s),
       max_late_cycles_(scene.hardware->real_time.max_late_cycles),
       has_enable_line_(scene.hardware->gpio && scene.hardware->gpio->enable),
-      max_rest_cycles_(static_cast<int>(std::ceil(kRestTime_s / scene.period_s))),
+      max_rest_cycles_(
+          wholeCycles(std::max(kRestTime_s, brakeTime_s(*scene.hardware)), scene.period_s)),
       mode_config_(modeConfig(*scene.hardware, scene.period_s)),
       state_(controller_.initialState()) {
   output_.velocity = JointVector::Zero(q_start_.size());
@@ -180,14 +190,28 @@ DriveGoal ControlCycle::driveGoal() const noexcept {
   return DriveGoal::kDisabled;
 }
 
+/// Brakes close before the drives let go, and open before they move; only after a quick stop do
+/// drives switch off by themselves.
+bool ControlCycle::mayMove() const noexcept {
+  if (mode_.reaction == Reaction::kBrake) return false;
+  switch (mode_.mode) {
+    case Mode::kEnabling:
+      return robot_.drives().are_enabled;
+    case Mode::kRunning:
+    case Mode::kHolding:
+      return true;
+    case Mode::kStopping:
+      return rest_cycles_ == 0;
+    case Mode::kFault:
+      return !robot_.drives().are_disabled;
+    default:
+      return false;
+  }
+}
+
 GpioOutputs ControlCycle::lines() const noexcept {
-  const bool is_held =
-      mode_.mode == Mode::kEnabling || mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding;
-  const bool comes_to_rest = mode_.mode == Mode::kStopping || mode_.mode == Mode::kFault;
-  const bool brakes_at_once = mode_.reaction == Reaction::kBrake;
   GpioOutputs outputs;
-  outputs.release_brake =
-      !brakes_at_once && (is_held || (comes_to_rest && !robot_.drives().are_disabled));
+  outputs.release_brake = mayMove();
   outputs.heartbeat = heartbeat_;
   return outputs;
 }

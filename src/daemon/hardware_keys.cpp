@@ -128,6 +128,15 @@ KeySpec inputSection(const std::string& key, const std::string& doc) {
   return spec;
 }
 
+KeySpec brakeSection() {
+  KeySpec spec = outputSection<&GpioConfig::brake>("brake", "output, active: brakes released");
+  spec.keys.push_back(
+      defaulted("0.1", number("switching_s", "s", within(0, 5),
+                              "that the brakes take to open or to close; drives hold meanwhile",
+                              [](Draft& d) -> double& { return d.gpio->brake_switching_s; })));
+  return spec;
+}
+
 }  // namespace
 
 KeySpec canSection() {
@@ -171,7 +180,7 @@ KeySpec gpioSection() {
                           [](Draft& d) -> std::string& { return d.gpio->chip; }),
                      inputSection<&GpioConfig::e_stop>("e_stop", "input, active: stop at once"),
                      inputSection<&GpioConfig::enable>("enable", "input, active: the arm may move"),
-                     outputSection<&GpioConfig::brake>("brake", "output, active: brakes released"),
+                     brakeSection(),
                      outputSection<&GpioConfig::heartbeat>(
                          "heartbeat", "output, toggles each cycle while all is well"),
                  },

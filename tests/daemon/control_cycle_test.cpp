@@ -108,6 +108,30 @@ TEST(ControlCycleStop, EndsAtRestWithDrivesOffFromEveryMoment) {
   }
 }
 
+TEST(ControlCycleBrake, OpensBeforeMotionAndClosesBeforeDrivesLetGo) {
+  Scene scene = load("scenario1_null_space");
+  scene.hardware->gpio.emplace();
+  scene.hardware->gpio->brake.emplace();
+  scene.hardware->gpio->brake_switching_s = 0.15;
+  VirtualRobotCell cell(scene);
+  int open_cycles = 0;
+  for (int i = 0; i < 5000 && cell.cycle.report().mode != Mode::kRunning; ++i) {
+    open_cycles += cell.cycle.lines().release_brake ? 1 : 0;
+    EXPECT_TRUE(!cell.cycle.lines().release_brake || !cell.areDrivesOff());
+    cell.step();
+  }
+  EXPECT_GE(open_cycles, 150);
+  for (int i = 0; i < 2000; ++i) cell.step();
+  cell.input.stop_requested = true;
+  int closed_cycles = 0;
+  for (int i = 0; i < 1000 && !cell.cycle.isFinished(); ++i) {
+    cell.step();
+    closed_cycles += !cell.cycle.lines().release_brake && !cell.areDrivesOff() ? 1 : 0;
+  }
+  EXPECT_TRUE(cell.cycle.isFinished());
+  EXPECT_GE(closed_cycles, 150);
+}
+
 TEST(ControlCycleHold, KeepsTheTasksClockAndGoesOnWhereItWas) {
   Scene scene = load("scenario1_null_space");
   scene.hardware->gpio.emplace();

@@ -49,6 +49,7 @@ struct ModeState {
   Reaction reaction = Reaction::kNone;  ///< the harshest since then
   bool may_clear = false;               ///< the enable line was off since the fault or hold
   int cycles_in_mode = 0;
+  int enabled_cycles = 0;  ///< in a row, while enabling
 };
 
 /// Time limits, in cycles.

@@ -65,6 +65,7 @@ class ControlCycle {
   void noteCulprit() noexcept;
   void control(const CycleInput& input, Mode before) noexcept;
   DriveGoal driveGoal() const noexcept;
+  bool mayMove() const noexcept;
 
   /// What judge() found, and of whom it speaks.
   struct Judged {

@@ -70,6 +70,7 @@ struct GpioConfig {
   std::optional<GpioLineConfig> e_stop;     ///< in: active: stop
   std::optional<GpioLineConfig> enable;     ///< in: active: may move
   std::optional<GpioLineConfig> brake;      ///< out: active: brakes released
+  double brake_switching_s = 0.1;           ///< that the brakes take to open or to close
   std::optional<GpioLineConfig> heartbeat;  ///< out: toggles each cycle while the loop is healthy
 };
 
