@@ -54,8 +54,9 @@ AbortCode checkMapping(const ObjectDictionary& objects, const ObjectDescription&
   }
   if (value > 8) return AbortCode::kValueRange;
   int bytes = 0;
-  for (std::uint8_t i = 1; i <= value; ++i) {
-    const ObjectDescription* mapped = mappedObject(objects.get(object.index, i), direction);
+  for (std::uint32_t i = 1; i <= value; ++i) {
+    const std::uint32_t entry = objects.get(object.index, static_cast<std::uint8_t>(i));
+    const ObjectDescription* mapped = mappedObject(entry, direction);
     if (mapped == nullptr) return AbortCode::kNotMappable;
     bytes += mapped->size;
   }
