@@ -27,8 +27,8 @@ DriveUnits chooseUnits(const LoadingRobot& l, const DriveDraft& drive, int joint
   const bool is_prismatic = l.chain.joints[joint].type == JointType::kPrismatic;
   const std::string unit = is_prismatic ? "m" : "rad";
   const std::string other_unit = is_prismatic ? "rad" : "m";
-  for (const std::string stem : {"counts_per_", "offset_", "max_following_error_"}) {
-    const std::string other = path + "." + stem + other_unit;
+  for (const char* stem : {"counts_per_", "offset_", "max_following_error_"}) {
+    const std::string other = fmt::format("{}.{}{}", path, stem, other_unit);
     if (l.isGiven(other)) {
       l.fail(other,
              fmt::format("joint {} is {}", inQuotes(drive.joint),
