@@ -35,8 +35,8 @@ class Expected:
 
 # Drives need some 115 ms for their own quick stop, with the ramp that they have from the plant.
 QUICK_STOP_LASTS = 130
-# The setpoint is zero at once; drives lag behind it by position_lag_s, and get time for that.
-RAMP_LASTS = 40
+# The setpoint is zero at once; drives lag behind it, and the brake takes switching_s, 0.1 s, to hold.
+RAMP_LASTS = 150
 EXPECTED = {
     "e_stop": Expected("fault", "emergency_stop", "quick stop and brake", 2, 2, QUICK_STOP_LASTS),
     "enable_off": Expected("holding", "", "", 25),  # debounced for 20 ms
