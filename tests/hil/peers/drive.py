@@ -55,6 +55,7 @@ class Drive:
         self.stops_without_ramp = 0
         self.emergencies = []
         self.rows = []
+        self.on_reset = lambda drive: None  # the master's, which leaves nothing of its set-up
         self.node = canopen.LocalNode(node_id, drive_object_dictionary(node_id))
         network.add_node(self.node)
         self.node.add_read_callback(self._read)
@@ -99,6 +100,7 @@ class Drive:
     def _on_nmt(self, _id, _data, _time_s):
         before, self._nmt = self._nmt, self.node.nmt.state
         if self._nmt == "INITIALISING":
+            self.on_reset(self)
             self.power_on()
         elif self._nmt == "OPERATIONAL" != before:
             for pdo_map in (*self.node.rpdo.values(), *self.node.tpdo.values()):

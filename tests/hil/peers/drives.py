@@ -71,12 +71,16 @@ def report(drive):
     }
 
 
-def write_results(folder, drives):
+def write_results(folder, drives, reports_at_reset):
     with open(folder / "drives.csv", "w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(COLUMNS)
         writer.writerows(sorted(row for drive in drives for row in drive.rows))
-    (folder / "drives.json").write_text(json.dumps([report(drive) for drive in drives], indent=1))
+    reports = [
+        {**at_reset[0], "resets": len(at_reset)} if at_reset else {**report(drive), "resets": 0}
+        for drive, at_reset in zip(drives, reports_at_reset)
+    ]
+    (folder / "drives.json").write_text(json.dumps(reports, indent=1))
 
 
 def main():
@@ -93,12 +97,15 @@ def main():
             drives.append(Drive(network, bus, node_id, position))
     if positions:
         sys.exit(f"drives.py: no such drive: {', '.join(positions)}")
+    reports_at_reset = [[] for _ in drives]
+    for drive, reports in zip(drives, reports_at_reset):
+        drive.on_reset = lambda drive, reports=reports: reports.append(report(drive))
     gc.disable()  # its pauses would be the drives'
     (folder / "ready").touch()
     try:
         serve(networks, drives)
     finally:
-        write_results(folder, drives)
+        write_results(folder, drives, reports_at_reset)
         for drive in drives:
             drive.power_off()
         for network in networks:
