@@ -19,7 +19,7 @@ from kernel_package import MODULES, kernel_folder
 HERE = Path(__file__).resolve().parent
 CACHE = HERE.parents[1] / "build" / "hil"
 TOOLS = ["candump", "cansend", "cangen", "chrt", "cyclictest", "gpiodetect", "gpioget", "gpioinfo",
-         "gpiomon", "gpioset", "ip", "strace"]  # fmt: skip
+         "gpiomon", "gpioset", "ip", "strace", "tc"]  # fmt: skip
 SYSTEM_FOLDERS = ["dev", "proc", "sys", "tmp", "out", "root"]
 
 

@@ -59,8 +59,12 @@ int main(int argc, char** argv) {
                  "usage: gpio_check CHIP STOP ENABLE BRAKE HEARTBEAT [CYCLES [PERIOD_MS]]\n");
     return 2;
   }
-  const tactus::GpioConfig config{argv[1], lineOf(argv[2]), lineOf(argv[3]), lineOf(argv[4]),
-                                  lineOf(argv[5])};
+  tactus::GpioConfig config;
+  config.chip = argv[1];
+  config.e_stop = lineOf(argv[2]);
+  config.enable = lineOf(argv[3]);
+  config.brake = lineOf(argv[4]);
+  config.heartbeat = lineOf(argv[5]);
   const int cycles = argc > 6 ? std::atoi(argv[6]) : 1000;
   const double period_s = argc > 7 ? 0.001 * std::atof(argv[7]) : 0.001;
   try {

@@ -16,6 +16,7 @@ MODULES = [
     "net/can/can-raw",
     "drivers/net/can/dev/can-dev",
     "drivers/net/can/vcan",
+    "net/sched/sch_plug",
     "drivers/gpio/gpio-generic",
     "drivers/gpio/gpio-amdpt",
 ]
