@@ -17,7 +17,7 @@ stop_plant() {
 wait_for() {
   for _ in $(seq 500); do
     [ "$(grep -c "$1" "$2")" -ge "${3:-1}" ] && return
-    sleep 0.01
+    sleep 0.02
   done
   cat "$2"
   fail "no '$1' in $2"
