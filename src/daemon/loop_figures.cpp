@@ -1,16 +1,9 @@
 #include "tactus/daemon/loop_figures.h"
 
+#include "tactus/daemon/time_figures.h"
+
 namespace tactus {
 namespace {
-
-void writeTimes(const char* name, const Histogram& times, JsonWriter& json) {
-  json.key(name).beginObject();
-  json.key("min").value(static_cast<long long>(times.min_ns()));
-  json.key("median").value(static_cast<long long>(times.percentile_ns(50)));
-  json.key("p99").value(static_cast<long long>(times.percentile_ns(99)));
-  json.key("max").value(static_cast<long long>(times.max_ns()));
-  json.endObject();
-}
 
 void writeBus(const LoopFigures::Bus& bus, JsonWriter& json) {
   const auto count = [&json](const char* name, std::uint32_t value) {
@@ -37,10 +30,10 @@ void writeLoopFigures(const LoopFigures& figures, JsonWriter& json) {
   json.key("page_faults").value(figures.page_faults);
   json.key("cpu_ns_per_cycle").value(figures.cpu_ns_per_cycle);
   json.key("process_cpu_ns_per_cycle").value(figures.process_cpu_ns_per_cycle);
-  writeTimes("wake_latency_ns", figures.wake_latency, json);
-  writeTimes("read_ns", figures.read, json);
-  writeTimes("control_ns", figures.control, json);
-  writeTimes("write_ns", figures.write, json);
+  writeTimes("wake_latency_ns", timeFigures(figures.wake_latency), json);
+  writeTimes("read_ns", timeFigures(figures.read), json);
+  writeTimes("control_ns", timeFigures(figures.control), json);
+  writeTimes("write_ns", timeFigures(figures.write), json);
   json.key("buses").beginArray();
   for (const LoopFigures::Bus& bus : figures.buses) writeBus(bus, json);
   json.endArray();

@@ -16,10 +16,6 @@ double norm(const double (&vector)[3]) noexcept {
   return std::sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
 }
 
-RunFigures::StepTime stepTime(const Histogram& times) {
-  return {times.min_ns(), times.percentile_ns(50), times.percentile_ns(99), times.max_ns()};
-}
-
 void writeContact(const ContactSummary& contact, JsonWriter& json) {
   json.beginObject();
   json.key("start_s").value(contact.start_s);
@@ -43,12 +39,7 @@ void writeFigures(const RunFigures& figures, JsonWriter& json) {
   json.key("contacts").beginArray();
   for (const ContactSummary& contact : figures.contacts) writeContact(contact, json);
   json.endArray();
-  json.key("step_time_ns").beginObject();
-  json.key("min").value(figures.step_time_ns.min);
-  json.key("median").value(figures.step_time_ns.median);
-  json.key("p99").value(figures.step_time_ns.p99);
-  json.key("max").value(figures.step_time_ns.max);
-  json.endObject();
+  writeTimes("step_time_ns", figures.step_time_ns, json);
 }
 
 }  // namespace
@@ -93,7 +84,7 @@ RunFigures RunSummary::figures() const {
         std::sqrt(squared_error_sum_m2_ / static_cast<double>(figures.cycles));
   }
   figures.contacts = contacts_.contacts();
-  figures.step_time_ns = stepTime(step_times_);
+  figures.step_time_ns = timeFigures(step_times_);
   return figures;
 }
 

@@ -8,6 +8,7 @@
 #include "tactus/daemon/cycle_record.h"
 #include "tactus/daemon/loop_figures.h"
 #include "tactus/daemon/scene.h"
+#include "tactus/daemon/time_figures.h"
 #include "tactus/rt/histogram.h"
 
 namespace tactus {
@@ -27,9 +28,7 @@ struct RunFigures {
   double stiffness_final_N_per_m = 0.0;
   double stiffness_at_peak_N_per_m = 0.0;  ///< in the (first) cycle of the peak force
   std::vector<ContactSummary> contacts;
-  struct StepTime {
-    long long min = 0, median = 0, p99 = 0, max = 0;
-  } step_time_ns;              ///< median and p99 to 1/16
+  TimeFigures step_time_ns;
   Fault fault = Fault::kNone;  ///< of the last cycle; a fault stays until the end
 };
 
