@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <linux/can.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
@@ -15,9 +14,10 @@
 #include <array>
 #include <cstring>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 #include <vector>
+
+#include "tactus/io/kernel_frame.h"
 
 namespace tactus {
 namespace {
@@ -27,10 +27,6 @@ constexpr int kSendBuffer = 8192;  ///< about twenty frames: a cycle has fewer
 /// Two batches: what came before the first cycle or in a late one is read within two cycles, and is
 /// no flood.
 constexpr int kReceiveBuffer = 2 * static_cast<int>(FrameBatch::kCapacity) * 768 / 2;
-
-[[noreturn]] void fail(int error_number, const std::string& interface, const std::string& problem) {
-  throw std::system_error(error_number, std::system_category(), interface + ": " + problem);
-}
 
 /// Closes what a failing constructor has opened.
 class Descriptor {
@@ -51,7 +47,7 @@ class Descriptor {
 ifreq requestFor(const std::string& interface) {
   ifreq request{};
   if (interface.empty() || interface.size() >= sizeof(request.ifr_name))
-    fail(EINVAL, interface, "is no name of a network interface, expected one as can0");
+    failOnInterface(EINVAL, interface, "is no name of a network interface, expected one as can0");
   std::memcpy(request.ifr_name, interface.data(), interface.size());
   return request;
 }
@@ -61,9 +57,9 @@ ifreq ask(const std::string& interface, unsigned long what) {
   ifreq request = requestFor(interface);
   const Descriptor any(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (ioctl(any.get(), what, &request) != 0)
-    fail(errno, interface,
-         "no such network interface; `ip link` lists them, and `ip link set " + interface +
-             " up type can bitrate 1000000` brings one up");
+    failOnInterface(errno, interface,
+                    "no such network interface; `ip link` lists them, and `ip link set " +
+                        interface + " up type can bitrate 1000000` brings one up");
   return request;
 }
 
@@ -72,7 +68,7 @@ void setOption(int descriptor, const std::string& interface, int option, const V
                std::size_t count, const char* name) {
   if (setsockopt(descriptor, SOL_CAN_RAW, option, value,
                  static_cast<socklen_t>(count * sizeof(Value))) != 0)
-    fail(errno, interface, std::string("the kernel refuses the socket option ") + name);
+    failOnInterface(errno, interface, std::string("the kernel refuses the socket option ") + name);
 }
 
 /// Mask bits beside the id's keep extended and remote frames out of the kernel's match.
@@ -95,7 +91,7 @@ void setOptions(int descriptor, const std::string& interface) {
   setOption(descriptor, interface, CAN_RAW_RECV_OWN_MSGS, &on, 1, "CAN_RAW_RECV_OWN_MSGS");
   if (setsockopt(descriptor, SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof(kSendBuffer)) != 0 ||
       setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof(kReceiveBuffer)) != 0)
-    fail(errno, interface, "the kernel refuses short buffers (SO_SNDBUF, SO_RCVBUF)");
+    failOnInterface(errno, interface, "the kernel refuses short buffers (SO_SNDBUF, SO_RCVBUF)");
 }
 
 void bindTo(int descriptor, const std::string& interface) {
@@ -104,31 +100,10 @@ void bindTo(int descriptor, const std::string& interface) {
   address.can_family = AF_CAN;
   address.can_ifindex = ask(interface, SIOCGIFINDEX).ifr_ifindex;
   if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
-    fail(errno, interface, "is no CAN interface");
+    failOnInterface(errno, interface, "is no CAN interface");
   if ((flags.ifr_flags & IFF_UP) == 0)
-    fail(ENETDOWN, interface, "the interface is down; `ip link set " + interface + " up`");
-}
-
-CanFrame fromKernel(const can_frame& raw) noexcept {
-  CanFrame frame;
-  frame.extended = (raw.can_id & CAN_EFF_FLAG) != 0;
-  frame.id = raw.can_id & (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK);
-  if ((raw.can_id & CAN_RTR_FLAG) != 0) frame.kind = FrameKind::kRemote;
-  if ((raw.can_id & CAN_ERR_FLAG) != 0) {
-    frame.kind = FrameKind::kError;
-    frame.id = raw.can_id & CAN_ERR_MASK;
-  }
-  frame.size = std::min<std::uint8_t>(raw.len, CAN_MAX_DLEN);
-  std::copy_n(raw.data, CAN_MAX_DLEN, frame.data.begin());
-  return frame;
-}
-
-can_frame toKernel(const CanFrame& frame) noexcept {
-  can_frame raw{};
-  raw.can_id = frame.id & CAN_SFF_MASK;
-  raw.len = std::min<std::uint8_t>(frame.size, CAN_MAX_DLEN);
-  std::copy_n(frame.data.begin(), raw.len, raw.data);
-  return raw;
+    failOnInterface(ENETDOWN, interface,
+                    "the interface is down; `ip link set " + interface + " up`");
 }
 
 }  // namespace
@@ -156,7 +131,8 @@ CanSocket::CanSocket(const std::string& interface, std::span<const IdFilter> rec
   ask(interface, SIOCGIFINDEX);  // the plainer message, if there is neither interface nor CAN
   Descriptor opened(socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
   if (opened.get() < 0)
-    fail(errno, interface, "this kernel opens no CAN sockets; `modprobe can_raw` may help");
+    failOnInterface(errno, interface,
+                    "this kernel opens no CAN sockets; `modprobe can_raw` may help");
   setFilters(opened.get(), interface, received, sent);
   setOptions(opened.get(), interface);
   bindTo(opened.get(), interface);
@@ -237,14 +213,14 @@ int transmitQueueLength(const std::string& interface) {
 InterfaceLock::InterfaceLock(const std::string& interface) {
   requestFor(interface);
   Descriptor opened(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  if (opened.get() < 0) fail(errno, interface, "cannot open a unix socket to lock it");
+  if (opened.get() < 0) failOnInterface(errno, interface, "cannot open a unix socket to lock it");
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string name = "tactus-" + interface;
   std::memcpy(address.sun_path + 1, name.data(), name.size());
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
   if (bind(opened.get(), reinterpret_cast<const sockaddr*>(&address), length) != 0) {
-    if (errno != EADDRINUSE) fail(errno, interface, "cannot be locked");
+    if (errno != EADDRINUSE) failOnInterface(errno, interface, "cannot be locked");
     throw std::runtime_error(interface +
                              ": another tactusd already runs on this interface; stop it first");
   }
