@@ -3,11 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/control/controller.h"
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/input_error.h"
-#include "tactus/daemon/scene_loader.h"
 
 namespace tactus {
 namespace {
@@ -34,8 +34,7 @@ class CommandReplay : public ::testing::Test {
   }
 
   void writeLogOf(const std::vector<Override>& overrides) {
-    const Scene scene =
-        loadScene(TACTUS_SOURCE_DIR "/config/scenes/scenario1_null_space.yaml", overrides);
+    const Scene scene = test::shippedScene("scenario1_null_space", overrides);
     description_ = describeLog(scene);
     records_ = record(scene, 400);
     rewriteLog();

@@ -8,18 +8,15 @@
 
 #include "support/allocation_guard.h"
 #include "support/random.h"
+#include "support/shipped_scene.h"
 #include "support/virtual_robot_cell.h"
 #include "tactus/daemon/replay.h"
-#include "tactus/daemon/scene_loader.h"
 
 namespace tactus {
 namespace {
 
+using test::shippedScene;
 using test::VirtualRobotCell;
-
-Scene load(const std::string& name, const std::vector<Override>& overrides = {}) {
-  return loadScene(std::string(TACTUS_SOURCE_DIR) + "/config/scenes/" + name + ".yaml", overrides);
-}
 
 ModeReport bootWith(Scene scene, const std::function<void(VirtualRobotCell&)>& prepare) {
   VirtualRobotCell cell(scene);
@@ -39,12 +36,12 @@ TEST(ControlCycleBoot, RefusesToTareInContact) {
       if (bus == 3 && frame.id == 0x100) frame.data[4] = 5;  // 3.3 N
     };
   };
-  EXPECT_EQ(bootWith(load("scenario1_null_space"), press).fault, Fault::kTareRefused);
+  EXPECT_EQ(bootWith(shippedScene("scenario1_null_space"), press).fault, Fault::kTareRefused);
 }
 
 TEST(ControlCycleBoot, RefusesAnArmThatIsNotAtTheStart) {
-  Scene scene = load("scenario1_null_space");
-  const Scene elsewhere = load("scenario1_null_space");
+  Scene scene = shippedScene("scenario1_null_space");
+  const Scene elsewhere = shippedScene("scenario1_null_space");
   VirtualRobotCell cell(elsewhere);
   scene.controller.q_start[4] += 1.5 * scene.hardware->start_tolerance;
   cell.cycle = ControlCycle(scene);
@@ -58,7 +55,7 @@ TEST(ControlCycleBoot, NamesTheDriveThatDoesNotAnswer) {
       if (bus == 2 && frame.id == 0x582) frame.id = 0x7FF;
     };
   };
-  const ModeReport report = bootWith(load("scenario1_null_space"), mute);
+  const ModeReport report = bootWith(shippedScene("scenario1_null_space"), mute);
   EXPECT_EQ(report.fault, Fault::kDriveSetupRefused);
   EXPECT_EQ(report.joint, 7);
   EXPECT_EQ(report.drive.setup_failure.abort_code, 0u);
@@ -72,7 +69,7 @@ TEST(ControlCycleBoot, NamesTheObjectThatADriveRefuses) {
       frame.data = {0x80, 0x60, 0x60, 0, 0x30, 0, 0x09, 0x06};  // 0609 0030
     };
   };
-  const ModeReport report = bootWith(load("scenario1_null_space"), refuse);
+  const ModeReport report = bootWith(shippedScene("scenario1_null_space"), refuse);
   EXPECT_EQ(report.fault, Fault::kDriveSetupRefused);
   EXPECT_EQ(report.joint, 0);
   EXPECT_EQ(report.drive.setup_failure.index, 0x6060);
@@ -85,12 +82,12 @@ TEST(ControlCycleBoot, NeedsSamplesOfTheModule) {
       if (bus == 3) frame.id = 0x7FF;
     };
   };
-  EXPECT_EQ(bootWith(load("scenario1_null_space"), mute).fault, Fault::kTactileStale);
+  EXPECT_EQ(bootWith(shippedScene("scenario1_null_space"), mute).fault, Fault::kTactileStale);
 }
 
 TEST(ControlCycleStop, EndsAtRestWithDrivesOffFromEveryMoment) {
   for (const int after : {0, 1, 5, 40, 100, 200, 260, 280, 300, 320, 340, 400, 4000}) {
-    VirtualRobotCell cell(load("scenario1_multi_space"));
+    VirtualRobotCell cell(shippedScene("scenario1_multi_space"));
     for (int i = 0; i < after; ++i) cell.step();
     cell.input.stop_requested = true;
     int cycles = 0;
@@ -109,7 +106,7 @@ TEST(ControlCycleStop, EndsAtRestWithDrivesOffFromEveryMoment) {
 }
 
 TEST(ControlCycleBrake, OpensBeforeMotionAndClosesBeforeDrivesLetGo) {
-  Scene scene = load("scenario1_null_space");
+  Scene scene = shippedScene("scenario1_null_space");
   scene.hardware->gpio.emplace();
   scene.hardware->gpio->brake.emplace();
   scene.hardware->gpio->brake_switching_s = 0.15;
@@ -133,7 +130,7 @@ TEST(ControlCycleBrake, OpensBeforeMotionAndClosesBeforeDrivesLetGo) {
 }
 
 TEST(ControlCycleHold, KeepsTheTasksClockAndGoesOnWhereItWas) {
-  Scene scene = load("scenario1_null_space");
+  Scene scene = shippedScene("scenario1_null_space");
   scene.hardware->gpio.emplace();
   scene.hardware->gpio->enable.emplace();
   VirtualRobotCell cell(scene);
@@ -176,7 +173,7 @@ std::vector<CycleRecord> eventfulRun(const Scene& scene) {
 }
 
 TEST(ControlCycleReplay, EveryOutputIsEqualToTheBit) {
-  Scene scene = load("scenario2_estimated");
+  Scene scene = shippedScene("scenario2_estimated");
   scene.hardware->gpio.emplace();
   scene.hardware->gpio->enable.emplace();
   const std::vector<CycleRecord> records = eventfulRun(scene);
@@ -190,7 +187,7 @@ TEST(ControlCycleReplay, EveryOutputIsEqualToTheBit) {
 }
 
 TEST(ControlCycleMissed, TheDrivesAreWhereTheControllerThinksTheyAre) {
-  VirtualRobotCell cell(load("scenario1_null_space"));
+  VirtualRobotCell cell(shippedScene("scenario1_null_space"));
   ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
   for (int i = 0; i < 6000; ++i) {
     const bool is_missed = i % 50 == 49;
@@ -207,7 +204,7 @@ TEST(ControlCycleMissed, TheDrivesAreWhereTheControllerThinksTheyAre) {
 }
 
 TEST(ControlCycleAllocation, NoneFromTheFirstCycleToTheLast) {
-  Scene scene = load("scenario2_estimated");
+  Scene scene = shippedScene("scenario2_estimated");
   VirtualRobotCell cell(scene);
   for (int i = 0; i < 6000 && !cell.cycle.isFinished(); ++i) {
     cell.input.stop_requested = i > 5500;
@@ -239,7 +236,7 @@ TEST(ControlCycleHostile, RandomFramesNeverLeadBeyondTheLimits) {
   test::Random random(7);
   int ran_on = 0, rested = 0;
   for (int run = 0; run < 40; ++run) {
-    Scene scene = load("scenario1_multi_space");
+    Scene scene = shippedScene("scenario1_multi_space");
     VirtualRobotCell cell(scene);
     ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
     for (int i = 0; i < 300; ++i) cell.step();
@@ -276,7 +273,7 @@ TEST(ControlCycleHostile, RandomFramesNeverLeadBeyondTheLimits) {
 }
 
 TEST(ControlCyclePowerCut, BringsNoStaleSetpointToADrive) {
-  Scene scene = load("scenario1_multi_space");
+  Scene scene = shippedScene("scenario1_multi_space");
   scene.hardware->gpio.emplace();
   scene.hardware->gpio->enable.emplace();
   Trouble cut;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "support/shipped_scene.h"
 #include "support/virtual_robot_cell.h"
-#include "tactus/daemon/scene_loader.h"
 
 /// Every fault of the table, injected while the arm moves in contact: how long it takes until the
 /// set-points are zero and the drives are off, and how the arm starts again.
@@ -97,8 +97,7 @@ std::vector<Injection> injections() {
 }
 
 Scene movingInContact(bool has_enable_line) {
-  Scene scene =
-      loadScene(std::string(TACTUS_SOURCE_DIR) + "/config/scenes/scenario1_multi_space.yaml", {});
+  Scene scene = test::shippedScene("scenario1_multi_space");
   scene.hardware->gpio.emplace();
   if (has_enable_line) scene.hardware->gpio->enable.emplace();
   return scene;

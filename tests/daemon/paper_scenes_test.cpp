@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/daemon/replay.h"
 #include "tactus/daemon/scene_loader.h"
@@ -25,8 +26,7 @@ void PrintTo(const Expectation& expectation, std::ostream* out) { *out << expect
 
 RunFigures run(const std::string& scene, const std::string& log,
                const std::vector<Override>& overrides = {}) {
-  const std::string path = std::string(TACTUS_SOURCE_DIR) + "/config/scenes/" + scene + ".yaml";
-  return simulate(loadScene(path, overrides), log, [](double) {}).figures;
+  return simulate(test::shippedScene(scene, overrides), log, [](double) {}).figures;
 }
 
 void expectNear(double value, double expected, const char* what) {

@@ -3,20 +3,16 @@
 #include <cmath>
 #include <string>
 
+#include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "support/virtual_robot_cell.h"
 #include "tactus/daemon/run_summary.h"
-#include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/simulation.h"
 #include "tactus/daemon/tool_error.h"
 
 /// The daemon's cycle against the plant on buses of bit time.
 namespace tactus {
 namespace {
-
-Scene load(const std::string& name, const std::vector<Override>& overrides = {}) {
-  return loadScene(std::string(TACTUS_SOURCE_DIR) + "/config/scenes/" + name + ".yaml", overrides);
-}
 
 RunFigures runOnBuses(const Scene& scene, int cycles) {
   test::VirtualRobotCell cell(scene);
@@ -38,7 +34,7 @@ RunFigures runOnBuses(const Scene& scene, int cycles) {
 class SceneOnBuses : public testing::TestWithParam<const char*> {};
 
 TEST_P(SceneOnBuses, HasTheForcesOfTheSimulation) {
-  const Scene scene = load(GetParam());
+  const Scene scene = test::shippedScene(GetParam());
   const test::TemporaryFile log(GetParam());
   const RunFigures expected = simulate(scene, log.path(), [](double) {}).figures;
   const RunFigures figures = runOnBuses(scene, 13000);

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "support/scene_files.h"
+#include "support/shipped_scene.h"
 
 namespace tactus {
 namespace {
@@ -136,15 +137,14 @@ TEST_P(ShippedScene, LoadsFromDiskAndFromItsOwnSourcesAlike) {
 INSTANTIATE_TEST_SUITE_P(All, ShippedScene, testing::ValuesIn(shippedScenes()));
 
 TEST(ShippedRobots, AreOfEverySize) {
-  const std::string scenes = std::string(TACTUS_SOURCE_DIR) + "/config/scenes/";
-  const auto joints = [&](const char* scene) {
-    return loadScene(scenes + scene, {}).joint_names.size();
+  const auto joints = [](const char* scene) {
+    return test::shippedScene(scene).joint_names.size();
   };
-  EXPECT_EQ(joints("free_motion.yaml"), 9u);
-  EXPECT_EQ(joints("robots/planar2_contact.yaml"), 2u);
-  EXPECT_EQ(joints("robots/ur5e_contact.yaml"), 6u);
-  EXPECT_EQ(joints("robots/kuka_iiwa7_contact.yaml"), 7u);
-  EXPECT_EQ(joints("robots/snake16_contact.yaml"), 16u);
+  EXPECT_EQ(joints("free_motion"), 9u);
+  EXPECT_EQ(joints("robots/planar2_contact"), 2u);
+  EXPECT_EQ(joints("robots/ur5e_contact"), 6u);
+  EXPECT_EQ(joints("robots/kuka_iiwa7_contact"), 7u);
+  EXPECT_EQ(joints("robots/snake16_contact"), 16u);
 }
 
 }  // namespace

@@ -28,16 +28,7 @@ tactile_module:
   first_id: 0x110
   filter_in_daemon: true
   tare: {samples: 20}
-  link: cover
-  length_m: 0.4
-  cover_radius_m: 0.05
-  sample_period_s: 0.005
-  calibration:
-    - [1, -1, 0, 0, 1, -1, 0, 0]
-    - [0, 0, 1, -1, 0, 0, 1, -1]
-    - [0, 0, -0.1, 0.1, 0, 0, -0.3, 0.3]
-    - [0.1, -0.1, 0, 0, 0.3, -0.3, 0, 0]
-gpio:
+)" + kModuleText + R"(gpio:
   chip: gpiochip1
   e_stop: {line: 3, active_low: true, debounce_s: 0.01}
   brake: {line: 5}

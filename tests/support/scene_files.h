@@ -34,14 +34,8 @@ simulation:
     - {x_m: 0.7, y_m: 0.2, stiffness_N_per_m: 17000, foam: [{stiffness_N_per_m: 1400, until_force_N: 9}]}
 )";
 
-inline const std::string kRobotText = R"(urdf: robot.urdf
-tip: tool
-home: [0, 0.5, -0.5]
-limits: {acceleration: [10, 20, 30]}
-stiffness_N_per_m: 5000
-drives: {position_lag_s: 0.01}
-tactile_module:
-  link: cover
+/// Of the tactile module, without its interface.
+inline const std::string kModuleText = R"(  link: cover
   length_m: 0.4
   cover_radius_m: 0.05
   sample_period_s: 0.005
@@ -51,6 +45,15 @@ tactile_module:
     - [0, 0, -0.1, 0.1, 0, 0, -0.3, 0.3]
     - [0.1, -0.1, 0, 0, 0.3, -0.3, 0, 0]
 )";
+
+inline const std::string kRobotText = R"(urdf: robot.urdf
+tip: tool
+home: [0, 0.5, -0.5]
+limits: {acceleration: [10, 20, 30]}
+stiffness_N_per_m: 5000
+drives: {position_lag_s: 0.01}
+tactile_module:
+)" + kModuleText;
 
 /// A prismatic, a revolute and a continuous joint; a fixed joint before each of the last two, a
 /// fixed cover beside link2, and a branch with a joint the loader knows nothing about.
