@@ -122,9 +122,9 @@ template <std::optional<GpioLineConfig> GpioConfig::*kLine>
 KeySpec inputSection(const std::string& key, const std::string& doc) {
   KeySpec spec = outputSection<kLine>(key, doc);
   spec.keys.push_back(defaulted(
-      "0",
-      number("debounce_s", "s", within(0, 1), "how long a change to the harmless side has to last",
-             [](Draft& d) -> double& { return ((*d.gpio).*kLine)->debounce_s; })));
+      "0", number("debounce_s", "s", within(0, 1),
+                  "how long a change that lets the arm move has to last; the other acts at once",
+                  [](Draft& d) -> double& { return ((*d.gpio).*kLine)->debounce_s; })));
   return spec;
 }
 
@@ -182,7 +182,7 @@ KeySpec gpioSection() {
                      inputSection<&GpioConfig::enable>("enable", "input, active: the arm may move"),
                      brakeSection(),
                      outputSection<&GpioConfig::heartbeat>(
-                         "heartbeat", "output, toggles each cycle while all is well"),
+                         "heartbeat", "output, toggles each cycle while the loop runs"),
                  },
                  [](Draft& d) { d.gpio.emplace(); });
 }

@@ -1,7 +1,6 @@
 #include "tactus/io/debounce.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tactus {
 
@@ -13,12 +12,6 @@ bool Debounce::update(bool level) noexcept {
     changed_cycles_ = 0;
   }
   return is_active_;
-}
-
-int cyclesCovering(double duration_s, double period_s) noexcept {
-  constexpr double kRounding = 1e-9;  // 0.003 / 0.001 is a little more than 3
-  constexpr double kMany = 1e9;       // more than a run has
-  return static_cast<int>(std::min(kMany, std::ceil(duration_s / period_s - kRounding)));
 }
 
 }  // namespace tactus

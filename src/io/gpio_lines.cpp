@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "tactus/io/cycle_count.h"
 #include "tactus/io/debounce.h"
 
 namespace tactus {
@@ -131,10 +132,8 @@ GpioLines::Lines::Lines(const GpioConfig& config, double period_s)
   if (config.e_stop)
     debounced_stop =
         Debounce(0, cyclesCovering(config.e_stop->debounce_s, period_s), is_stop_pressed);
-  if (config.enable) {
-    const int cycles = cyclesCovering(config.enable->debounce_s, period_s);
-    debounced_enable = Debounce(cycles, cycles, is_enabled);
-  }
+  if (config.enable)
+    debounced_enable = Debounce(cyclesCovering(config.enable->debounce_s, period_s), 0, is_enabled);
 }
 
 GpioLines::Lines::~Lines() {

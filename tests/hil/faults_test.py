@@ -39,7 +39,7 @@ QUICK_STOP_LASTS = 130
 RAMP_LASTS = 150
 EXPECTED = {
     "e_stop": Expected("fault", "emergency_stop", "quick stop and brake", 2, 2, QUICK_STOP_LASTS),
-    "enable_off": Expected("holding", "", "", 25),  # debounced for 20 ms
+    "enable_off": Expected("holding", "", "", 5),
     "sigterm": Expected("stopping", "", "", 5, None, RAMP_LASTS, restarts=False),
     "forbidden_call": Expected("stopping", "forbidden_system_call", "ramp", 4, None, RAMP_LASTS,
                                restarts=False),

@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "tactus/io/cycle_count.h"
+
 namespace tactus {
 namespace {
 
@@ -29,7 +31,7 @@ TEST(Debounce, AnEmergencyStopActsAtOnceAndIsReleasedOnlyForGood) {
   EXPECT_FALSE(stop.update(false));
 }
 
-TEST(Debounce, AnEnableHasToLastBothWays) {
+TEST(Debounce, AContactMayHaveToLastBothWays) {
   Debounce enable(3, 3, false);
   EXPECT_FALSE(enable.update(true));
   EXPECT_FALSE(enable.update(true));

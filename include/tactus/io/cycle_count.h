@@ -5,11 +5,16 @@
 
 namespace tactus {
 
-/// Cycles that last at least this long, at least one.
+/// Cycles that cover a duration >= 0; none for none.
+inline int cyclesCovering(double duration_s, double period_s) noexcept {
+  constexpr double kMost = 1e9;       // more than a run has
+  constexpr double kRoundOff = 1e-6;  // 0.02 s of 0.001 s each are 20 cycles, not 21
+  return static_cast<int>(std::min(kMost, std::ceil(duration_s / period_s - kRoundOff)));
+}
+
+/// Likewise, but at least one.
 inline int cyclesLasting(double duration_s, double period_s) noexcept {
-  constexpr double kMost = 1e9;
-  constexpr double kRoundOff = 1e-9;  // 0.02 s of 0.001 s each are 20 cycles, not 21
-  return static_cast<int>(std::clamp(std::ceil(duration_s / period_s - kRoundOff), 1.0, kMost));
+  return std::max(1, cyclesCovering(duration_s, period_s));
 }
 
 }  // namespace tactus

@@ -23,7 +23,4 @@ class Debounce {
   int changed_cycles_ = 0;  ///< in a row in which the level was not is_active_
 };
 
-/// Cycles that cover a duration >= 0.
-int cyclesCovering(double duration_s, double period_s) noexcept;
-
 }  // namespace tactus

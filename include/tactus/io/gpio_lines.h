@@ -22,10 +22,10 @@ struct GpioOutputs {
 /// made inactive when the object goes. What a line does once its owner has gone is up to the chip:
 /// pull it to its safe level outside.
 ///
-/// An e-stop acts at once, an enable once it has been active for debounce_s; both have to be
-/// released for debounce_s. System calls: read() takes one ioctl, or where the chip reports the
-/// e-stop's edges two ioctls (e-stop and enable) and one read; write() one ioctl. Lines that the
-/// robot does not have cost none.
+/// An e-stop that is pressed and an enable that is switched off act at once; the other way round
+/// they have to last for debounce_s. System calls: read() takes one ioctl, or where the chip
+/// reports the e-stop's edges two ioctls (e-stop and enable) and one read; write() one ioctl. Lines
+/// that the robot does not have cost none.
 class GpioLines {
  public:
   /// Throws std::runtime_error naming chip, line and what to do.

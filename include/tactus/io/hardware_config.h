@@ -62,7 +62,7 @@ struct CanTactileConfig {
 struct GpioLineConfig {
   int line = 0;
   bool active_low = false;
-  double debounce_s = 0.0;  ///< inputs: how long a release has to last; an e-stop acts at once
+  double debounce_s = 0.0;  ///< inputs: how long a change that lets the arm move must last
 };
 
 struct GpioConfig {
@@ -71,7 +71,7 @@ struct GpioConfig {
   std::optional<GpioLineConfig> enable;     ///< in: active: may move
   std::optional<GpioLineConfig> brake;      ///< out: active: brakes released
   double brake_switching_s = 0.1;           ///< that the brakes take to open or to close
-  std::optional<GpioLineConfig> heartbeat;  ///< out: toggles each cycle while the loop is healthy
+  std::optional<GpioLineConfig> heartbeat;  ///< out: toggles each cycle while the loop runs
 };
 
 struct RealTimeConfig {
