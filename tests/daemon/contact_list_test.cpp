@@ -80,6 +80,16 @@ TEST(ContactList, TheBandIsTwoPercentOrFiveHundredthsOfANewton) {
               1e-12);
 }
 
+TEST(ContactList, AContactOfHoursKeepsItsFigures) {
+  const auto contacts =
+      contactsOf(sequence({{10, 0.0}, {1, 9.0}, {2'000'000, 3.0}, {3'000'001, 2.0}}), true);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_DOUBLE_EQ(contacts[0].start_s, 0.1);
+  EXPECT_DOUBLE_EQ(contacts[0].peak_force_N, 9.0);
+  EXPECT_NEAR(contacts[0].settling_s, 20000.0, 2e-6 * 50000.0);
+  EXPECT_NEAR(contacts[0].end_s, 50000.11, 1e-6);
+}
+
 TEST(ContactList, AContactShorterThanThePauseNeverSettles) {
   const auto contacts = contactsOf(sequence({{5, 3.0}, {30, 0.0}}), true);
   ASSERT_EQ(contacts.size(), 1u);
