@@ -4,10 +4,13 @@
 #include <signal.h>
 #include <time.h>
 
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <thread>
 
 #include "tactus/daemon/hardware_loop.h"
 #include "tactus/daemon/run_error.h"
@@ -22,26 +25,49 @@ namespace {
 
 /// For the telemetry, which allocates while the loop runs.
 constexpr std::size_t kHeapBytes = std::size_t{16} << 20;
-constexpr long kDrainPeriod_ns = 20'000'000;
+constexpr std::chrono::milliseconds kDrainPeriod{20};
+
+constexpr std::array kStopSignals = {SIGTERM, SIGINT, SIGHUP};
 
 sigset_t stopSignals() noexcept {
   sigset_t signals;
   sigemptyset(&signals);
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
+  for (const int signal : kStopSignals) sigaddset(&signals, signal);
   return signals;
 }
 
-/// True if one came while waiting.
-bool waitForStopSignal() noexcept {
+void blockStopSignals() noexcept {
   const sigset_t signals = stopSignals();
-  const timespec timeout{0, kDrainPeriod_ns};
-  return sigtimedwait(&signals, nullptr, &timeout) > 0;
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 }
 
-/// Whatever ends the telemetry, the loop must not go on alone: its thread is waited for.
-struct StopAtEnd {
-  LoopLink& link;
-  ~StopAtEnd() { link.stop_requested.store(true, std::memory_order_relaxed); }
+std::atomic<bool>* stop_requested_by_signal = nullptr;
+
+void onStopSignal(int) { stop_requested_by_signal->store(true, std::memory_order_relaxed); }
+
+/// Lets stop signals reach the loop, even while this thread waits for a disk or a terminal; all
+/// other threads keep them blocked. Whatever ends the telemetry, the loop must not go on alone: its
+/// thread is waited for.
+class StopRequests {
+ public:
+  explicit StopRequests(std::atomic<bool>& stop_requested) : stop_requested_(stop_requested) {
+    stop_requested_by_signal = &stop_requested;
+    struct sigaction action {};
+    action.sa_handler = onStopSignal;
+    action.sa_flags = SA_RESTART;
+    for (const int signal : kStopSignals) sigaction(signal, &action, nullptr);
+    const sigset_t signals = stopSignals();
+    pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  }
+  ~StopRequests() {
+    blockStopSignals();
+    stop_requested_.store(true, std::memory_order_relaxed);
+  }
+  StopRequests(const StopRequests&) = delete;
+  StopRequests& operator=(const StopRequests&) = delete;
+
+ private:
+  std::atomic<bool>& stop_requested_;
 };
 
 std::int64_t processTime_ns() noexcept {
@@ -86,6 +112,15 @@ std::unique_ptr<HardwareLoop> openHardware(const Scene& scene, double duration_s
   }
 }
 
+void nameForbiddenCall(const SystemCallFilter& filter) {
+  const ForbiddenCalls calls = filter.forbiddenCalls();
+  if (calls.count == 0) return;
+  const std::string text =
+      fmt::format("tactusd: the loop made {} forbidden system calls, first {}\n", calls.count,
+                  systemCallName(calls.first));
+  std::fputs(text.c_str(), stderr);
+}
+
 LoopFigures loopFigures(const Scene& scene, const HardwareLoop& loop, const LoopLink& link,
                         const PeriodicThread& thread, std::int64_t process_ns) {
   LoopFigures figures;
@@ -104,8 +139,8 @@ LoopFigures loopFigures(const Scene& scene, const HardwareLoop& loop, const Loop
 }  // namespace
 
 Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
-  const sigset_t signals = stopSignals();
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  blockStopSignals();
+  signal(SIGPIPE, SIG_IGN);  // whoever reads the messages may leave; the arm still ends at rest
   const RealTimeConfig& real_time = scene.hardware->real_time;
 
   SystemCallFilter filter(kLoopSystemCalls);
@@ -131,17 +166,20 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   refusals.insert(refusals.end(), thread.refusals().begin(), thread.refusals().end());
   judgeRefusals(refusals, real_time.required);
 
-  const StopAtEnd stop_at_end{link};
   const std::int64_t process_start_ns = processTime_ns();
   thread.start();
+  const StopRequests stop_requests(link.stop_requested);
   while (!has_ended.load(std::memory_order_acquire)) {
-    if (waitForStopSignal()) link.stop_requested.store(true, std::memory_order_relaxed);
+    std::this_thread::sleep_for(kDrainPeriod);
     if (!telemetry.drain(link)) link.stop_requested.store(true, std::memory_order_relaxed);
   }
   thread.join();
   telemetry.drain(link);
-  telemetry.finish(loopFigures(scene, *loop, link, thread, processTime_ns() - process_start_ns));
-  return loop->report().fault;
+  nameForbiddenCall(filter);
+  const Fault fault = loop->report().fault;
+  telemetry.finish(fault,
+                   loopFigures(scene, *loop, link, thread, processTime_ns() - process_start_ns));
+  return fault;
 }
 
 }  // namespace tactus

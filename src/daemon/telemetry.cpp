@@ -56,14 +56,14 @@ bool Telemetry::drain(LoopLink& link) {
     loop_.read.add(cycle.read_ns);
     loop_.control.add(cycle.step_ns);
     loop_.write.add(cycle.write_ns);
-    if (!record_.is_in_motion) continue;
+    if (!record_.is_in_motion || !log_) continue;
     fillToolError(scene_.controller, cycle);
     log(cycle);
     summary_.add(cycle);
   }
   ModeReport report;
   while (link.reports.pop(report))
-    fmt::print(stderr, "tactusd: {}\n", describeMode(report, scene_));
+    std::fputs(fmt::format("tactusd: {}\n", describeMode(report, scene_)).c_str(), stderr);
   return !error_;
 }
 
@@ -76,7 +76,7 @@ void Telemetry::log(const CycleRecord& cycle) {
   }
 }
 
-void Telemetry::finish(LoopFigures loop) {
+void Telemetry::finish(Fault fault, LoopFigures loop) {
   if (error_) std::rethrow_exception(error_);
   if (!log_) return;
   log_->close();
@@ -84,7 +84,9 @@ void Telemetry::finish(LoopFigures loop) {
   loop.read = loop_.read;
   loop.control = loop_.control;
   loop.write = loop_.write;
-  writeSummary(folder_ + "/summary.json", scene_, summary_.figures(), 1.0, &loop);
+  RunFigures figures = summary_.figures();
+  figures.fault = fault;
+  writeSummary(folder_ + "/summary.json", scene_, figures, 1.0, &loop);
 }
 
 }  // namespace tactus

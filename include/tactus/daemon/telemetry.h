@@ -23,9 +23,10 @@ class Telemetry {
   /// the run should end.
   bool drain(LoopLink& link);
 
-  /// After the loop's end: closes the log and writes the summary. `loop` has all but the times.
+  /// After the loop's end: closes the log and writes the summary. `fault` is the run's; `loop` has
+  /// all but the times.
   /// Throws RunError, also for what drain() met.
-  void finish(LoopFigures loop);
+  void finish(Fault fault, LoopFigures loop);
 
  private:
   void log(const CycleRecord& cycle);
