@@ -27,7 +27,7 @@ constexpr std::array<ModeTransition, kModeTransitionCount> kTransitions = {{
     {kStopping, kFault, "drives off after a fault, a fault that stops at once, or time over"},
     {kStopping, kOff, "drives off"},
     {kFault, kBoot, "enable line off and on, cause gone"},
-    {kFault, kOff, "drives off and no enable line, stop requested, or time over"},
+    {kFault, kOff, "drives off or time over, and a stop requested or no enable line"},
 }};
 
 void enter(ModeState& state, Mode mode) noexcept {
@@ -96,8 +96,8 @@ void holding(const ModeInput& input, ModeState& state) noexcept {
 }
 
 void stopping(const ModeConfig& config, const ModeInput& input, ModeState& state) noexcept {
-  if (state.reaction >= Reaction::kQuickStop || state.cycles_in_mode > config.stopping_cycles)
-    return enter(state, kFault);
+  if (state.cycles_in_mode > config.stopping_cycles) note(state, Fault::kDriveStateLost);
+  if (state.reaction >= Reaction::kQuickStop) return enter(state, kFault);
   if (!input.is_at_rest || !input.are_disabled) return;
   if (state.fault != Fault::kNone) return enter(state, kFault);
   enter(state, input.stop_requested ? kOff : kReady);

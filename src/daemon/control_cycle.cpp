@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tactus/daemon/apply_mode.h"
+#include "tactus/io/cycle_count.h"
 
 namespace tactus {
 namespace {
@@ -12,23 +13,35 @@ namespace {
 constexpr double kSwitchingTime_s = 2.0;
 /// Between the last setpoint and power off, for the drives to have followed it.
 constexpr double kRestTime_s = 0.02;
-/// Beyond the drives' own limit, which names the drive: for tare and first feedback.
-constexpr double kTareTime_s = 2.0;
-
-int wholeCycles(double duration_s, double period_s) {
-  return static_cast<int>(std::ceil(duration_s / period_s - 1e-6));
-}
+/// Beyond the drives' own limit, which names the drive: for first feedback and first samples.
+constexpr double kFirstFrames_s = 2.0;
+/// A ramp takes no longer in any robot that should be left to it.
+constexpr double kMaxRamp_s = 30.0;
 
 double brakeTime_s(const HardwareConfig& hardware) {
   return hardware.gpio && hardware.gpio->brake ? hardware.gpio->brake_switching_s : 0.0;
 }
 
-ModeConfig modeConfig(const HardwareConfig& hardware, double period_s) {
+double tareTime_s(const HardwareConfig& hardware) {
+  return hardware.tactile ? hardware.tactile->tare_samples * hardware.tactile->sample_period_s
+                          : 0.0;
+}
+
+double rampTime_s(const JointLimits& limits) {
+  return std::min(kMaxRamp_s,
+                  limits.max_velocity.cwiseQuotient(limits.max_acceleration).maxCoeff());
+}
+
+ModeConfig modeConfig(const Scene& scene) {
+  const HardwareConfig& hardware = *scene.hardware;
+  const double period_s = scene.period_s;
+  const double boot_s = hardware.canopen.boot_timeout_s + kFirstFrames_s + tareTime_s(hardware);
   ModeConfig config;
-  config.brake_cycles = wholeCycles(brakeTime_s(hardware), period_s);
-  config.boot_cycles = wholeCycles(hardware.canopen.boot_timeout_s + kTareTime_s, period_s);
-  config.enabling_cycles = wholeCycles(kSwitchingTime_s, period_s) + config.brake_cycles;
-  config.stopping_cycles = config.enabling_cycles;
+  config.brake_cycles = cyclesCovering(brakeTime_s(hardware), period_s);
+  config.boot_cycles = cyclesCovering(boot_s, period_s);
+  config.enabling_cycles = cyclesCovering(kSwitchingTime_s, period_s) + config.brake_cycles;
+  config.stopping_cycles =
+      config.enabling_cycles + cyclesCovering(rampTime_s(scene.controller.limits), period_s);
   return config;
 }
 
@@ -37,21 +50,26 @@ ModeConfig modeConfig(const HardwareConfig& hardware, double period_s) {
 ControlCycle::ControlCycle(const Scene& scene)
     : controller_(scene.controller),
       robot_(*scene.hardware, scene.period_s),
-      q_start_(scene.controller.q_start),
+      q_commanded_(scene.controller.q_start),
+      q_released_(scene.controller.q_start),
       start_tolerance_(scene.hardware->start_tolerance),
       period_s_(scene.period_s),
       max_late_cycles_(scene.hardware->real_time.max_late_cycles),
       has_enable_line_(scene.hardware->gpio && scene.hardware->gpio->enable),
+      max_sample_age_s_(scene.controller.tactile_module
+                            ? scene.controller.tactile_module->max_sample_age_s
+                            : 0.0),
       max_rest_cycles_(
-          wholeCycles(std::max(kRestTime_s, brakeTime_s(*scene.hardware)), scene.period_s)),
-      mode_config_(modeConfig(*scene.hardware, scene.period_s)),
+          cyclesCovering(std::max(kRestTime_s, brakeTime_s(*scene.hardware)), scene.period_s)),
+      mode_config_(modeConfig(scene)),
       state_(controller_.initialState()) {
-  output_.velocity = JointVector::Zero(q_start_.size());
-  output_.q_desired = q_start_;
+  output_.velocity = JointVector::Zero(q_commanded_.size());
+  output_.q_desired = q_commanded_;
 }
 
 void ControlCycle::update(const CycleInput& input) noexcept {
   robot_.read(input_);
+  watchSamples(input.missed_cycles);
   const Mode before = mode_.mode;
   const Fault fault_before = mode_.fault;
   updateMode(mode_config_, modeInput(input, judge(input)), mode_);
@@ -61,8 +79,12 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   report_.mode = mode_.mode;
   report_.fault = mode_.fault;
   control(input, before);
-  rest_cycles_ = output_.velocity.isZero(0.0) ? std::min(rest_cycles_, max_rest_cycles_) + 1 : 0;
+  const bool is_resting = mode_.mode == Mode::kStopping && output_.velocity.isZero(0.0);
+  rest_cycles_ = is_resting ? std::min(rest_cycles_, max_rest_cycles_) + 1 : 0;
+  is_brake_open_ = mayMove();
+  rememberPlace();
   const bool is_boot_new = mode_.mode == Mode::kBoot && mode_.cycles_in_mode == 0;
+  if (is_boot_new) repeatRefusedTare();
   robot_.command(driveGoal(), is_boot_new || is_first_, output_.q_desired);
   if (mode_.mode == Mode::kOff) {
     robot_.release();
@@ -83,9 +105,9 @@ Fault ControlCycle::judge(const CycleInput& input) noexcept {
   judged_ = {};
   const auto found = [this](Fault fault) { return (judged_.fault = fault) != Fault::kNone; };
   if (input.lines.emergency_stop && found(Fault::kEmergencyStop)) return judged_.fault;
-  if (input.has_forbidden_call && found(Fault::kForbiddenSystemCall)) return judged_.fault;
   if (input.are_lines_lost && found(Fault::kGpioLost)) return judged_.fault;
   if (found(judgeBuses(input)) || found(judgeDrives())) return judged_.fault;
+  if (input.has_forbidden_call && found(Fault::kForbiddenSystemCall)) return judged_.fault;
   const bool is_moving = mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding;
   const bool is_late = mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_;
   if (is_late && found(Fault::kOverrun)) return judged_.fault;
@@ -108,19 +130,29 @@ Fault ControlCycle::judgeDrives() noexcept {
   if (mode_.mode == Mode::kFault) return Fault::kNone;
   const DrivesReport drives = robot_.drives();
   judged_.joint = drives.joint;
-  const bool is_configured_first = mode_.mode == Mode::kBoot && areConfigured();
-  if (drives.fault == Fault::kNone && is_configured_first && !isAtStart())
-    return Fault::kNotAtStart;
+  const bool is_about_to_move = mode_.mode == Mode::kReady || mode_.mode == Mode::kEnabling ||
+                                (mode_.mode == Mode::kBoot && areConfigured());
+  if (drives.fault == Fault::kNone && is_about_to_move && !isInPlace()) return Fault::kNotAtStart;
   return drives.fault;
 }
 
 Fault ControlCycle::judgeTactile() noexcept {
   TactileReceiver* const tactile = robot_.tactile();
   if (!tactile) return Fault::kNone;
-  if (mode_.mode != Mode::kBoot) return tactile->fault();
+  if (mode_.mode != Mode::kBoot) return hasFreshSample() ? tactile->fault() : Fault::kTactileStale;
   if (tactile->tareState() == TareState::kRefused) return Fault::kTareRefused;
   const bool is_late = mode_.cycles_in_mode >= mode_config_.boot_cycles;
   return is_late && robot_.drives().are_configured ? Fault::kTactileStale : Fault::kNone;
+}
+
+void ControlCycle::watchSamples(int missed_cycles) noexcept {
+  const bool is_new = input_.tactile.sequence != sample_sequence_;
+  sample_sequence_ = input_.tactile.sequence;
+  sample_age_s_ = is_new ? 0.0 : sample_age_s_ + (1 + missed_cycles) * period_s_;
+}
+
+bool ControlCycle::hasFreshSample() const noexcept {
+  return sample_sequence_ > 0 && sample_age_s_ <= max_sample_age_s_;
 }
 
 /// The tare is taken once, before the arm has ever moved: afterwards it may rest in contact.
@@ -129,12 +161,28 @@ bool ControlCycle::areConfigured() noexcept {
   TactileReceiver* const tactile = robot_.tactile();
   if (!tactile) return true;
   if (tactile->tareState() == TareState::kNone) tactile->startTare();
-  return tactile->tareState() == TareState::kDone && tactile->sample().sequence > 0;
+  return tactile->tareState() == TareState::kDone && hasFreshSample();
 }
 
-bool ControlCycle::isAtStart() const noexcept {
-  if (is_started_) return true;
-  return ((input_.q_measured - q_start_).cwiseAbs().array() <= start_tolerance_).all();
+void ControlCycle::repeatRefusedTare() noexcept {
+  TactileReceiver* const tactile = robot_.tactile();
+  if (!is_started_ && tactile && tactile->tareState() == TareState::kRefused) tactile->startTare();
+}
+
+/// At the scene's start, or later where it was commanded to be or seen to rest: the task would pull
+/// an arm that somebody has pushed away back at once, as fast as its limits allow.
+bool ControlCycle::isInPlace() const noexcept {
+  const JointVector from_command = (input_.q_measured - q_commanded_).cwiseAbs();
+  const JointVector from_release = (input_.q_measured - q_released_).cwiseAbs();
+  return (from_command.cwiseMin(from_release).array() <= start_tolerance_).all();
+}
+
+void ControlCycle::rememberPlace() noexcept {
+  const bool is_commanding =
+      mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding || mode_.mode == Mode::kStopping;
+  if (!is_started_) return;
+  if (is_commanding) q_commanded_ = output_.q_desired;
+  if (mode_.mode != Mode::kBoot && !robot_.drives().are_disabled) q_released_ = input_.q_measured;
 }
 
 ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept {
@@ -154,7 +202,7 @@ ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept
 void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   const bool is_running = mode_.mode == Mode::kRunning;
   if (!is_started_ && !is_running) {
-    output_.q_desired = robot_.hasPositions() ? input_.q_measured : q_start_;
+    output_.q_desired = robot_.hasPositions() ? input_.q_measured : q_commanded_;
     return;
   }
   const int missed = is_started_ ? input.missed_cycles : 0;
@@ -191,7 +239,7 @@ DriveGoal ControlCycle::driveGoal() const noexcept {
 }
 
 /// Brakes close before the drives let go, and open before they move; only after a quick stop do
-/// drives switch off by themselves.
+/// drives switch off by themselves. A fault never opens a brake.
 bool ControlCycle::mayMove() const noexcept {
   if (mode_.reaction == Reaction::kBrake) return false;
   switch (mode_.mode) {
@@ -203,7 +251,7 @@ bool ControlCycle::mayMove() const noexcept {
     case Mode::kStopping:
       return rest_cycles_ == 0;
     case Mode::kFault:
-      return !robot_.drives().are_disabled;
+      return is_brake_open_ && !robot_.drives().are_disabled;
     default:
       return false;
   }
@@ -211,7 +259,7 @@ bool ControlCycle::mayMove() const noexcept {
 
 GpioOutputs ControlCycle::lines() const noexcept {
   GpioOutputs outputs;
-  outputs.release_brake = mayMove();
+  outputs.release_brake = is_brake_open_;
   outputs.heartbeat = heartbeat_;
   return outputs;
 }

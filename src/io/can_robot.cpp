@@ -11,7 +11,7 @@ namespace {
 /// A drive that has gone silent cannot be seen to be off: its own heartbeat watch stops it.
 bool isOff(const DriveReport& report) noexcept {
   if (!report.is_configured || report.is_silent) return true;
-  return report.state != DriveState::kOperationEnabled &&
+  return report.has_state && report.state != DriveState::kOperationEnabled &&
          report.state != DriveState::kQuickStopActive &&
          report.state != DriveState::kFaultReactionActive;
 }

@@ -145,6 +145,7 @@ void Drive::takeFeedback() noexcept {
   cycles_without_feedback_ = 0;
   state_ = decodeStatusWord(feedback_->status_word);
   report_.state = state_.value_or(DriveState::kNotReady);
+  report_.has_state = state_.has_value();
   report_.has_position = true;
   report_.position =
       feedback_->position / (config_.sign * config_.counts_per_unit) + config_.offset;

@@ -56,7 +56,7 @@ struct ModeState {
 struct ModeConfig {
   int boot_cycles = 5000;      ///< to configure all drives: kDriveSetupRefused
   int enabling_cycles = 2000;  ///< to switch on: kDriveStateLost
-  int stopping_cycles = 2000;  ///< to end: then quick stop, and after as many again, off
+  int stopping_cycles = 2000;  ///< to end: kDriveStateLost, and after as many again, off
   int brake_cycles = 0;        ///< between switched on and moving, for the brakes to open
 };
 

@@ -61,7 +61,11 @@ class ControlCycle {
   Fault judgeTactile() noexcept;
   ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
   bool areConfigured() noexcept;
-  bool isAtStart() const noexcept;
+  bool isInPlace() const noexcept;
+  void rememberPlace() noexcept;
+  void watchSamples(int missed_cycles) noexcept;
+  bool hasFreshSample() const noexcept;
+  void repeatRefusedTare() noexcept;
   void noteCulprit() noexcept;
   void control(const CycleInput& input, Mode before) noexcept;
   DriveGoal driveGoal() const noexcept;
@@ -76,11 +80,13 @@ class ControlCycle {
 
   Controller controller_;
   CanRobot robot_;
-  JointVector q_start_;
+  JointVector q_commanded_;  ///< at last, in a mode that commands; at first where the scene starts
+  JointVector q_released_;   ///< measured when a drive had power at last; likewise
   double start_tolerance_;
   double period_s_;
   int max_late_cycles_;
   bool has_enable_line_;
+  double max_sample_age_s_;
   int max_rest_cycles_;
   ModeConfig mode_config_;
   ModeState mode_;
@@ -93,7 +99,10 @@ class ControlCycle {
   bool is_started_ = false;  ///< the controller has a state
   bool is_first_ = true;
   bool heartbeat_ = false;
-  int rest_cycles_ = 0;        ///< in a row with zero velocity, as many as matter
+  bool is_brake_open_ = false;
+  std::uint32_t sample_sequence_ = 0;
+  double sample_age_s_ = 0.0;
+  int rest_cycles_ = 0;        ///< in a row while stopping with zero velocity, as many as matter
   long long cycles_ = 0;       ///< since the first cycle of motion, missed ones included
   long long task_cycles_ = 0;  ///< of these, those in which the task's clock ran
 };

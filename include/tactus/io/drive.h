@@ -26,6 +26,7 @@ enum class DriveGoal : std::uint8_t {
 struct DriveReport {
   bool is_configured = false;
   DriveState state = DriveState::kNotReady;
+  bool has_state = false;  ///< the last status word was one that the standard knows
   bool is_silent = false;  ///< now: out of reach, so that `state` is an old one
   bool has_position = false;
   double position = 0.0;  ///< m or rad
