@@ -8,8 +8,8 @@
 namespace tactus {
 namespace {
 
-struct RandomCase {
-  explicit RandomCase(test::Random& random)
+struct LimiterCase {
+  explicit LimiterCase(test::Random& random)
       : n(random.integer(1, kMaxJoints)),
         limits(test::randomLimits(random, n)),
         q(JointVector::Zero(n)),
@@ -44,7 +44,7 @@ struct RandomCase {
 TEST(CommandLimiter, LeavesAdmissibleCommandsAloneToTheBit) {
   test::Random random(161);
   for (int i = 0; i < 5000; ++i) {
-    const RandomCase c(random);
+    const LimiterCase c(random);
     JointVector wanted(c.n);
     for (int k = 0; k < c.n; ++k)
       wanted[k] = random.uniform(std::max(-100.0, c.low(k)), std::min(100.0, c.high(k)));
@@ -57,7 +57,7 @@ TEST(CommandLimiter, LeavesAdmissibleCommandsAloneToTheBit) {
 TEST(CommandLimiter, LetsNothingInadmissibleThrough) {
   test::Random random(162);
   for (int i = 0; i < 50000; ++i) {
-    const RandomCase c(random);
+    const LimiterCase c(random);
     JointVector v(c.n);
     const bool hostile = random.chance(0.5);
     for (double& value : v)
@@ -78,7 +78,7 @@ TEST(CommandLimiter, LetsNothingInadmissibleThrough) {
 TEST(CommandLimiter, RampsToRestOnNoNumber) {
   test::Random random(163);
   for (int i = 0; i < 1000; ++i) {
-    const RandomCase c(random);
+    const LimiterCase c(random);
     JointVector v = JointVector::Ones(c.n);
     v[random.index(c.n)] = std::numeric_limits<double>::quiet_NaN();
     ASSERT_FALSE(CommandLimiter(c.limits).apply(c.q, c.before, c.period_s, v));
@@ -92,7 +92,7 @@ TEST(CommandLimiter, RampsToRestOnNoNumber) {
 }
 
 /// Brute force: is any factor of 0..1 admissible, and which is the largest?
-double largestAdmissibleFactor(const RandomCase& c, const JointVector& wanted, double tolerance) {
+double largestAdmissibleFactor(const LimiterCase& c, const JointVector& wanted, double tolerance) {
   for (int step = 20000; step >= 0; --step) {
     const double factor = step / 20000.0;
     if (c.admissible(factor * wanted, tolerance)) return factor;
@@ -105,7 +105,7 @@ TEST(CommandLimiter, KeepsTheDirectionWhereverAMultipleIsAdmissible) {
   int shortened = 0;
   int clamped = 0;
   for (int i = 0; i < 1500; ++i) {
-    RandomCase c(random);
+    LimiterCase c(random);
     // Long enough steps that previous speeds and the command often have multiples in common.
     c.before *= random.logUniform(1e-4, 1.0);
     const JointVector wanted = random.vector(c.n, -1.0, 1.0) * random.logUniform(0.01, 100.0);

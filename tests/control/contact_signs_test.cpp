@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "support/expanded_pseudoinverse.h"
+#include "support/period.h"
 #include "support/random_robot.h"
 #include "support/tactile_samples.h"
 #include "tactus/control/controller.h"
@@ -10,7 +11,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 constexpr double kAlpha = 0.7;
 
 struct Touched {

@@ -4,10 +4,12 @@
 
 #include <cmath>
 
+#include "support/period.h"
+
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 const Vector3 kLost(0.3, -0.2, 1.1);
 
 class Transition : public testing::Test {

@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "support/period.h"
 #include "support/rail_robot.h"
 
 /// Law (5) by hand: T = 0.1 s, d = 0.5, c = 1000 N/m, so P = 2 d / (T c) = 0.01 m/(s N).
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 
 ForceControlConfig lawOf(Variant variant, int order = 2) {
   ForceControlConfig config;

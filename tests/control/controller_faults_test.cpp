@@ -4,12 +4,13 @@
 #include <limits>
 
 #include "support/controller_run.h"
+#include "support/period.h"
 
 /// Every fault ends in rest within the acceleration limits, and rest is where it ends.
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class MovingArm {

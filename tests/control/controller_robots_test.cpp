@@ -2,12 +2,13 @@
 
 #include "support/controller_run.h"
 #include "support/expanded_pseudoinverse.h"
+#include "support/period.h"
 
 /// Robots of every size, without a change of code.
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 
 class RobotOfSize : public testing::TestWithParam<int> {};
 

@@ -9,8 +9,8 @@
 namespace tactus {
 namespace {
 
-struct RandomCase {
-  explicit RandomCase(test::Random& random) : n(random.integer(2, kMaxJoints)) {
+struct CostCase {
+  explicit CostCase(test::Random& random) : n(random.integer(2, kMaxJoints)) {
     limits = test::noLimits(n);
     limits.lower = random.vector(n, -3.0, 0.0);
     limits.upper = limits.lower + random.vector(n, 0.1, 4.0);
@@ -42,7 +42,7 @@ struct RandomCase {
 TEST(JointLimitAvoidance, IsTheGradientOfACost) {
   test::Random random(151);
   for (int i = 0; i < 500; ++i) {
-    const RandomCase c(random);
+    const CostCase c(random);
     const ScaledVector inv_sqrt_weights = random.vector(kMaxJoints, 0.1, 3.0);
     const JointLimitCost evaluated =
         JointLimitAvoidance(c.config, c.limits, inv_sqrt_weights).evaluate(c.q);

@@ -4,12 +4,14 @@
 
 #include <cmath>
 
+#include "support/period.h"
+
 /// The equations of the header by hand: T = 0.1 s, F_th = 1.2 N, F_rel = 0.3 N, F_eng = 0.5 N,
 /// v_search = 0.01 m/s, d_t = 0.05 m, T_t,max = 1 s.
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 const Vector3 kPoint(0.3, -0.2, 1.1);
 
 ForceControlConfig config() {

@@ -1,15 +1,16 @@
 #include <gtest/gtest.h>
 
+#include "support/period.h"
 #include "support/random_robot.h"
 #include "tactus/control/control_law.h"
 
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 
-struct RandomCase {
-  explicit RandomCase(test::Random& random)
+struct ContactCase {
+  explicit ContactCase(test::Random& random)
       : n(random.integer(2, kMaxJoints)),
         chain(test::randomChain(random, n)),
         inv_sqrt(scaled(test::randomWeights(random, n).cwiseSqrt().cwiseInverse(),
@@ -51,7 +52,7 @@ TEST(NullSpaceLimit, ScalesTheWholeVectorAndOnlyWhenNeeded) {
   test::Random random(111);
   int limited = 0;
   for (int i = 0; i < 5000; ++i) {
-    const RandomCase c(random);
+    const ContactCase c(random);
     const ControlLaw law(c.config, c.chain, c.inv_sqrt);
     ControlLawState state;
     ControlLawOutput u;
@@ -75,7 +76,7 @@ TEST(NullSpaceLimit, HoldsTheIntegralWhileLimited) {
   test::Random random(112);
   int held = 0;
   for (int i = 0; i < 2000; ++i) {
-    const RandomCase c(random);
+    const ContactCase c(random);
     const ControlLaw law(c.config, c.chain, c.inv_sqrt);
     ControlLawState state;
     ControlLawOutput u;
@@ -92,7 +93,7 @@ TEST(NullSpaceLimit, HoldsTheIntegralWhileLimited) {
 
 TEST(NullSpaceLimit, LeavesOtherSpacesAlone) {
   test::Random random(113);
-  RandomCase c(random);
+  ContactCase c(random);
   c.config.max_null_speed_m_per_s = c.config.max_null_speed_rad_per_s = 1e-6;
   for (const Variant variant : {Variant::kJointSpace, Variant::kTaskSpace}) {
     c.config.variant = variant;

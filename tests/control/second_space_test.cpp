@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "support/period.h"
 #include "support/rail_robot.h"
 #include "tactus/control/control_law.h"
 
@@ -9,7 +10,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 constexpr double kAct_N = 3.8;
 constexpr double kC_N_per_m = 1000.0;
 

@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "support/period.h"
 #include "support/random.h"
 
 /// Algorithm 1 by hand, with all that the paper leaves open.
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 constexpr double kAssumed = 7000.0;
 
 class Estimator : public testing::Test {

@@ -9,12 +9,12 @@
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 2e-5;
+constexpr double kFinePeriod_s = 2e-5;
 constexpr double kT_s = 0.1;
 constexpr double kDamping = 0.5;
-constexpr double kC_N_per_m = 7000.0;
+constexpr double kAssumed_N_per_m = 7000.0;
 constexpr double kStart_N = 10.0;
-constexpr double kTolerance_N = 0.02;  // of Euler steps of kPeriod_s / kT_s = 2e-4
+constexpr double kTolerance_N = 0.02;  // of Euler steps of kFinePeriod_s / kT_s = 2e-4
 
 /// Solution of x'' + b x' + k x = 0.
 class SecondOrder {
@@ -41,10 +41,10 @@ void runLoop(const ControllerConfig& config, double stiffness_N_per_m, Check che
   const Controller controller(config);
   ControllerState state = controller.initialState();
   ControllerOutput output;
-  for (int cycle = 0; cycle * kPeriod_s < 1.0; ++cycle) {
-    const double t_s = cycle * kPeriod_s;
+  for (int cycle = 0; cycle * kFinePeriod_s < 1.0; ++cycle) {
+    const double t_s = cycle * kFinePeriod_s;
     if (!check(t_s, world.force_N(state.q_desired))) return;
-    controller.update(world.input(state), t_s, kPeriod_s, state, output);
+    controller.update(world.input(state), t_s, kFinePeriod_s, state, output);
     ASSERT_EQ(output.fault, Fault::kNone);
   }
 }
@@ -56,7 +56,7 @@ class TargetDynamics : public testing::TestWithParam<std::tuple<Variant, double>
   /// The force must follow the closed form until it first reaches zero.
   void expectForce(const ControllerConfig& config, const SecondOrder& expected) {
     int cycles = 0;
-    runLoop(config, ratio() * kC_N_per_m, [&](double t_s, double F_N) {
+    runLoop(config, ratio() * kAssumed_N_per_m, [&](double t_s, double F_N) {
       if (expected.at(t_s) < kTolerance_N) return false;
       EXPECT_NEAR(F_N, expected.at(t_s), kTolerance_N) << "at " << t_s << " s";
       ++cycles;
@@ -78,7 +78,7 @@ TEST_P(TargetDynamics, SecondOrderFollowsEquation12) {
 TEST_P(TargetDynamics, FirstOrderDecaysWithItsTimeConstant) {
   ControllerConfig config = test::railController(std::get<0>(GetParam()));
   config.force_control->order = 1;
-  runLoop(config, ratio() * kC_N_per_m, [&](double t_s, double F_N) {
+  runLoop(config, ratio() * kAssumed_N_per_m, [&](double t_s, double F_N) {
     EXPECT_NEAR(F_N, kStart_N * std::exp(-ratio() * t_s / kT_s), kTolerance_N) << t_s;
     return t_s < 0.3 && !testing::Test::HasFailure();
   });
@@ -108,7 +108,7 @@ TEST(TargetDynamicsOfTwoSpaces, FollowCaseCOfEquation8) {
     const SecondOrder expected(4.0 * kDamping / kT_s, 2.0 / (kT_s * kT_s), kStart_N - 0.5 * act_N,
                                -2.0 * kDamping / kT_s * (kStart_N + (kStart_N - act_N)));
     int cycles = 0;
-    runLoop(config, kC_N_per_m, [&](double t_s, double F_N) {
+    runLoop(config, kAssumed_N_per_m, [&](double t_s, double F_N) {
       EXPECT_NEAR(F_N, expected.at(t_s) + 0.5 * act_N, kTolerance_N) << t_s;
       ++cycles;
       return F_N > act_N && !testing::Test::HasFailure();
@@ -123,7 +123,7 @@ TEST(TargetDynamicsOfWeights, DoNotChangeTheForce) {
   config.weights << 4.0, 0.25;
   const SecondOrder expected(2.0 * kDamping / kT_s, 1.0 / (kT_s * kT_s), kStart_N,
                              -2.0 * kDamping / kT_s * kStart_N);
-  runLoop(config, kC_N_per_m, [&](double t_s, double F_N) {
+  runLoop(config, kAssumed_N_per_m, [&](double t_s, double F_N) {
     EXPECT_NEAR(F_N, expected.at(t_s), kTolerance_N) << t_s;
     return expected.at(t_s) > 0.1 && !testing::Test::HasFailure();
   });

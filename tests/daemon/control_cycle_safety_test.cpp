@@ -103,12 +103,6 @@ TEST(ControlCycleSafety, AnUnknownStatusWordIsNoDriveThatIsOff) {
   }
 }
 
-void switchEnable(VirtualRobotCell& cell) {
-  cell.input.lines.enable = false;
-  for (int i = 0; i < 50; ++i) cell.step();
-  cell.input.lines.enable = true;
-}
-
 /// As if somebody had pushed joint 4 on bus 1, while drives were off: 1e7 counts a rad.
 void pushAway(VirtualRobotCell& cell, int counts) {
   cell.on_frame = [counts](int bus, CanFrame& frame) {
@@ -129,7 +123,7 @@ TEST(ControlCycleSafety, AnArmThatWasPushedAwayDoesNotStartAgain) {
   ASSERT_TRUE(cell.areDrivesOff());
   pushAway(cell, 1'000'000);
   cell.input.lines.emergency_stop = false;
-  switchEnable(cell);
+  cell.switchEnable();
   for (int i = 0; i < 4000; ++i) {
     cell.step();
     ASSERT_EQ(cell.largestSetpoint(), 0) << i;
@@ -137,7 +131,7 @@ TEST(ControlCycleSafety, AnArmThatWasPushedAwayDoesNotStartAgain) {
   }
   EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart);
   cell.on_frame = nullptr;  // and is put back
-  switchEnable(cell);
+  cell.switchEnable();
   EXPECT_TRUE(cell.runUntil(Mode::kRunning, 4000)) << faultName(cell.cycle.report().fault);
 }
 
@@ -172,7 +166,7 @@ TEST(ControlCycleSafety, NeverStartsBlind) {
   }
   EXPECT_EQ(cell.cycle.report().fault, Fault::kTactileStale);
   cell.on_frame = nullptr;
-  switchEnable(cell);
+  cell.switchEnable();
   EXPECT_TRUE(cell.runUntil(Mode::kRunning, 4000)) << faultName(cell.cycle.report().fault);
 }
 
@@ -184,7 +178,7 @@ TEST(ControlCycleSafety, ARefusedTareIsRepeatedByTheEnableLine) {
   ASSERT_TRUE(cell.runUntil(Mode::kFault, 5000));
   EXPECT_EQ(cell.cycle.report().fault, Fault::kTareRefused);
   cell.on_frame = nullptr;
-  switchEnable(cell);
+  cell.switchEnable();
   EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000)) << faultName(cell.cycle.report().fault);
 }
 

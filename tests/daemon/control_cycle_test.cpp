@@ -295,9 +295,7 @@ TEST(ControlCyclePowerCut, BringsNoStaleSetpointToADrive) {
   EXPECT_EQ(cell.cycle.report().mode, Mode::kFault);
   EXPECT_EQ(cell.plant.counters().stale_setpoints_applied, 0u);
   for (int joint = 0; joint < 9; ++joint) EXPECT_EQ(cell.plant.drive(joint).velocity(), 0.0);
-  cell.input.lines.enable = false;
-  for (int i = 0; i < 50; ++i) cell.step();
-  cell.input.lines.enable = true;
+  cell.switchEnable();
   EXPECT_TRUE(cell.runUntil(Mode::kRunning, 3000)) << faultName(cell.cycle.report().fault);
 }
 

@@ -175,12 +175,6 @@ TEST(FaultInContact, BringsTheArmToRestAndEnds) {
   });
 }
 
-void switchEnable(VirtualRobotCell& cell) {
-  cell.input.lines.enable = false;
-  for (int i = 0; i < 50; ++i) cell.step();
-  cell.input.lines.enable = true;
-}
-
 TEST(FaultInContact, RestartsByTheEnableLineOnly) {
   forEachFault(true, [](VirtualRobotCell& cell, const Injection& injection) {
     inject(cell, injection, 400);
@@ -191,7 +185,7 @@ TEST(FaultInContact, RestartsByTheEnableLineOnly) {
     for (int i = 0; i < 500; ++i) cell.step();
     EXPECT_EQ(cell.cycle.report().mode, rest) << "the enable line was not switched off and on";
     EXPECT_EQ(cell.largestSetpoint(), 0);
-    switchEnable(cell);
+    cell.switchEnable();
     EXPECT_TRUE(cell.runUntil(Mode::kRunning, 3000))
         << modeName(cell.cycle.report().mode) << " " << faultName(cell.cycle.report().fault);
     for (int i = 0; i < 1000; ++i) cell.step();
@@ -205,7 +199,7 @@ TEST(FaultInContact, DoesNotMoveWhileTheCauseIsThere) {
     if (injection.fault == Fault::kFollowingError) return;  // a jump is no lasting cause
     inject(cell, injection, 400);
     for (int i = 0; i < 2; ++i) {
-      switchEnable(cell);
+      cell.switchEnable();
       for (int k = 0; k < 1000; ++k) {
         cell.step();
         ASSERT_EQ(cell.largestSetpoint(), 0) << k;

@@ -5,12 +5,13 @@
 #include <cmath>
 
 #include "support/crops9.h"
+#include "support/period.h"
 #include "support/telemetry.h"
 
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 const RecordShape kShape{9, 3};
 
 /// A touch that comes and goes: what a controller is fed does not have to be a simulation.

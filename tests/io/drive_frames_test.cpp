@@ -14,7 +14,7 @@ using test::DriveRig;
 using test::kNode;
 using test::rawFrame;
 
-constexpr double kVelocity = 0.1;
+constexpr double kSetpoint = 0.1;
 
 TEST(DriveFrames, CountsAndIgnoresFramesOfWrongSize) {
   DriveRig rig;
@@ -31,7 +31,7 @@ TEST(DriveFrames, CountsAndIgnoresFramesOfWrongSize) {
   }
   rig.drive.receive(rawFrame(0x700 + kNode, {0x33}));
   EXPECT_EQ(rig.drive.malformedFrames(), wrong + 1);
-  rig.cycles(3, DriveGoal::kEnabled, kVelocity);
+  rig.cycles(3, DriveGoal::kEnabled, kSetpoint);
   EXPECT_EQ(rig.report().fault, Fault::kNone);
   EXPECT_EQ(rig.report().emergency_code, 0);
 }
@@ -64,13 +64,13 @@ TEST(DriveFrames, ShortGapsOfFeedbackAreBridged) {
   DriveRig rig;
   rig.enable();
   for (int gap = 0; gap < 20; ++gap) {
-    rig.cycles(1, DriveGoal::kEnabled, kVelocity);
+    rig.cycles(1, DriveGoal::kEnabled, kSetpoint);
     rig.slave.sends_feedback = false;
     for (int cycle = 0; cycle < Drive::kMaxSilentCycles; ++cycle)
-      EXPECT_NE(commandOf(rig.cycle(DriveGoal::kEnabled, kVelocity)).velocity, 0);
+      EXPECT_NE(commandOf(rig.cycle(DriveGoal::kEnabled, kSetpoint)).velocity, 0);
     rig.slave.sends_feedback = true;
   }
-  rig.cycles(2, DriveGoal::kEnabled, kVelocity);
+  rig.cycles(2, DriveGoal::kEnabled, kSetpoint);
   EXPECT_EQ(rig.report().fault, Fault::kNone);
 }
 

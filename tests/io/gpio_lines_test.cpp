@@ -8,6 +8,7 @@
 
 #include "io/fake_gpiod.h"
 #include "support/allocation_guard.h"
+#include "support/period.h"
 
 namespace tactus {
 namespace {
@@ -16,7 +17,7 @@ using test::drive;
 using test::fake_chip;
 using test::resetFakeChip;
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 
 GpioConfig allLines(bool is_active_low = false, double debounce_s = 0.0) {
   GpioConfig config;

@@ -7,13 +7,13 @@
 namespace tactus {
 namespace {
 
-constexpr double kAgreement = 1e-12;
+constexpr double kJacobianAgreement = 1e-12;
 constexpr double kStep = 1e-6;  // of central differences, whose error is then some 1e-10
 constexpr double kDifferenceTolerance = 2e-8;
 constexpr int kAll[6] = {0, 1, 2, 3, 4, 5};
 
-struct RandomCase {
-  explicit RandomCase(test::Random& random)
+struct JacobianCase {
+  explicit JacobianCase(test::Random& random)
       : n(random.integer(2, kMaxJoints)),
         joints(test::randomJoints(random, n)),
         frame(test::randomFrame(random, random.integer(0, n - 1))),
@@ -48,12 +48,13 @@ struct RandomCase {
 TEST(TipJacobian, AgreesWithOrocosKdlOnRandomChains) {
   test::Random random(21);
   for (int i = 0; i < 600; ++i) {
-    const RandomCase c(random);
+    const JacobianCase c(random);
     const TaskJacobian J = test::tipJacobian(SerialChain(c.joints, c.frame), c.q, kAll, 6);
     const Eigen::MatrixXd kdl = test::kdlJacobian(c.joints, c.frame, c.q);
     const int moving = c.frame.joint + 1;
     ASSERT_EQ(J.cols(), c.n);
-    ASSERT_LT((J.leftCols(moving) - kdl).cwiseAbs().maxCoeff(), kAgreement) << "chain " << i;
+    ASSERT_LT((J.leftCols(moving) - kdl).cwiseAbs().maxCoeff(), kJacobianAgreement)
+        << "chain " << i;
     ASSERT_TRUE((J.rightCols(c.n - moving).array() == 0.0).all()) << "joints beyond the tip";
   }
 }
@@ -61,7 +62,7 @@ TEST(TipJacobian, AgreesWithOrocosKdlOnRandomChains) {
 TEST(TipJacobian, AgreesWithCentralDifferences) {
   test::Random random(22);
   for (int i = 0; i < 60; ++i) {
-    const RandomCase c(random);
+    const JacobianCase c(random);
     const TaskJacobian J = test::tipJacobian(SerialChain(c.joints, c.frame), c.q, kAll, 6);
     for (int joint = 0; joint < c.n; ++joint)
       for (int component = 0; component < 6; ++component)
@@ -73,7 +74,7 @@ TEST(TipJacobian, AgreesWithCentralDifferences) {
 TEST(TipJacobian, DeliversTheComponentsAskedForInTheirOrder) {
   test::Random random(23);
   for (int i = 0; i < 100; ++i) {
-    const RandomCase c(random);
+    const JacobianCase c(random);
     const SerialChain chain(c.joints, c.frame);
     const TaskJacobian all = test::tipJacobian(chain, c.q, kAll, 6);
     const auto components = test::randomComponents(random);
@@ -88,7 +89,7 @@ TEST(TipJacobian, DeliversTheComponentsAskedForInTheirOrder) {
 TEST(PointJacobianTranspose, AgreesWithOrocosKdlForAPointOnAnyLink) {
   test::Random random(24);
   for (int i = 0; i < 600; ++i) {
-    const RandomCase c(random);
+    const JacobianCase c(random);
     const SerialChain chain(c.joints, test::randomFrame(random, c.n - 1));
     ChainPose pose;
     chain.computePose(c.q, pose);
@@ -98,14 +99,14 @@ TEST(PointJacobianTranspose, AgreesWithOrocosKdlForAPointOnAnyLink) {
     const int moving = c.frame.joint + 1;
     const Eigen::MatrixXd J_p = test::kdlJacobian(c.joints, c.frame, c.q).topRows(3);
     ASSERT_EQ(a.size(), c.n);
-    ASSERT_LT((a.head(moving) - J_p.transpose() * f).cwiseAbs().maxCoeff(), kAgreement);
+    ASSERT_LT((a.head(moving) - J_p.transpose() * f).cwiseAbs().maxCoeff(), kJacobianAgreement);
     ASSERT_TRUE((a.tail(c.n - moving).array() == 0.0).all()) << "joints beyond the link";
   }
 }
 
 TEST(PointJacobianTranspose, IsZeroForAPointOfTheBase) {
   test::Random random(25);
-  const RandomCase c(random);
+  const JacobianCase c(random);
   const SerialChain chain(c.joints, c.frame);
   ChainPose pose;
   chain.computePose(c.q, pose);

@@ -18,8 +18,8 @@ double relative(const Matrix& difference, const Matrix& scale) {
 
 double asymmetry(const Matrix& A) { return relative(A - A.transpose(), A); }
 
-struct RandomCase {
-  explicit RandomCase(test::Random& random)
+struct IdentityCase {
+  explicit IdentityCase(test::Random& random)
       : n(random.integer(2, kMaxJoints)),
         m(random.integer(1, std::min(n, kMaxTaskSize))),
         weights(test::randomWeights(random, n)),
@@ -39,7 +39,7 @@ class PseudoinverseIdentities : public testing::Test {
   void forRandomCases(Check check) {
     test::Random random(31);
     for (int i = 0; i < 400; ++i) {
-      const RandomCase c(random);
+      const IdentityCase c(random);
       ASSERT_FALSE(c.inverse.factors.damped());
       check(c, c.inverse.J_sharp, c.inverse.N);
     }
@@ -47,7 +47,7 @@ class PseudoinverseIdentities : public testing::Test {
 };
 
 TEST_F(PseudoinverseIdentities, MoorePenrose) {
-  forRandomCases([](const RandomCase& c, const Matrix& J_sharp, const Matrix&) {
+  forRandomCases([](const IdentityCase& c, const Matrix& J_sharp, const Matrix&) {
     ASSERT_LT(relative(c.J * J_sharp * c.J - c.J, c.J), kTolerance);
     ASSERT_LT(relative(J_sharp * c.J * J_sharp - J_sharp, J_sharp), kTolerance);
     ASSERT_LT(asymmetry(c.J * J_sharp), kTolerance);
@@ -56,7 +56,7 @@ TEST_F(PseudoinverseIdentities, MoorePenrose) {
 }
 
 TEST_F(PseudoinverseIdentities, ClosedForm) {
-  forRandomCases([](const RandomCase& c, const Matrix& J_sharp, const Matrix&) {
+  forRandomCases([](const IdentityCase& c, const Matrix& J_sharp, const Matrix&) {
     const Matrix W_inv = c.weights.cwiseInverse().asDiagonal();
     // J# (J W^-1 J^T) = W^-1 J^T needs no inverse.
     const Matrix gram = c.J * W_inv * c.J.transpose();
@@ -66,7 +66,7 @@ TEST_F(PseudoinverseIdentities, ClosedForm) {
 }
 
 TEST_F(PseudoinverseIdentities, ProjectorBelongsToIt) {
-  forRandomCases([](const RandomCase& c, const Matrix& J_sharp, const Matrix& N) {
+  forRandomCases([](const IdentityCase& c, const Matrix& J_sharp, const Matrix& N) {
     const Matrix I = Matrix::Identity(c.n, c.n);
     ASSERT_LT(relative(N - (I - J_sharp * c.J), I), kTolerance);
     ASSERT_LT(relative(N * N - N, I), kTolerance);
@@ -80,7 +80,7 @@ TEST_F(PseudoinverseIdentities, ProjectorBelongsToIt) {
 TEST_F(PseudoinverseIdentities, SolutionIsTheCheapestInTheWeightedNorm) {
   test::Random random(32);
   for (int i = 0; i < 400; ++i) {
-    const RandomCase c(random);
+    const IdentityCase c(random);
     const Eigen::VectorXd w = random.vector<Eigen::VectorXd>(c.m, -1.0, 1.0);
     const Eigen::VectorXd q_dot = c.inverse.J_sharp * w;
     const Eigen::VectorXd detour = c.inverse.N * random.vector<Eigen::VectorXd>(c.n, -1.0, 1.0);

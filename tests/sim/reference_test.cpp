@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "support/crops9.h"
+#include "support/period.h"
 #include "tactus/control/controller.h"
 #include "tactus/sim/simulated_robot.h"
 
@@ -12,7 +13,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 constexpr double kForceTolerance_N = 1e-6;
 constexpr double kJointTolerance = 1e-7;
 constexpr int kRowsInFile = 1300;

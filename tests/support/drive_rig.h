@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "support/period.h"
 #include "support/scripted_drive.h"
 #include "tactus/io/canopen.h"
 #include "tactus/io/drive.h"
@@ -11,7 +12,6 @@
 namespace tactus::test {
 
 inline constexpr int kNode = 5;
-inline constexpr double kPeriod_s = 0.001;
 
 inline DriveConfig driveConfig() {
   DriveConfig config;

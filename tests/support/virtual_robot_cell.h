@@ -70,6 +70,13 @@ class VirtualRobotCell {
     return largest;
   }
 
+  /// Enable line off and on again.
+  void switchEnable() {
+    input.lines.enable = false;
+    for (int i = 0; i < 50; ++i) step();
+    input.lines.enable = true;
+  }
+
   /// No drive of the plant has power.
   bool areDrivesOff() const {
     for (int joint = 0; joint < joints_; ++joint) {
