@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Refuses an #include that runs against the arrows between the layers:
 
-    math -> control -> {io, sim} -> plant -> daemon        rt -> daemon
+    math -> control -> {io, sim} -> plant -> daemon        sim -> analysis -> daemon        rt -> daemon
 
 usage: include_check.py ROOT     checks ROOT/include/tactus/** and ROOT/src/**"""
 
@@ -15,9 +15,10 @@ LAYERS = {
     "control": ({"control", "math"}, {"Eigen"}),
     "io": ({"io", "control", "math"}, {"Eigen", "gpiod.h"}),
     "sim": ({"sim", "control", "math"}, {"Eigen"}),
+    "analysis": ({"analysis", "sim", "control", "math"}, {"Eigen"}),
     "plant": ({"plant", "io", "sim", "control", "math"}, {"Eigen"}),
     "rt": ({"rt"}, {"seccomp.h", "malloc.h"}),
-    "daemon": ({"daemon", "plant", "io", "sim", "rt", "control", "math"},
+    "daemon": ({"daemon", "analysis", "plant", "io", "sim", "rt", "control", "math"},
                {"Eigen", "yaml-cpp", "pugixml.hpp", "CLI", "fmt", "systemd"}),
 }
 
@@ -25,7 +26,7 @@ LAYERS = {
 # as arguments, never by a call.
 SIDE_EFFECTS = {"chrono", "ctime", "thread", "mutex", "shared_mutex", "condition_variable",
                 "future", "filesystem", "fstream", "iostream", "cstdio", "csignal"}
-PURE_LAYERS = {"math", "control", "sim", "plant"}
+PURE_LAYERS = {"math", "control", "sim", "analysis", "plant"}
 
 POSIX = re.compile(r"(sys|linux|net|netinet|arpa)/.+|"
                    r"(unistd|fcntl|poll|pthread|sched|semaphore|signal|time|errno)\.h")

@@ -17,6 +17,10 @@ class ButterworthLowPass {
 
   double update(double input) noexcept;
 
+  /// Of z^0 to z^-3, for who studies a loop instead of running it; the denominator starts with 1.
+  const std::array<double, 4>& numerator() const noexcept { return b_; }
+  const std::array<double, 4>& denominator() const noexcept { return a_; }
+
  private:
   std::array<double, 4> b_;
   std::array<double, 4> a_;

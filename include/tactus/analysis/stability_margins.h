@@ -1,0 +1,21 @@
+#pragma once
+
+#include "tactus/analysis/contact_loop.h"
+
+namespace tactus {
+
+struct StabilityMargins {
+  /// c_e / c up to which the loop is stable; 0: it is not even for soft contacts (1e-3); infinite:
+  /// no end was found up to 1e6.
+  double largest_stiffness_ratio = 0.0;
+  double gain_margin = 0.0;       ///< how often the ratio asked for fits into it
+  double phase_margin_rad = 0.0;  ///< at the ratio asked for; 0 where it is unstable
+};
+
+/// Margins of a contact stiffness_ratio > 0 times as stiff as assumed, exact to about 1e-9. The
+/// loop is opened at the force sample: the gain margin is the factor, the phase margin the angle by
+/// which a sample may be wrong. Needs stepsOfCommonPeriod(loop) > 0. Not for the cycle: takes
+/// milliseconds.
+StabilityMargins computeMargins(const ContactLoop& loop, double stiffness_ratio);
+
+}  // namespace tactus

@@ -1,0 +1,132 @@
+#include "tactus/analysis/contact_loop.h"
+
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "tactus/math/filter.h"
+
+namespace tactus {
+namespace {
+
+constexpr int kMaxSteps = 10000;
+
+/// How often things happen, in steps of the plant: the shorter of cycle and filter period.
+struct Rates {
+  double step_s;
+  long cycle, filter, sample;
+};
+
+Rates ratesOf(const ContactLoop& loop) {
+  const double filter_period_s = 1.0 / loop.filter_rate_hz;
+  const double step_s = std::min(loop.period_s, filter_period_s);
+  const auto steps = [step_s](double period_s) { return std::lround(period_s / step_s); };
+  return {step_s, steps(loop.period_s), steps(filter_period_s),
+          steps(filter_period_s) * std::lround(loop.sample_period_s / filter_period_s)};
+}
+
+/// A number of the loop as a linear form of the state at the start of the common period.
+using Form = LoopState;
+
+/// The loop at work. The sequence of the members is that of the state.
+class LiftedLoop {
+ public:
+  LiftedLoop(const ContactLoop& loop, double stiffness_ratio, double phase_lag_rad)
+      : loop_(loop),
+        rates_(ratesOf(loop)),
+        filter_(loop.filter_cutoff_hz,
+                loop.filters_at_samples ? 1.0 / loop.sample_period_s : loop.filter_rate_hz),
+        drive_share_(lagShare(rates_.step_s, loop.drive_lag_s)),
+        stiffness_ratio_(stiffness_ratio),
+        turn_(std::polar(1.0, -phase_lag_rad)) {
+    int i = 0;
+    for (Form* form : {&commanded_, &position_, &delays_[0], &delays_[1], &delays_[2], &sample_,
+                       &integral_, &tool_})
+      *form = Form::Unit(i++);
+    // What is not there, or there twice, must not appear as an eigenvalue 1.
+    if (loop.order == 1) integral_.setZero();
+    if (!isToolApart()) tool_.setZero();
+  }
+
+  void step(long n) {
+    if (n % rates_.cycle == 0) control();
+    move();
+    if (n % rates_.filter == 0) sense(n % rates_.sample == 0);
+  }
+
+  LoopMatrix state() const {
+    LoopMatrix matrix;
+    matrix << commanded_, position_, delays_[0], delays_[1], delays_[2], sample_, integral_, tool_;
+    return matrix;
+  }
+
+ private:
+  void control() {
+    const double T_s = loop_.time_constant_s;
+    const double P_per_s = (loop_.order == 2 ? 2.0 * loop_.damping : 1.0) / T_s;
+    const Form answer = P_per_s * sample_ + integral_;
+    const Form pull = -loop_.drift_gain_per_s * (isToolApart() ? tool_ : commanded_);
+    velocity_ = (loop_.law == LoopLaw::kTwoSpaces ? 2.0 : 1.0) * answer + pull;
+    if (loop_.order == 2) integral_ += loop_.period_s / (T_s * T_s) * sample_;
+    if (isToolApart()) tool_ += loop_.period_s * (answer + pull);
+  }
+
+  /// In one space the tool leaves its path by as much as the contact moves.
+  bool isToolApart() const {
+    return loop_.law == LoopLaw::kTwoSpaces && loop_.drift_gain_per_s != 0.0;
+  }
+
+  void move() {
+    commanded_ += rates_.step_s * velocity_;
+    position_ += drive_share_ * (commanded_ - position_);
+  }
+
+  void sense(bool is_sample) {
+    if (loop_.filters_at_samples && !is_sample) return;
+    const std::array<double, 4>& b = filter_.numerator();
+    const std::array<double, 4>& a = filter_.denominator();
+    const Form force = -stiffness_ratio_ * position_;
+    const Form filtered = b[0] * force + delays_[0];
+    delays_[0] = b[1] * force - a[1] * filtered + delays_[1];
+    delays_[1] = b[2] * force - a[2] * filtered + delays_[2];
+    delays_[2] = b[3] * force - a[3] * filtered;
+    if (is_sample) sample_ = turn_ * filtered;
+  }
+
+  const ContactLoop& loop_;
+  Rates rates_;
+  ButterworthLowPass filter_;
+  double drive_share_;
+  double stiffness_ratio_;
+  std::complex<double> turn_;
+  Form commanded_, position_;
+  std::array<Form, 3> delays_;  ///< of the filter
+  Form sample_, integral_, tool_;
+  Form velocity_ = Form::Zero();  ///< no state: a common period starts with a cycle
+};
+
+}  // namespace
+
+int stepsOfCommonPeriod(const ContactLoop& loop) {
+  const Rates rates = ratesOf(loop);
+  if (rates.cycle > kMaxSteps || rates.sample > kMaxSteps) return 0;
+  const long steps = std::lcm(rates.cycle, rates.sample);
+  return steps <= kMaxSteps ? static_cast<int>(steps) : 0;
+}
+
+LoopMatrix commonPeriodMatrix(const ContactLoop& loop, double stiffness_ratio,
+                              double phase_lag_rad) {
+  LiftedLoop lifted(loop, stiffness_ratio, phase_lag_rad);
+  const int steps = stepsOfCommonPeriod(loop);
+  for (int n = 0; n < steps; ++n) lifted.step(n);
+  return lifted.state();
+}
+
+bool isStable(const ContactLoop& loop, double stiffness_ratio, double phase_lag_rad) {
+  const LoopMatrix matrix = commonPeriodMatrix(loop, stiffness_ratio, phase_lag_rad);
+  const Eigen::ComplexEigenSolver<LoopMatrix> solver(matrix, false);
+  return solver.eigenvalues().cwiseAbs().maxCoeff() < 1.0;
+}
+
+}  // namespace tactus

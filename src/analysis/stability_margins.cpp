@@ -1,0 +1,58 @@
+#include "tactus/analysis/stability_margins.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace tactus {
+namespace {
+
+constexpr double kSoftest = 1e-3;
+constexpr double kStiffest = 1e6;
+constexpr double kGrid = 1.25;
+constexpr int kBisections = 30;
+
+/// Where holds(x), true at `inside`, ends before `outside`.
+template <typename Condition>
+double bisect(double inside, double outside, Condition holds) {
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (holds(middle) ? inside : outside) = middle;
+  }
+  return inside;
+}
+
+/// The first end of stability on the way up: what is above is never met by a contact that loads.
+double largestStiffnessRatio(const ContactLoop& loop) {
+  const auto stable = [&](double ratio) { return isStable(loop, ratio); };
+  double ratio = kSoftest;
+  while (!stable(ratio)) {  // second order at its soft end: slow, hardly damped, hard to judge
+    ratio *= kGrid;
+    if (ratio > kStiffest) return 0.0;
+  }
+  while (stable(ratio * kGrid)) {
+    ratio *= kGrid;
+    if (ratio > kStiffest) return std::numeric_limits<double>::infinity();
+  }
+  return bisect(ratio, ratio * kGrid, stable);
+}
+
+double phaseMargin(const ContactLoop& loop, double stiffness_ratio) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  const auto stable = [&](double lag_rad) { return isStable(loop, stiffness_ratio, lag_rad); };
+  if (!stable(0.0)) return 0.0;
+  for (int degrees = 1; degrees <= 180; ++degrees) {
+    if (!stable(degrees * kDegree))
+      return bisect((degrees - 1) * kDegree, degrees * kDegree, stable);
+  }
+  return std::numbers::pi;
+}
+
+}  // namespace
+
+StabilityMargins computeMargins(const ContactLoop& loop, double stiffness_ratio) {
+  const double largest = largestStiffnessRatio(loop);
+  return {largest, largest / stiffness_ratio, phaseMargin(loop, stiffness_ratio)};
+}
+
+}  // namespace tactus
