@@ -125,6 +125,7 @@ LoopMatrix commonPeriodMatrix(const ContactLoop& loop, double stiffness_ratio,
 
 bool isStable(const ContactLoop& loop, double stiffness_ratio, double phase_lag_rad) {
   const LoopMatrix matrix = commonPeriodMatrix(loop, stiffness_ratio, phase_lag_rad);
+  if (!matrix.allFinite()) return false;
   const Eigen::ComplexEigenSolver<LoopMatrix> solver(matrix, false);
   return solver.eigenvalues().cwiseAbs().maxCoeff() < 1.0;
 }

@@ -10,6 +10,7 @@ namespace {
 constexpr double kSoftest = 1e-3;
 constexpr double kStiffest = 1e6;
 constexpr double kGrid = 1.25;
+constexpr double kLargestTimeConstant_s = 100.0;
 constexpr int kBisections = 30;
 
 /// Where holds(x), true at `inside`, ends before `outside`.
@@ -53,6 +54,19 @@ double phaseMargin(const ContactLoop& loop, double stiffness_ratio) {
 StabilityMargins computeMargins(const ContactLoop& loop, double stiffness_ratio) {
   const double largest = largestStiffnessRatio(loop);
   return {largest, largest / stiffness_ratio, phaseMargin(loop, stiffness_ratio)};
+}
+
+double smallestTimeConstant(ContactLoop loop, double stiffness_ratio) {
+  const auto stable = [&](double T_s) {
+    loop.time_constant_s = T_s;
+    return isStable(loop, stiffness_ratio);
+  };
+  double T_s = loop.time_constant_s;
+  while (!stable(T_s * kGrid)) {
+    T_s *= kGrid;
+    if (T_s > kLargestTimeConstant_s) return std::numeric_limits<double>::infinity();
+  }
+  return bisect(T_s * kGrid, T_s, stable);
 }
 
 }  // namespace tactus

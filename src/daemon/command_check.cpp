@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <Eigen/SVD>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -11,6 +12,7 @@
 #include "tactus/daemon/json.h"
 #include "tactus/daemon/key_table.h"
 #include "tactus/daemon/scene_loader.h"
+#include "tactus/daemon/stability_check.h"
 
 namespace tactus {
 namespace {
@@ -96,7 +98,29 @@ void writeHardware(JsonWriter& json, const Scene& scene) {
   json.endArray();
 }
 
-std::string toJson(const Scene& scene, const StartPose& start) {
+/// Nothing for a scene without force control.
+void writeStability(JsonWriter& json, const std::optional<StabilityReport>& stability) {
+  if (!stability) return;
+  json.key("stability").beginObject();
+  json.key("stiffest_N_per_m").value(stability->stiffest_N_per_m);
+  json.key("stiffness_N_per_m").value(stability->stiffness_N_per_m);
+  json.key("stiffness_ratio").value(stability->ratio());
+  json.key("loops").beginArray();
+  for (const LoopReport& loop : stability->loops) {
+    json.beginObject();
+    json.key("name").value(loop.name);
+    json.key("largest_stiffness_ratio").value(loop.margins.largest_stiffness_ratio);
+    json.key("gain_margin").value(loop.margins.gain_margin);
+    json.key("phase_margin_deg").value(loop.phaseMargin_deg());
+    json.endObject();
+  }
+  json.endArray();
+  writeNames(json, "warnings", stability->warnings);
+  json.endObject();
+}
+
+std::string toJson(const Scene& scene, const StartPose& start,
+                   const std::optional<StabilityReport>& stability) {
   JsonWriter json;
   json.beginObject();
   json.key("scene").value(scene.name);
@@ -113,16 +137,38 @@ std::string toJson(const Scene& scene, const StartPose& start) {
   for (const double x : start.p_BaseTool) json.value(x);
   json.endArray();
   json.key("smallest_singular_value_at_start").value(start.smallest_singular_value);
+  writeStability(json, stability);
   writeHardware(json, scene);
   json.endObject();
   return json.text();
 }
 
-std::string toText(const Scene& scene, const StartPose& start) {
+std::string textLine(const std::string& name, const std::string& value) {
+  return fmt::format("{:<9}{}\n", name, value);
+}
+
+std::string stabilityText(const StabilityReport& stability) {
+  std::string text =
+      textLine("contact", fmt::format("up to c_e = {:g} N/m, taken for c = {:g} N/m",
+                                      stability.stiffest_N_per_m, stability.stiffness_N_per_m));
+  for (const LoopReport& loop : stability.loops) {
+    const StabilityMargins& margins = loop.margins;
+    text += textLine(
+        &loop == &stability.loops.front() ? "margins" : "",
+        fmt::format("{}: stable to c_e/c = {:.4g}; here gain {:.3g} ({:.3g} dB), phase {:.3g} deg",
+                    loop.name, margins.largest_stiffness_ratio, margins.gain_margin,
+                    20.0 * std::log10(margins.gain_margin), loop.phaseMargin_deg()));
+  }
+  for (const std::string& warning : stability.warnings) text += textLine("warning", warning);
+  return text;
+}
+
+std::string toText(const Scene& scene, const StartPose& start,
+                   const std::optional<StabilityReport>& stability) {
   const TaskConfig& task = scene.controller.task;
   std::string text;
   const auto line = [&](const std::string& name, const std::string& value) {
-    text += fmt::format("{:<9}{}\n", name, value);
+    text += textLine(name, value);
   };
   line("scene", scene.name);
   line("robot", fmt::format("{}, {} joints: {}", scene.robot_name, scene.joint_names.size(),
@@ -134,6 +180,7 @@ std::string toText(const Scene& scene, const StartPose& start) {
   line("start", fmt::format("tool at ({:.4f}, {:.4f}, {:.4f}) m, smallest singular value {:.3g}",
                             start.p_BaseTool.x(), start.p_BaseTool.y(), start.p_BaseTool.z(),
                             start.smallest_singular_value));
+  if (stability) text += stabilityText(*stability);
   if (!scene.hardware) return text;
   line("hardware", fmt::format("{}", fmt::join(hardwareStageNames(*scene.hardware), ", ")));
   const std::vector<BusLoad> loads = busLoads(*scene.hardware, scene.period_s);
@@ -148,7 +195,10 @@ void runCheck(const Options& options) {
   for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
   const Scene scene = loadScene(options.scene, overrides);
   const StartPose start = computeStart(scene.controller);
-  std::fputs((options.json ? toJson(scene, start) : toText(scene, start)).c_str(), stdout);
+  const std::optional<StabilityReport> stability = checkStability(scene);
+  const std::string report =
+      options.json ? toJson(scene, start, stability) : toText(scene, start, stability);
+  std::fputs(report.c_str(), stdout);
 }
 
 }  // namespace

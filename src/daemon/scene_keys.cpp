@@ -173,6 +173,10 @@ KeySpec stiffnessSection() {
           number("assumed_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
                  "c_0: where the estimate starts, or stays without one",
                  [](Draft& d) -> double& { return d.force.assumed_stiffness_N_per_m; }),
+          optional(number("stiffest_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                          "stiffest contact, obstacle and arm in series, for which the gains must "
+                          "be stable; absent: as stiff as assumed",
+                          [](Draft& d) -> double& { return d.stiffest_N_per_m; })),
           optional(section(
               "estimate", "Algorithm 1; absent: no estimator",
               {

@@ -123,6 +123,7 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, File
                .variant = draft.variant,
                .period_s = draft.period_s,
                .duration_s = draft.duration_s,
+               .stiffest_N_per_m = draft.stiffest_N_per_m,
                .plant = draft.plant,
                .robot_name = robot.chain.robot_name,
                .joint_names = robot.chain.joint_names,
@@ -130,7 +131,8 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, File
                .overrides = overrides,
                .numbers = std::move(draft.numbers),
                .hardware = hardware,
-               .troubles = loadTroubles(root, draft, hardware)};
+               .troubles = loadTroubles(root, draft, hardware),
+               .tree = std::make_shared<const YamlNode>(root)};
 }
 
 }  // namespace

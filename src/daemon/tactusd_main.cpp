@@ -9,6 +9,7 @@
 #include "tactus/daemon/input_error.h"
 #include "tactus/daemon/run_folder.h"
 #include "tactus/daemon/scene_loader.h"
+#include "tactus/daemon/stability_check.h"
 
 namespace {
 
@@ -27,6 +28,7 @@ int run(const Options& options) {
     throw tactus::InputError(options.scene +
                              ":1:1: robot: has no can section, expected buses and "
                              "drives to run on");
+  tactus::checkStability(scene);
   tactus::DaemonOptions run;
   run.duration_s = options.duration_s;
   if (!options.folder.empty())

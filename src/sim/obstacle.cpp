@@ -3,11 +3,6 @@
 #include <cmath>
 
 namespace tactus {
-namespace {
-
-double inSeries(double a, double b) { return 1.0 / (1.0 / a + 1.0 / b); }
-
-}  // namespace
 
 ContactSpring::ContactSpring(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m) {
   const double solid = inSeries(obstacle.stiffness_N_per_m, robot_stiffness_N_per_m);

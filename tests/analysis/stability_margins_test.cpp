@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "support/random.h"
+#include "tactus/control/controller_config.h"
 #include "tactus/math/filter.h"
 
 namespace tactus {
@@ -208,6 +209,23 @@ TEST(LargestStiffnessRatio, IsZeroWhereTheTimeConstantIsShorterThanTheDelays) {
   loop.time_constant_s = 0.02;  // 2 d T is below the 30 ms of filter, hold and drives
   EXPECT_EQ(largestRatio(loop), 0.0);
   EXPECT_EQ(computeMargins(loop, 1.0).phase_margin_rad, 0.0);
+}
+
+TEST(SmallestTimeConstant, SeparatesStableFromUnstable) {
+  ContactLoop loop = paperLoop(LoopLaw::kTwoSpaces);
+  loop.time_constant_s = 0.02;
+  const double T_s = smallestTimeConstant(loop, 1.0);
+  loop.time_constant_s = 1.0001 * T_s;
+  EXPECT_GT(largestRatio(loop), 1.0);
+  loop.time_constant_s = 0.9999 * T_s;
+  EXPECT_LT(largestRatio(loop), 1.0);
+  loop.damping = 1e-4;  // 2 d T stays below the delays
+  EXPECT_EQ(smallestTimeConstant(loop, 1.0), kNoLimit);
+}
+
+TEST(Stability, IsNotFoundWhereNumbersOverflow) {
+  EXPECT_FALSE(isStable(paperLoop(), 1e300));
+  EXPECT_FALSE(isStable(paperLoop(), kNoLimit));
 }
 
 TEST(CommonPeriod, HoldsWholeCyclesAndSamples) {

@@ -81,6 +81,32 @@ class BadInput(unittest.TestCase):
         self.assertIn("\ncan2     3 x 115 (RPDO1) + ", text)
         self.assertNotIn("can3", text, "nobody reads the module")
 
+    def test_unstable_gains(self):
+        """Refused for the robot; a simulation may show what they do."""
+        scene = self.write("controller:\n  time_constant_s: 0.03\n")
+        start = "scene.yaml:3:20: controller.time_constant_s: 0.03 s is unstable (one space) "
+        for command in ([TACTUS, "check"], [TACTUS.with_name("tactusd")]):
+            result = subprocess.run([*command, scene], cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual((result.returncode, result.stdout), (1, ""), result)
+            self.assertRegex(result.stderr, ONE_LINE)
+            self.assertTrue(result.stderr.startswith(start), result.stderr)
+        result = self.run_tactus("simulate", scene, *SHORT, "-o", "out")
+        self.assertEqual((result.returncode, result.stderr), (0, ""), result)
+
+    def test_margins(self):
+        multi_space = CONFIG / "scenes/scenario1_multi_space.yaml"
+        report = json.loads(self.run_tactus("check", "--json", multi_space).stdout)["stability"]
+        self.assertEqual(report["stiffness_ratio"], 1.0)
+        loops = {loop["name"]: loop for loop in report["loops"]}
+        self.assertAlmostEqual(loops["one space"]["largest_stiffness_ratio"], 4.83, places=2)
+        self.assertAlmostEqual(loops["both spaces"]["largest_stiffness_ratio"], 2.42, places=2)
+        self.assertAlmostEqual(loops["both spaces"]["phase_margin_deg"], 30.4, places=1)
+        text = self.run_tactus("check", multi_space).stdout
+        self.assertIn("\nmargins  both spaces: stable to c_e/c = 2.416; ", text)
+        free = CONFIG / "scenes/free_motion.yaml"
+        self.assertNotIn("stability", self.run_tactus("check", "--json", free).stdout)
+        self.assertNotIn("margins", self.run_tactus("check", free).stdout)
+
     def test_trouble_on_no_bus(self):
         trouble = "{kind: drop, from_s: 1, until_s: 2, interface: can9}"
         scene = self.write(f"simulation:\n  troubles: [{trouble}]\n")

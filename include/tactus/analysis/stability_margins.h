@@ -18,4 +18,8 @@ struct StabilityMargins {
 /// milliseconds.
 StabilityMargins computeMargins(const ContactLoop& loop, double stiffness_ratio);
 
+/// The T from which on an unstable loop would be stable at this ratio, s; infinite if there is none
+/// up to 100 s.
+double smallestTimeConstant(ContactLoop loop, double stiffness_ratio);
+
 }  // namespace tactus

@@ -49,6 +49,7 @@ struct ConfigDraft {
   std::optional<JointLimitAvoidanceConfig> joint_limit_avoidance;
   std::string variant = "none";
   ForceControlConfig force;
+  double stiffest_N_per_m = 0.0;  ///< 0: not given
   PlantConfig plant;
   std::vector<TroubleDraft> troubles;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +12,8 @@
 #include "tactus/sim/plant_config.h"
 
 namespace tactus {
+
+struct YamlNode;
 
 /// A file that a scene was made of, as it was read: logged with every run, so that a log alone can
 /// be replayed.
@@ -32,6 +35,7 @@ struct Scene {
   std::string variant;  ///< as the scene spells it; "none" without force control
   double period_s = 0.001;
   double duration_s = 0.0;
+  double stiffest_N_per_m = 0.0;  ///< contact that the gains are made for; 0: as assumed
   PlantConfig plant;
   std::string robot_name;  ///< as the URDF spells it
   std::vector<std::string> joint_names;
@@ -43,6 +47,8 @@ struct Scene {
   /// robot only simulates.
   std::optional<HardwareConfig> hardware{};
   std::vector<Trouble> troubles{};  ///< of the plant on the buses; simulation has none
+  /// The scene with all it extends, for errors that are found later; null if it was not read.
+  std::shared_ptr<const YamlNode> tree{};
 };
 
 /// The stages that exist in this scene, in the order of a cycle, by the names of the contract.

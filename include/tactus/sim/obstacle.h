@@ -6,6 +6,9 @@
 
 namespace tactus {
 
+/// Stiffness of two springs in series, N/m; one of them may be infinite.
+inline double inSeries(double a, double b) { return 1.0 / (1.0 / a + 1.0 / b); }
+
 /// A piecewise linear spring: force over penetration of the cover.
 class ContactSpring {
  public:

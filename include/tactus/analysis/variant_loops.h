@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tactus/analysis/contact_loop.h"
+#include "tactus/control/controller_config.h"
+#include "tactus/sim/plant_config.h"
+
+namespace tactus {
+
+/// One of the loops that a contact closes through a controller.
+struct VariantLoop {
+  std::string name;  ///< for people: "both spaces"
+  ContactLoop loop;
+};
+
+/// The loops of a variant as far as they differ, the least stable first; none without force
+/// control. They are those of the linear regime with a constant stiffness: nothing at its limits,
+/// no estimator, and without the joint-limit cost, which can only hold back. For the contact of the
+/// joint space all motion is fed forward, its pull too, while it is towards the obstacle.
+std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const PlantConfig& plant,
+                                      double period_s);
+
+}  // namespace tactus

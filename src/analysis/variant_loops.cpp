@@ -1,0 +1,48 @@
+#include "tactus/analysis/variant_loops.h"
+
+namespace tactus {
+namespace {
+
+ContactLoop loopOf(const ControllerConfig& config, const PlantConfig& plant, double period_s) {
+  const ForceControlConfig& force = *config.force_control;
+  return {.order = force.order,
+          .time_constant_s = force.time_constant_s,
+          .damping = force.damping,
+          .period_s = period_s,
+          .drive_lag_s = plant.drive_lag_s,
+          .filter_cutoff_hz = plant.module.filter_cutoff_hz,
+          .filter_rate_hz = plant.module.filter_rate_hz,
+          .sample_period_s = plant.module.sample_period_s,
+          .filters_at_samples = !plant.module.filtered};
+}
+
+}  // namespace
+
+std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const PlantConfig& plant,
+                                      double period_s) {
+  if (!config.force_control) return {};
+  const ContactLoop one = loopOf(config, plant, period_s);
+  ContactLoop both = one;
+  both.law = LoopLaw::kTwoSpaces;
+  const auto pulled = [&](ContactLoop loop) {
+    loop.drift_gain_per_s = config.task.drift_gain_per_s;
+    return loop;
+  };
+  switch (config.force_control->variant) {
+    case Variant::kNone:
+      return {};
+    case Variant::kNullSpace:
+    case Variant::kJointSpace:
+      return {{"one space", one}};
+    case Variant::kTaskSpace:
+      return {{"one space", one}, {"one space, pulled back by beta", pulled(one)}};
+    case Variant::kNullTask:
+    case Variant::kNullJoint:
+      return {{"both spaces", both},
+              {"both spaces, pulled back by beta", pulled(both)},
+              {"one space", one}};
+  }
+  return {};
+}
+
+}  // namespace tactus

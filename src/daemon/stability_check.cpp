@@ -1,0 +1,134 @@
+#include "tactus/daemon/stability_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/analysis/variant_loops.h"
+#include "tactus/daemon/yaml_tree.h"
+#include "tactus/sim/obstacle.h"
+
+namespace tactus {
+namespace {
+
+/// A contact and the key that says how stiff it is; no key where the assumed stiffness stands for
+/// it.
+struct StiffestContact {
+  double stiffness_N_per_m;
+  std::string key;
+};
+
+StiffestContact stiffestContact(const Scene& scene) {
+  StiffestContact stiffest{scene.controller.force_control->assumed_stiffness_N_per_m, ""};
+  if (scene.stiffest_N_per_m > 0.0)
+    stiffest = {scene.stiffest_N_per_m, "stiffness.stiffest_N_per_m"};
+  for (std::size_t i = 0; i < scene.plant.obstacles.size(); ++i) {
+    const double stiffness_N_per_m =
+        inSeries(scene.plant.obstacles[i].stiffness_N_per_m, scene.plant.robot_stiffness_N_per_m);
+    if (stiffness_N_per_m <= stiffest.stiffness_N_per_m) continue;
+    stiffest = {stiffness_N_per_m, fmt::format("simulation.obstacles[{}].stiffness_N_per_m", i)};
+  }
+  return stiffest;
+}
+
+/// A good estimate is the stiffness itself, within the estimator's range.
+double stiffnessOfLaw(const ForceControlConfig& force, double stiffest_N_per_m) {
+  if (!force.estimator) return force.assumed_stiffness_N_per_m;
+  return std::clamp(stiffest_N_per_m, force.estimator->min_N_per_m, force.estimator->max_N_per_m);
+}
+
+[[noreturn]] void fail(const Scene& scene, const std::string& key, const std::string& problem,
+                       const std::string& expectation) {
+  failAt(scene.tree ? locate(*scene.tree, key) : SourcePosition{}, key, problem,
+         "expected " + expectation);
+}
+
+constexpr double kInside = 0.999;  ///< of a limit: what is printed shall be accepted
+
+/// Where not even a contact as stiff as the law takes it would be stable, the gains are wrong, else
+/// the stiffness is.
+[[noreturn]] void failUnstable(const Scene& scene, const StabilityReport& report,
+                               const std::string& stiffest_key, const VariantLoop& unstable,
+                               double largest_ratio) {
+  const std::string contact =
+      fmt::format("unstable ({}) in a contact of {:g} N/m", unstable.name, report.stiffest_N_per_m);
+  if (largest_ratio < 1.0) {
+    const double T_s = smallestTimeConstant(unstable.loop, std::min(1.0, report.ratio()));
+    fail(scene, "controller.time_constant_s",
+         fmt::format("{} s is {}", unstable.loop.time_constant_s, contact),
+         std::isfinite(T_s) ? fmt::format("at least {:g} s with this damping and these delays",
+                                          std::ceil(1e4 * T_s) / 1e4)
+                            : "more damping, or less delay in filter and drives");
+  }
+  const std::string rule = fmt::format("c_e/c at most {:.3f}", largest_ratio);
+  if (scene.controller.force_control->estimator) {
+    fail(scene, "stiffness.estimate.max_N_per_m",
+         fmt::format("{:g} N/m is {}", report.stiffness_N_per_m, contact),
+         fmt::format("at least {:g} N/m ({})", report.stiffest_N_per_m / (kInside * largest_ratio),
+                     rule));
+  }
+  fail(scene, stiffest_key, contact + ", obstacle and arm in series",
+       fmt::format("at most {:g} N/m ({}, c = {:g} N/m)",
+                   kInside * largest_ratio * report.stiffness_N_per_m, rule,
+                   report.stiffness_N_per_m));
+}
+
+/// The module's electronics, but the daemon's filter where the daemon filters.
+PlantConfig plantOf(const Scene& scene) {
+  PlantConfig plant = scene.plant;
+  const bool is_on_bus = scene.hardware && scene.hardware->tactile;
+  plant.module.filtered = !(is_on_bus && scene.hardware->tactile->filter_cutoff_hz);
+  return plant;
+}
+
+std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& report,
+                                    double largest_ratio) {
+  std::vector<std::string> warnings;
+  const LoopReport& nearest = *std::ranges::min_element(
+      report.loops, {}, [](const LoopReport& loop) { return loop.phaseMargin_deg(); });
+  if (nearest.phaseMargin_deg() < kMinPhaseMargin_deg) {
+    warnings.push_back(fmt::format(
+        "phase margin of {:.1f} degrees ({}): overshoots and rings, better {:g} or more",
+        nearest.phaseMargin_deg(), nearest.name, kMinPhaseMargin_deg));
+  }
+  const double assumed_N_per_m = scene.controller.force_control->assumed_stiffness_N_per_m;
+  const double needed_N_per_m = report.stiffest_N_per_m / largest_ratio;
+  if (assumed_N_per_m < needed_N_per_m) {
+    warnings.push_back(
+        fmt::format("unstable in the stiffest contact until the estimate has risen from {:g} to "
+                    "{:g} N/m",
+                    assumed_N_per_m, needed_N_per_m));
+  }
+  return warnings;
+}
+
+}  // namespace
+
+std::optional<StabilityReport> checkStability(const Scene& scene) {
+  const std::vector<VariantLoop> loops =
+      variantLoops(scene.controller, plantOf(scene), scene.period_s);
+  if (loops.empty()) return std::nullopt;
+  const StiffestContact stiffest = stiffestContact(scene);
+  StabilityReport report;
+  report.stiffest_N_per_m = stiffest.stiffness_N_per_m;
+  report.stiffness_N_per_m =
+      stiffnessOfLaw(*scene.controller.force_control, stiffest.stiffness_N_per_m);
+  if (stepsOfCommonPeriod(loops.front().loop) == 0) {
+    report.warnings = {"margins not computed: cycle and samples hardly ever coincide"};
+    return report;
+  }
+  for (const VariantLoop& loop : loops)
+    report.loops.push_back({loop.name, computeMargins(loop.loop, report.ratio())});
+  const auto worst = std::ranges::min_element(report.loops, {}, [](const LoopReport& loop) {
+    return loop.margins.largest_stiffness_ratio;
+  });
+  const double largest_ratio = worst->margins.largest_stiffness_ratio;
+  if (worst->margins.phase_margin_rad == 0.0) {
+    failUnstable(scene, report, stiffest.key, loops[worst - report.loops.begin()], largest_ratio);
+  }
+  report.warnings = warningsOf(scene, report, largest_ratio);
+  return report;
+}
+
+}  // namespace tactus
