@@ -35,12 +35,10 @@ std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const Plan
     case Variant::kJointSpace:
       return {{"one space", one}};
     case Variant::kTaskSpace:
-      return {{"one space", one}, {"one space, pulled back by beta", pulled(one)}};
+      return {{"one space", one}, {"one space, with beta", pulled(one)}};
     case Variant::kNullTask:
     case Variant::kNullJoint:
-      return {{"both spaces", both},
-              {"both spaces, pulled back by beta", pulled(both)},
-              {"one space", one}};
+      return {{"both spaces", both}, {"both spaces, with beta", pulled(both)}, {"one space", one}};
   }
   return {};
 }

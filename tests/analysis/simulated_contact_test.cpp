@@ -73,7 +73,8 @@ struct Range {
 bool calmsDown(const Controller& controller, SimulatedRobot& robot, ControllerState state,
                double period_s, double t_s) {
   const JointVector at_rest = JointVector::Zero(state.q_desired.size());
-  for (int i = 0; i < 4000; ++i) robot.write(at_rest);
+  const long settling = std::lround(0.48 / period_s);  // a multiple of the sample period, too
+  for (long i = 0; i < settling; ++i) robot.write(at_rest);
   RobotInput input;
   ControllerOutput output;
   Range early, late;

@@ -194,6 +194,21 @@ TEST(LargestStiffnessRatio, DependsOnRatiosOfTimesOnly) {
   }
 }
 
+/// Only P = 2 d / (T c) and 1 / (T^2 c) enter.
+TEST(LargestStiffnessRatio, GrowsWithTheSquareOfTAtTheSameDT) {
+  Random random(7);
+  for (int i = 0; i < 20; ++i) {
+    ContactLoop loop = randomLoop(random);
+    loop.order = 2;
+    ContactLoop slow = loop;
+    slow.time_constant_s *= 3.0;
+    slow.damping /= 3.0;
+    const double largest = largestRatio(loop);
+    if (largest < 0.01) continue;
+    ASSERT_NEAR(largestRatio(slow), 9.0 * largest, 1e-5 * largest) << i;
+  }
+}
+
 TEST(DriftGain, HardlyEverCostsStability) {
   Random random(6);
   for (int i = 0; i < 40; ++i) {

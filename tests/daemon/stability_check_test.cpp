@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "support/scene_files.h"
 
@@ -135,6 +136,20 @@ TEST(StabilityCheck, WarnsBelowThirtyDegrees) {
   files.robot = test::replaced(files.robot, "position_lag_s: 0.01", "position_lag_s: 0.005");
   files.robot = test::replaced(files.robot, "sample_period_s: 0.005", "sample_period_s: 0.004");
   EXPECT_EQ(check(files.load()).warnings.size(), 0u);
+}
+
+TEST(StabilityCheck, FindsNothingInTheScenesThatComeAlong) {
+  int with_force_control = 0;
+  const std::filesystem::path folder = TACTUS_SOURCE_DIR "/config/scenes";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".yaml" || entry.path().parent_path().stem() == "base")
+      continue;
+    const auto report = checkStability(loadScene(entry.path().string(), {}));
+    if (!report) continue;
+    EXPECT_EQ(report->warnings, std::vector<std::string>{}) << entry.path();
+    ++with_force_control;
+  }
+  EXPECT_GT(with_force_control, 10);
 }
 
 TEST(StabilityCheck, SaysSoWhereMarginsCannotBeComputed) {
