@@ -9,7 +9,7 @@
 namespace tactus {
 namespace {
 
-constexpr std::int64_t kPeriod_ns = 1000;
+constexpr std::int64_t kSchedulePeriod_ns = 1000;
 
 /// A loop whose cycles take the time given, on a machine that wakes it exactly.
 class Loop {
@@ -21,7 +21,7 @@ class Loop {
   }
 
  private:
-  PeriodicSchedule schedule_{5000, kPeriod_ns};
+  PeriodicSchedule schedule_{5000, kSchedulePeriod_ns};
   std::int64_t ready_ns_ = 4000;
 };
 
@@ -34,7 +34,8 @@ void expectWake(const Wake& wake, const Wake& expected) {
 
 TEST(PeriodicSchedule, runsEachCycleOfALoopThatIsQuickEnough) {
   Loop loop;
-  for (int k = 0; k < 5; ++k) expectWake(loop.run(kPeriod_ns), {5000 + k * kPeriod_ns, 0, 0, 0});
+  for (int k = 0; k < 5; ++k)
+    expectWake(loop.run(kSchedulePeriod_ns), {5000 + k * kSchedulePeriod_ns, 0, 0, 0});
 }
 
 TEST(PeriodicSchedule, recoversFromOneSlowCycle) {
@@ -60,7 +61,7 @@ TEST(PeriodicSchedule, seesThatALoopIsAlwaysTooSlow) {
 }
 
 TEST(PeriodicSchedule, countsCyclesThatTheMachineSleptThrough) {
-  PeriodicSchedule schedule(5000, kPeriod_ns);
+  PeriodicSchedule schedule(5000, kSchedulePeriod_ns);
   expectWake(schedule.wake(4000, 5999), {5000, 999, 0, 0});
   expectWake(schedule.wake(6000, 7000), {7000, 0, 1, 2});  // ready in time, woken a period late
   EXPECT_EQ(schedule.due_ns(), 8000);
