@@ -60,5 +60,7 @@ def check_motion(test, run, period_s):
             position += target * int(row["periods"]) * period_s
             test.assertLessEqual(abs(position - int(row["position"])), 1, row)
         elapsed = (float(rows[-1]["t_s"]) - float(rows[0]["t_s"])) / period_s
-        # First and last SYNC each come late by some part of a period, as do all between.
-        test.assertLessEqual(abs(sum(int(row["periods"]) for row in rows) - elapsed), 3)
+        # First and last SYNC each come late by some part of a period, and on a host that is busy
+        # with other things by whole ones.
+        if run.was_on_time:
+            test.assertLessEqual(abs(sum(int(row["periods"]) for row in rows) - elapsed), 3)
