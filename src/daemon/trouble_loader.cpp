@@ -10,7 +10,7 @@
 namespace tactus {
 namespace {
 
-using Kind = Trouble::Kind;
+using TroubleKind = Trouble::Kind;
 
 /// One trouble while it is checked.
 struct Loading {
@@ -31,9 +31,9 @@ struct Loading {
   }
 };
 
-bool hasId(Kind kind) {
-  constexpr std::array kKinds = {Kind::kDrop, Kind::kDelay, Kind::kCorrupt, Kind::kDuplicate,
-                                 Kind::kDriveFault};
+bool hasId(TroubleKind kind) {
+  constexpr std::array kKinds = {TroubleKind::kDrop, TroubleKind::kDelay, TroubleKind::kCorrupt,
+                                 TroubleKind::kDuplicate, TroubleKind::kDriveFault};
   return std::ranges::count(kKinds, kind) > 0;
 }
 
@@ -60,20 +60,20 @@ void checkNodeId(const Loading& l, const Trouble& trouble) {
 
 Trouble loadTrouble(const Loading& l) {
   Trouble trouble = l.draft.trouble;
-  trouble.kind =
-      static_cast<Kind>(std::ranges::find(troubleNames(), l.draft.kind) - troubleNames().begin());
+  trouble.kind = static_cast<TroubleKind>(std::ranges::find(troubleNames(), l.draft.kind) -
+                                          troubleNames().begin());
   trouble.id = static_cast<std::uint32_t>(l.draft.id);
   if (trouble.until_s <= trouble.from_s) {
     l.fail("until_s", fmt::format("{} s is too early", trouble.until_s),
            fmt::format("more than from_s = {}", trouble.from_s));
   }
   if (!hasId(trouble.kind)) l.refuse("id");
-  if (trouble.kind != Kind::kDelay) {
+  if (trouble.kind != TroubleKind::kDelay) {
     l.refuse("delay_s");
   } else if (!l.isGiven("delay_s")) {
     l.fail("delay_s", "is missing", "a number > 0 in s with delay");
   }
-  if (trouble.kind == Kind::kEmergencyStop) {
+  if (trouble.kind == TroubleKind::kEmergencyStop) {
     l.refuse("interface");
     if (!l.hardware.gpio || !l.hardware.gpio->e_stop) {
       l.fail("kind", "the robot has no gpio.e_stop", "another trouble, or such a robot");
@@ -81,7 +81,7 @@ Trouble loadTrouble(const Loading& l) {
     return trouble;
   }
   trouble.bus = findBus(l);
-  if (trouble.kind == Kind::kDriveFault) checkNodeId(l, trouble);
+  if (trouble.kind == TroubleKind::kDriveFault) checkNodeId(l, trouble);
   return trouble;
 }
 
