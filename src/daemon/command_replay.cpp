@@ -39,7 +39,7 @@ Scene loadLoggedScene(const Options& options, const LogDescription& description)
     failAt({std::make_shared<std::string>(options.log), 1, 1}, "source_path",
            "the log holds no scene", "expected the files of the run");
   }
-  Scene scene = loadScene(description.sources, overrides);
+  Scene scene = loadScene(description.sources, overrides, SceneUse::kSimulation);
   checkSize(options.log, "q", "joints", description.shape.joints, scene.controller.chain.size());
   checkSize(options.log, "w", "task components", description.shape.task_size,
             scene.controller.task.size);

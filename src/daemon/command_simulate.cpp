@@ -37,7 +37,7 @@ std::vector<Scene> loadScenes(const Options& options) {
   std::vector<Scene> scenes;
   std::set<std::string> names;
   for (const std::string& path : options.scenes) {
-    scenes.push_back(loadScene(path, overrides));
+    scenes.push_back(loadScene(path, overrides, SceneUse::kSimulation));
     if (!names.insert(scenes.back().name).second) {
       failAt({std::make_shared<std::string>(path), 1, 1}, "-",
              "a second scene named " + inQuotes(scenes.back().name),

@@ -231,7 +231,7 @@ const std::vector<KeySpec>& sceneKeys() {
                     [](Draft& d) -> std::string& { return d.extends; })),
       text("robot", "robot description, relative to the file that names it",
            [](Draft& d) -> std::string& { return d.robot; }),
-      defaulted("0.001", number("period_s", "s", within(1e-4, 0.02), "of the control cycle",
+      defaulted("0.001", number("period_s", "s", within(1e-5, 0.02), "of the control cycle",
                                 [](Draft& d) -> double& { return d.period_s; })),
       optional(oneAJoint("start", "m or rad", within(-1e6, 1e6),
                          "joint positions at the start; absent: the robot's home",

@@ -107,7 +107,8 @@ std::string sceneName(const std::string& path) {
   return name;
 }
 
-Scene load(const std::string& path, const std::vector<Override>& overrides, FileProvider provider) {
+Scene load(const std::string& path, const std::vector<Override>& overrides, SceneUse use,
+           FileProvider provider) {
   SourceReader reader(std::move(provider));
   YamlNode root = readScene(path, reader, {});
   applyOverrides(root, overrides);
@@ -117,7 +118,7 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, File
   const JointVector q_start = readStart(root, draft, robot);
   checkScene(root, draft, robot, q_start);
   const std::optional<HardwareConfig> hardware = chooseHardware(root, robot);
-  if (hardware) checkHardware(robot.root, draft, *hardware);
+  if (hardware && use == SceneUse::kHardware) checkHardware(robot.root, draft, *hardware);
   return Scene{.name = sceneName(path),
                .controller = makeController(root, draft, robot, q_start),
                .variant = draft.variant,
@@ -137,12 +138,14 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, File
 
 }  // namespace
 
-Scene loadScene(const std::string& path, const std::vector<Override>& overrides) {
-  return load(std::filesystem::path(path).lexically_normal().string(), overrides, readFromDisk);
+Scene loadScene(const std::string& path, const std::vector<Override>& overrides, SceneUse use) {
+  return load(std::filesystem::path(path).lexically_normal().string(), overrides, use,
+              readFromDisk);
 }
 
-Scene loadScene(const std::vector<SourceFile>& files, const std::vector<Override>& overrides) {
-  return load(files.empty() ? "-" : files.front().path, overrides, provideFrom(files));
+Scene loadScene(const std::vector<SourceFile>& files, const std::vector<Override>& overrides,
+                SceneUse use) {
+  return load(files.empty() ? "-" : files.front().path, overrides, use, provideFrom(files));
 }
 
 Override parseOverride(std::string_view text) {

@@ -246,6 +246,13 @@ TEST(BusLoad, ThreeDrivesFasterAreRefused) {
       << error;
 }
 
+TEST(BusLoad, ConcernsNoSimulation) {
+  const std::vector<SourceFile> sources = withDrivesOnFirstBus(4);
+  const Scene scene = loadScene(sources, {{"period_s", "0.00025"}}, SceneUse::kSimulation);
+  EXPECT_EQ(scene.period_s, 0.00025);
+  EXPECT_TRUE(scene.hardware);
+}
+
 TEST(BusLoad, FourDrivesOnABusAreRefused) {
   const std::string error = test::loadError(withDrivesOnFirstBus(4));
   EXPECT_NE(error.find("can.buses[0]: can0 is overloaded: 4 x 115 (RPDO1) + 4 x 115 (TPDO1) + "

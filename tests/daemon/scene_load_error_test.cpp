@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenText{"weights: [1, 2, 3]", "weights: [1, 0, 3]",
                    "scene.yaml:9:16: redundancy.weights[1]: ", "'0' is out of range", "from 1e-06"},
         BrokenText{"robot: robot.yaml", "period_s: 0.1\nrobot: robot.yaml",
-                   "scene.yaml:1:11: period_s: ", "out of range", "from 0.0001 to 0.02 in s"},
+                   "scene.yaml:1:11: period_s: ", "out of range", "from 1e-05 to 0.02 in s"},
         BrokenText{"robot: robot.yaml", "period_s: 0.0015\nrobot: robot.yaml",
                    "scene.yaml:1:11: period_s: ", "does not fit the tactile module",
                    "a multiple or a whole part"},
