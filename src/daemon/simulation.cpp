@@ -29,12 +29,10 @@ bool isOver(const ControllerOutput& output) {
 
 }  // namespace
 
-SimulationResult simulate(const Scene& scene, const std::string& log_path,
-                          const Progress& progress) {
+SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
   const auto cycles = std::llround(scene.duration_s / scene.period_s);
   const Controller controller(scene.controller);
   SimulatedRobot robot(scene.controller, scene.plant, scene.period_s);
-  UlogWriter log(log_path, describeLog(scene));
   RunSummary summary(scene.controller,
                      static_cast<std::size_t>(std::min(cycles, kMaxReservedCycles)));
   ControllerState state = controller.initialState();
@@ -53,15 +51,24 @@ SimulationResult simulate(const Scene& scene, const std::string& log_path,
     const Vector3 error = toolError(scene.controller.task, output.w_d, robot.toolPosition());
     robot.write(output.velocity);
     fillRecord(t_s, input, output, error, record);
-    log.write(record);
+    sink(record);
     summary.add(record);
-    if (cycle % kCyclesBetweenReports == 0)
-      progress(static_cast<double>(cycle) / static_cast<double>(cycles));
   }
-  log.close();
   const double wall_s = 1e-9 * static_cast<double>(nanoseconds(Clock::now() - start));
   const double simulated_s = static_cast<double>(cycle) * scene.period_s;
   return {summary.figures(), simulated_s / wall_s};
+}
+
+SimulationResult simulate(const Scene& scene, const std::string& log_path,
+                          const Progress& progress) {
+  UlogWriter log(log_path, describeLog(scene));
+  long long cycle = 0;
+  const SimulationResult result = simulate(scene, [&](const CycleRecord& record) {
+    log.write(record);
+    if (cycle++ % kCyclesBetweenReports == 0) progress(record.t_s / scene.duration_s);
+  });
+  log.close();
+  return result;
 }
 
 }  // namespace tactus

@@ -16,9 +16,14 @@ struct SimulationResult {
 /// Told now and then how far a run has come, 0 to 1.
 using Progress = std::function<void(double share)>;
 
-/// Runs a scene in virtual time and logs every cycle to log_path. A fault ends the run as soon as
-/// the arm is at rest. Throws InputError for a scene that can't be simulated, RunError if the log
-/// can't be written.
+/// Given every cycle of a run.
+using CycleSink = std::function<void(const CycleRecord& record)>;
+
+/// Runs a scene in virtual time. A fault ends the run as soon as the arm is at rest.
+SimulationResult simulate(const Scene& scene, const CycleSink& sink);
+
+/// The same, and logs every cycle to log_path. Throws InputError or RunError if the log can't be
+/// written.
 SimulationResult simulate(const Scene& scene, const std::string& log_path,
                           const Progress& progress);
 
