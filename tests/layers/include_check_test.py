@@ -22,6 +22,8 @@ REFUSED = {
     "src/rt/a.cpp": ['"tactus/math/types.h"', "<Eigen/Core>", "<sys/socket.h>", "<fmt/core.h>"],
     "src/daemon/a.cpp": ["<sys/socket.h>", "<linux/can/raw.h>", "<netinet/in.h>", "<gpiod.h>",
                          "<boost/array.hpp>"],
+    "src/bench/a.cpp": ['"tactus/rt/thread.h"', '"tactus/io/bus.h"', "<sys/socket.h>"],
+    "src/daemon/b.cpp": ['"tactus/bench/study.h"', "<kdl/chain.hpp>"],
     "src/other/a.cpp": ["<vector>"],
 }
 
@@ -35,6 +37,8 @@ ACCEPTED = {
     "src/rt/a.cpp": ['"tactus/rt/thread.h"', "<sched.h>", "<sys/mman.h>", "<ctime>"],
     "src/daemon/a.cpp": ['"tactus/io/bus.h"', '"tactus/sim/arm.h"', "<yaml-cpp/yaml.h>",
                          "<CLI/App.hpp>", "<systemd/sd-daemon.h>", "<sys/mman.h>", "<fstream>"],
+    "src/bench/a.cpp": ['"tactus/daemon/scene.h"', '"tactus/math/types.h"', "<kdl/chain.hpp>",
+                        "<valgrind/callgrind.h>", "<chrono>", "<sys/wait.h>"],
 }
 
 

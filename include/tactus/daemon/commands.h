@@ -14,5 +14,6 @@ void addSimulateCommand(CLI::App& app, int& exit_code);
 void addExportCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
 void addPlantCommand(CLI::App& app, int& exit_code);
+void addBenchCommand(CLI::App& app, int& exit_code);
 
 }  // namespace tactus

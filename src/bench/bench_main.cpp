@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tactus/bench/instruction_count.h"
+#include "tactus/bench/step_study.h"
+#include "tactus/bench/study.h"
+#include "tactus/daemon/commands.h"
+#include "tactus/daemon/json.h"
+#include "tactus/daemon/located_error.h"
+#include "tactus/daemon/output_file.h"
+#include "tactus/daemon/run_error.h"
+
+namespace tactus {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> scenes, names;
+  std::string folder;
+  bool is_quick = false, json = false, counts_steps = false;
+};
+
+std::vector<std::string> studyNames() {
+  std::vector<std::string> names;
+  for (const Study& study : studies()) names.push_back(study.name);
+  return names;
+}
+
+std::string studyHelp() {
+  std::string text = "Only these studies:";
+  for (const Study& study : studies()) text += fmt::format("\n{}: {}", study.name, study.help);
+  return text;
+}
+
+[[noreturn]] void fail(const std::string& place, const std::string& problem,
+                       const std::string& expectation) {
+  failAt({std::make_shared<std::string>(place), 1, 1}, "-", problem, "expected " + expectation);
+}
+
+/// Without any named: those of config/scenes, from where this is called.
+std::vector<std::string> findScenes(const std::vector<std::string>& given) {
+  if (!given.empty()) return given;
+  const fs::path folder = "config/scenes";
+  std::vector<std::string> scenes;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".yaml") scenes.push_back(entry.path().string());
+  }
+  if (scenes.empty())
+    fail(folder.string(), "no scenes here", "SCENE arguments, or to be called where they are");
+  std::ranges::sort(scenes);
+  return scenes;
+}
+
+std::vector<const Study*> chooseStudies(const Options& options) {
+  std::vector<const Study*> chosen;
+  for (const Study& study : studies()) {
+    if (options.names.empty() || std::ranges::count(options.names, study.name) > 0)
+      chosen.push_back(&study);
+  }
+  return chosen;
+}
+
+void prepareFolder(const std::string& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) fail("-o", folder + " cannot be made: " + error.message(), "a folder");
+}
+
+void writeText(const fs::path& path, const std::string& text) {
+  OutputFile file(path.string());
+  file.append(text);
+  file.close();
+}
+
+void writeFiles(const fs::path& folder, const std::vector<StudyResult>& results) {
+  writeText(folder / "goals.csv", csvText(goalTable(results)));
+  for (const StudyResult& result : results) {
+    for (const Table& table : result.tables)
+      writeText(folder / (table.name + ".csv"), csvText(table));
+  }
+  writeText(folder / "report.html", reportPage(results));
+}
+
+std::string toJson(const std::vector<StudyResult>& results) {
+  JsonWriter json;
+  json.beginObject();
+  json.key("goals");
+  writeJson(goalTable(results), json);
+  for (const StudyResult& result : results) {
+    for (const Table& table : result.tables) {
+      json.key(table.name);
+      writeJson(table, json);
+    }
+  }
+  json.endObject();
+  return json.text();
+}
+
+void printGoals(const std::vector<StudyResult>& results) {
+  const Table goals = goalTable(results);
+  for (std::size_t row = 0; row < goals.rows.size(); ++row)
+    fmt::print("{:<84} {:10.3g} of at most {:<7.3g} {}\n", goals.word(row, "goal"),
+               goals.number(row, "measured"), goals.number(row, "limit"), goals.word(row, "met"));
+}
+
+void bench(const Options& options) {
+  const std::vector<const Study*> chosen = chooseStudies(options);
+  BenchOptions bench_options;
+  bench_options.is_quick = options.is_quick;
+  bench_options.counting_program = fs::read_symlink("/proc/self/exe").string();
+  if (std::ranges::any_of(chosen, &Study::needs_scenes))
+    bench_options.scenes = findScenes(options.scenes);
+  prepareFolder(options.folder);
+  std::vector<StudyResult> results;
+  for (const Study* study : chosen) {
+    fmt::print(stderr, "{}: {} ...\n", study->name, study->help);
+    results.push_back(study->run(bench_options));
+  }
+  if (options.json) {
+    std::fputs(toJson(results).c_str(), stdout);
+  } else {
+    printGoals(results);
+  }
+  if (options.folder.empty()) return;
+  writeFiles(options.folder, results);
+  if (!options.json)
+    fmt::print("\nreport: {}\n", fs::absolute(fs::path(options.folder) / "report.html").string());
+}
+
+void parse(CLI::App& app, Options& options, int argc, char** argv) {
+  app.add_option("SCENE", options.scenes, "Scenes to run; absent: config/scenes/*.yaml");
+  app.add_option("-o,--output", options.folder, "Folder for CSV files and report.html");
+  app.add_option("--study", options.names, studyHelp())
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(studyNames()));
+  app.add_flag("--quick", options.is_quick, "A look: few repetitions, short sweeps");
+  app.add_flag("--json", options.json, "Print all tables as JSON");
+  app.add_flag("--count-steps", options.counts_steps)->group("");  // how valgrind runs this
+  app.parse(argc, argv);
+}
+
+}  // namespace
+}  // namespace tactus
+
+int main(int argc, char** argv) {
+  CLI::App app{"Error against run time", "tactus bench"};
+  tactus::Options options;
+  try {
+    tactus::parse(app, options, argc, argv);
+    if (options.counts_steps) {
+      tactus::runUnderCallgrind(tactus::allStepCases(tactus::StepSizes().joints));
+      return tactus::kExitDone;
+    }
+    tactus::bench(options);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? tactus::kExitDone : tactus::kExitUsage;
+  } catch (const tactus::InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return tactus::kExitBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tactus bench: %s\n", error.what());
+    return tactus::kExitFault;
+  }
+  return tactus::kExitDone;
+}

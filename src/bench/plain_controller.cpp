@@ -1,0 +1,105 @@
+#include "tactus/bench/plain_controller.h"
+
+#include <algorithm>
+
+#include "tactus/math/contact_space.h"
+#include "tactus/math/rotation.h"
+
+namespace tactus {
+namespace {
+
+Pose toolPose(const ControllerConfig& config) {
+  ChainPose pose;
+  config.chain.computePose(config.q_start, pose);
+  return framePose(pose, config.chain.tip());
+}
+
+ScaledVector padded(const Eigen::VectorXd& v) {
+  ScaledVector result = ScaledVector::Zero();
+  result.head(v.size()) = v;
+  return result;
+}
+
+}  // namespace
+
+PlainController::PlainController(const BenchRobot& robot,
+                                 std::unique_ptr<PlainKinematics> kinematics)
+    : config_(robot.config),
+      kinematics_(std::move(kinematics)),
+      ones_(padded(Eigen::VectorXd::Ones(config_.chain.size()))),
+      trajectory_(config_.task.trajectory, toolPose(config_)),
+      limiter_(config_.limits),
+      joint_limits_(*config_.joint_limit_avoidance, config_.limits, ones_) {
+  if (!config_.force_control) return;
+  transition_.emplace(config_.force_control->transition);
+  estimator_.emplace(*config_.force_control->estimator);
+  law_.emplace(*config_.force_control, config_.chain, ones_);
+}
+
+PlainControllerState PlainController::initialState() const {
+  PlainControllerState state;
+  state.q_desired = config_.q_start;
+  state.velocity_before = JointVector::Zero(config_.chain.size());
+  if (!law_) return state;
+  state.contact_point.position_m = 0.5 * config_.tactile_module->length_m;
+  const double c_0 = config_.force_control->assumed_stiffness_N_per_m;
+  state.estimator = {c_0, c_0};
+  return state;
+}
+
+/// w_eff of (2).
+Eigen::VectorXd PlainController::taskVelocity(double t_s) const {
+  const Pose tool = kinematics_->tool();
+  const ToolReference reference = trajectory_.evaluate(t_s);
+  Eigen::VectorXd w_dot(6), error(6);
+  w_dot << reference.v_BaseTool, reference.omega_BaseTool;
+  error << reference.p_BaseTool - tool.p_AB,
+      rotationVector(reference.R_BaseTool * tool.R_AB.transpose());
+  return (w_dot + config_.task.drift_gain_per_s * error).head(config_.task.size);
+}
+
+/// What contact adds to the joint speeds.
+Eigen::VectorXd PlainController::answer(const RobotInput& input, const Eigen::VectorXd& q_dot_eff,
+                                        double period_s, PlainControllerState& state) const {
+  if (input.tactile.sequence != state.sample_sequence)
+    locateContact(input.tactile, config_.tactile_module->length_m, state.contact_point);
+  state.sample_sequence = input.tactile.sequence;
+  Vector3 p_BaseContact;
+  const Eigen::VectorXd a = kinematics_->contactDirection(state.contact_point, p_BaseContact);
+  const Eigen::VectorXd Na = kinematics_->project(a);
+  ContactSpace space;
+  space.a_scaled = padded(a);
+  space.k_n = a.dot(Na);
+  space.k_j = a.dot(a);
+  space.k_t = space.k_j - space.k_n;
+  ControlLawInput law_input;
+  law_input.F_p_N =
+      std::max(0.0, state.contact_point.force_N - config_.force_control->contact_threshold_N);
+  estimator_->update(law_input.F_p_N, -a.dot(state.velocity_before), period_s, state.estimator);
+  law_input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
+  law_input.integral_decay =
+      transition_->update(law_input.F_p_N, p_BaseContact, period_s, state.transition);
+  law_input.x_dot_ff_m_per_s = state.transition.gamma * std::min(0.0, a.dot(q_dot_eff));
+  ControlLawOutput u;
+  law_->update(law_input, space, period_s, state.law, u);
+  return -(a - Na) * u.u_t - Na * u.u_n - a * u.u_j;
+}
+
+JointVector PlainController::update(const RobotInput& input, double t_s, double period_s,
+                                    PlainControllerState& state) {
+  kinematics_->move(state.q_desired);
+  const Eigen::VectorXd q_dot_eff = kinematics_->inverse(taskVelocity(t_s));
+  const Eigen::VectorXd gradient =
+      joint_limits_.evaluate(state.q_desired).gradient.head(state.q_desired.size());
+  Eigen::VectorXd q_dot = q_dot_eff - kinematics_->project(gradient);
+  if (law_) q_dot += answer(input, q_dot_eff, period_s, state);
+  JointVector velocity = q_dot;
+  limiter_.apply(state.q_desired, state.velocity_before, period_s, velocity);
+  state.velocity_before = velocity;
+  state.q_desired = (state.q_desired + period_s * velocity)
+                        .cwiseMax(config_.limits.lower)
+                        .cwiseMin(config_.limits.upper);
+  return velocity;
+}
+
+}  // namespace tactus

@@ -1,0 +1,143 @@
+#include "tactus/bench/pseudoinverse_methods.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+#include "tactus/math/weighted_pseudoinverse.h"
+
+namespace tactus {
+namespace {
+
+template <typename Scalar>
+using Problem = MotionProblem<Scalar>;
+template <typename Scalar>
+using Gram = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxTaskSize,
+                           kMaxTaskSize>;
+template <typename Scalar>
+using Svd = Eigen::JacobiSVD<typename Problem<Scalar>::Jacobian>;
+
+/// x = J^T (J J^T + lambda^2 I)^-1 w; with lambda the projector leaks into the task.
+template <typename Scalar>
+void solveByGram(const Problem<Scalar>& problem, Scalar lambda, MotionParts<Scalar>& parts) {
+  const auto& J = problem.J;
+  Gram<Scalar> gram = J.lazyProduct(J.transpose());
+  gram.diagonal().array() += lambda * lambda;
+  const Eigen::LLT<Gram<Scalar>> cholesky(gram);
+  using Task = typename Problem<Scalar>::Task;
+  const Task y = cholesky.solve(problem.w);
+  const Task c = cholesky.solve(Task(J.lazyProduct(problem.v)));
+  parts.task = J.transpose().lazyProduct(y);
+  parts.null = problem.v - J.transpose().lazyProduct(c);
+}
+
+template <typename Scalar>
+void solveNormalEquations(const Problem<Scalar>& problem, MotionParts<Scalar>& parts) {
+  solveByGram<Scalar>(problem, Scalar(0), parts);
+}
+
+template <typename Scalar>
+void solveDampedNormalEquations(const Problem<Scalar>& problem, MotionParts<Scalar>& parts) {
+  solveByGram<Scalar>(problem, Scalar(kBenchDamping), parts);
+}
+
+/// J^T = Q R.
+template <typename Scalar>
+void solveHouseholder(const Problem<Scalar>& problem, MotionParts<Scalar>& parts) {
+  using Transposed = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                                   kMaxJoints, kMaxTaskSize>;
+  const auto m = problem.J.rows();
+  const Eigen::HouseholderQR<Transposed> qr(problem.J.transpose());
+  const auto R = qr.matrixQR().topRows(m).template triangularView<Eigen::Upper>();
+  parts.task.setZero(problem.J.cols());
+  parts.task.head(m) = R.transpose().solve(problem.w);
+  parts.task.applyOnTheLeft(qr.householderQ());
+  parts.null = problem.v;
+  parts.null.applyOnTheLeft(qr.householderQ().transpose());
+  parts.null.head(m).setZero();
+  parts.null.applyOnTheLeft(qr.householderQ());
+}
+
+template <typename Scalar>
+void solveOrthogonal(const Problem<Scalar>& problem, MotionParts<Scalar>& parts) {
+  using Jacobian = typename Problem<Scalar>::Jacobian;
+  const Eigen::CompleteOrthogonalDecomposition<Jacobian> cod(problem.J);
+  parts.task = cod.solve(problem.w);
+  parts.null = problem.v - cod.solve(problem.J.lazyProduct(problem.v).eval());
+}
+
+template <typename Scalar>
+void solveBySvd(const Problem<Scalar>& problem, Scalar lambda, MotionParts<Scalar>& parts) {
+  using Task = typename Problem<Scalar>::Task;
+  const Svd<Scalar> svd(problem.J, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const auto& s = svd.singularValues().array();
+  Task y = svd.matrixU().transpose().lazyProduct(problem.w);
+  if (lambda > Scalar(0)) {
+    y.array() *= s / (s.square() + lambda * lambda);
+  } else {
+    y.array() /= s;
+  }
+  const Task c = svd.matrixV().transpose().lazyProduct(problem.v);
+  parts.task = svd.matrixV().lazyProduct(y);
+  parts.null = problem.v - svd.matrixV().lazyProduct(c);
+}
+
+template <typename Scalar>
+void solveSvd(const Problem<Scalar>& problem, MotionParts<Scalar>& parts) {
+  solveBySvd<Scalar>(problem, Scalar(0), parts);
+}
+
+template <typename Scalar>
+void solveDampedSvd(const Problem<Scalar>& problem, MotionParts<Scalar>& parts) {
+  solveBySvd<Scalar>(problem, Scalar(kBenchDamping), parts);
+}
+
+ScaledVector noWeights(Eigen::Index joints) {
+  ScaledVector ones = ScaledVector::Zero();
+  ones.head(joints).setOnes();
+  return ones;
+}
+
+/// J times `scale`, for which J# w is divided by it and N v stays the same.
+void solveOurs(const Problem<double>& problem, double scale, MotionParts<double>& parts) {
+  const auto n = problem.J.cols();
+  const ScaledVector inv_sqrt_weights = noWeights(n);
+  const TaskJacobian J = scale * problem.J;
+  WeightedPseudoinverse factors;
+  factors.factorise(J, inv_sqrt_weights);
+  const ScaledVector v = scaled(problem.v, inv_sqrt_weights);
+  const ScaledVector task = factors.expand(factors.solve(problem.w));
+  const ScaledVector null = v - factors.expand(factors.project(v));
+  parts.task = scale * task.head(n).cwiseProduct(inv_sqrt_weights.head(n));
+  parts.null = null.head(n).cwiseProduct(inv_sqrt_weights.head(n));
+}
+
+/// A power of two changes no digit, and lifts even singular values of 1e-12 over the threshold
+/// below which an arm's are damped.
+void solveOursExactly(const Problem<double>& problem, MotionParts<double>& parts) {
+  solveOurs(problem, 0x1p40, parts);
+}
+
+void solveOursDamped(const Problem<double>& problem, MotionParts<double>& parts) {
+  solveOurs(problem, 1.0, parts);
+}
+
+}  // namespace
+
+template <typename Scalar>
+std::vector<PseudoinverseMethod<Scalar>> textbookMethods() {
+  return {{"normal equations", false, solveNormalEquations<Scalar>},
+          {"Householder QR", false, solveHouseholder<Scalar>},
+          {"complete orthogonal", false, solveOrthogonal<Scalar>},
+          {"Jacobi SVD", false, solveSvd<Scalar>},
+          {"normal equations, damped", true, solveDampedNormalEquations<Scalar>},
+          {"Jacobi SVD, damped", true, solveDampedSvd<Scalar>}};
+}
+template std::vector<PseudoinverseMethod<double>> textbookMethods<double>();
+template std::vector<PseudoinverseMethod<float>> textbookMethods<float>();
+
+std::vector<PseudoinverseMethod<double>> ourMethods() {
+  return {{"ours", false, solveOursExactly}, {"ours, damped", true, solveOursDamped}};
+}
+
+}  // namespace tactus

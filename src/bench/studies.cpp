@@ -1,0 +1,30 @@
+#include "tactus/bench/study.h"
+
+namespace tactus {
+
+const std::vector<Study>& studies() {
+  static const std::vector<Study> list = {
+      {"pseudoinverse", "error and time of pseudoinverses down to singular", false,
+       studyPseudoinverse},
+      {"step", "one whole control step beside Orocos KDL and a plain SVD", false, studyStep},
+      {"closed_loop", "force, tool error and stability of scenes against the cycle's period", true,
+       studyClosedLoop},
+  };
+  return list;
+}
+
+Table goalTable(const std::vector<StudyResult>& results) {
+  Table table{"goals", {"goal", "limit", "measured", "met"}, {}};
+  for (const StudyResult& result : results) {
+    for (const Goal& goal : result.goals) {
+      const bool is_met = goal.measured <= goal.limit;
+      table.rows.push_back({goal.text, goal.limit, goal.measured,
+                            std::string(goal.measured != goal.measured ? "not measured"
+                                        : is_met                       ? "yes"
+                                                                       : "no")});
+    }
+  }
+  return table;
+}
+
+}  // namespace tactus

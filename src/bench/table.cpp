@@ -1,0 +1,87 @@
+#include "tactus/bench/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "tactus/daemon/json.h"
+
+namespace tactus {
+namespace {
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + '"';
+}
+
+std::string cellText(const Cell& cell) {
+  if (const std::string* word = std::get_if<std::string>(&cell)) return quoted(*word);
+  const double number = std::get<double>(cell);
+  return std::isfinite(number) ? fmt::format("{}", number) : "";
+}
+
+}  // namespace
+
+std::size_t Table::column(std::string_view column_name) const {
+  const auto found = std::ranges::find(columns, column_name);
+  if (found == columns.end())
+    throw std::out_of_range(fmt::format("table {} has no column {}", name, column_name));
+  return static_cast<std::size_t>(found - columns.begin());
+}
+
+double Table::number(std::size_t row, std::string_view column_name) const {
+  return std::get<double>(rows.at(row).at(column(column_name)));
+}
+
+const std::string& Table::word(std::size_t row, std::string_view column_name) const {
+  return std::get<std::string>(rows.at(row).at(column(column_name)));
+}
+
+bool matches(const Table& table, std::size_t row, const Filter& filter) {
+  return std::ranges::all_of(filter, [&](const auto& wanted) {
+    return table.rows.at(row).at(table.column(wanted.first)) == wanted.second;
+  });
+}
+
+double findNumber(const Table& table, std::string_view column_name, const Filter& filter) {
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    if (matches(table, row, filter)) return table.number(row, column_name);
+  }
+  throw std::out_of_range(fmt::format("table {} has no such row", table.name));
+}
+
+std::string csvText(const Table& table) {
+  std::string text;
+  const auto addLine = [&text](const auto& cells, const auto& toText) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (i > 0) text += ',';
+      text += toText(cells[i]);
+    }
+    text += '\n';
+  };
+  addLine(table.columns, quoted);
+  for (const std::vector<Cell>& row : table.rows) addLine(row, cellText);
+  return text;
+}
+
+void writeJson(const Table& table, JsonWriter& json) {
+  json.beginArray();
+  for (const std::vector<Cell>& row : table.rows) {
+    json.beginObject();
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      json.key(table.columns.at(i));
+      std::visit([&json](const auto& value) { json.value(value); }, row[i]);
+    }
+    json.endObject();
+  }
+  json.endArray();
+}
+
+}  // namespace tactus

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""`tactus bench`: what one command leaves, and what it says when it cannot.
+
+usage: bench_test.py TACTUS
+"""
+import csv
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TACTUS = pathlib.Path(sys.argv.pop(1)).resolve()
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENE = ROOT / "config/scenes/free_motion.yaml"
+
+
+class Bench(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def bench(self, *arguments, program=TACTUS):
+        return subprocess.run([program, "bench", *arguments], cwd=self.folder, capture_output=True,
+                              text=True, timeout=300)
+
+    def read(self, name):
+        with open(self.folder / "out" / name, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_leaves_tables_and_one_page(self):
+        studies = ("--study", "pseudoinverse", "--study", "closed_loop")
+        result = self.bench("--quick", *studies, "-o", "out", SCENE)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(str(self.folder / "out/report.html"), result.stdout)
+        files = {path.name for path in (self.folder / "out").iterdir()}
+        self.assertEqual(files, {"goals.csv", "report.html", "pseudoinverse.csv", "closed_loop.csv",
+                                 "closed_loop_stability.csv"})
+        for row in self.read("pseudoinverse.csv"):
+            self.assertGreater(float(row["time_ns"]), 0.0)
+            self.assertGreater(float(row["error_max"]), 0.0)
+        runs = self.read("closed_loop.csv")
+        self.assertEqual([row["period_ms"] for row in runs], ["0.25", "1", "4"])
+        self.assertEqual({row["outcome"] for row in runs}, {"stable"})
+        page = (self.folder / "out/report.html").read_text(encoding="utf-8")
+        self.assertEqual(page.count("<svg"), page.count("</svg>"))
+        self.assertGreaterEqual(page.count("<svg"), 8)
+        for word in ("http", "<script", "nan", "inf\""):
+            self.assertNotIn(word, page)
+
+    def test_json_is_all_that_is_printed(self):
+        result = self.bench("--quick", "--json", "--study", "pseudoinverse")
+        tables = json.loads(result.stdout)
+        self.assertEqual(set(tables), {"goals", "pseudoinverse"})
+        self.assertEqual(len(tables["goals"]), 4)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_knows_its_studies(self):
+        self.assertEqual(self.bench("--study", "nothing").returncode, 2)
+        result = self.bench("--help")
+        self.assertEqual(result.returncode, 0)
+        for study in ("pseudoinverse", "step", "closed_loop"):
+            self.assertIn(study, result.stdout)
+
+    def test_wants_scenes(self):
+        result = self.bench("--study", "closed_loop", "--quick")
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertRegex(result.stderr, r"\Aconfig/scenes:1:1: -: no scenes here, expected [^\n]+\n\Z")
+
+    def test_refuses_a_broken_scene(self):
+        result = self.bench("--study", "closed_loop", "--quick", "gone.yaml")
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertRegex(result.stderr, r"(?m)^gone\.yaml:1:1: ")
+
+    def test_says_what_it_lacks(self):
+        alone = shutil.copy(TACTUS, self.folder / "tactus")
+        result = self.bench(program=alone)
+        self.assertEqual((result.returncode, result.stdout), (3, ""))
+        self.assertRegex(result.stderr, r"\A[^\n]*tactus-bench: cannot be run [^\n]*expected [^\n]*\n\Z")
+
+
+if __name__ == "__main__":
+    unittest.main()
