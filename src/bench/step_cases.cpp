@@ -66,6 +66,21 @@ struct OurRun : Recorded<Controller, ControllerState> {
   ControllerOutput output;
 };
 
+/// Only what is left when prepare() has run before.
+struct PreparedRun : OurRun {
+  explicit PreparedRun(const BenchRobot& robot) : OurRun(robot), prepared(kStepStates) {}
+  void prepare() {
+    for (int i = 0; i < kStepStates; ++i)
+      controller.prepare(timeOf(kFirstCycle + i), states[i], prepared[i]);
+  }
+  void step(int i) {
+    controller.update(inputs[i], timeOf(kFirstCycle + i), kBenchPeriod_s, prepared[i], states[i],
+                      output);
+    velocity = output.velocity;
+  }
+  std::vector<PreparedCycle> prepared;
+};
+
 struct PlainRun : Recorded<PlainController, PlainControllerState> {
   PlainRun(const BenchRobot& robot, std::unique_ptr<PlainKinematics> kinematics)
       : Recorded{PlainController(robot, std::move(kinematics)), {}, {}, {}, {}} {
@@ -81,12 +96,22 @@ struct PlainRun : Recorded<PlainController, PlainControllerState> {
   }
 };
 
+StepCase preparedCase(const BenchRobot& robot) {
+  const auto run = std::make_shared<PreparedRun>(robot);
+  StepCase step_case = makeCase(kCodePrepared, robot, run);
+  step_case.prepare = [run] {
+    run->states = run->recorded;
+    run->prepare();
+  };
+  return step_case;
+}
+
 }  // namespace
 
 std::vector<StepCase> stepCases(int joints, int task_components, int contacts) {
   const BenchRobot robot = makeBenchRobot(joints, task_components, contacts);
   std::vector<StepCase> cases = {
-      makeCase(kCodeOurs, robot, std::make_shared<OurRun>(robot)),
+      makeCase(kCodeOurs, robot, std::make_shared<OurRun>(robot)), preparedCase(robot),
       makeCase(kCodeSvd, robot, std::make_shared<PlainRun>(robot, svdKinematics(robot))),
       makeCase(kCodeKdl, robot, std::make_shared<PlainRun>(robot, wdlsKinematics(robot)))};
   if (contacts > 0) return cases;

@@ -50,10 +50,12 @@ void CacheWalker::walk() noexcept {
   for (std::size_t i = 0; i < memory_.size(); i += kLine) ++memory_[i];
 }
 
-TimeStatistics timeCold(int calls, CacheWalker& walker, const std::function<void(int)>& call) {
+TimeStatistics timeCold(int calls, CacheWalker& walker, const std::function<void(int)>& prepare,
+                        const std::function<void(int)>& call) {
   const double clock_ns = clockTime_ns();
   std::vector<double> times_ns;
   for (int i = 0; i < calls; ++i) {
+    prepare(i);
     walker.walk();
     const Clock::time_point start = Clock::now();
     call(i);

@@ -29,6 +29,7 @@ Controller::Controller(const ControllerConfig& config)
     : config_(config),
       trajectory_(config.task.trajectory, toolPose(config.chain, config.q_start)),
       inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
+      uses_orientation_(usesOrientation(config.task)),
       limiter_(config.limits) {
   if (config.joint_limit_avoidance)
     joint_limit_avoidance_.emplace(*config.joint_limit_avoidance, config.limits, inv_sqrt_weights_);
@@ -49,12 +50,46 @@ ControllerState Controller::initialState(const JointVector& q) const {
 
 void Controller::update(const RobotInput& input, double t_s, double period_s,
                         ControllerState& state, ControllerOutput& output) const noexcept {
-  TaskKinematics kinematics;
-  computeKinematics(t_s, state, kinematics, output);
+  PreparedCycle prepared;
+  computeMotion(t_s, state, prepared);
+  respond(input, period_s, prepared, state, output);
+}
 
-  Motion motion;
-  motion.y = kinematics.y_eff;
-  if (joint_limit_avoidance_) avoidJointLimits(kinematics, state, motion);
+void Controller::prepare(double t_s, const ControllerState& state,
+                         PreparedCycle& prepared) const noexcept {
+  computeMotion(t_s, state, prepared);
+  prepared.t_s = t_s;
+  prepared.q_desired = state.q_desired;
+}
+
+void Controller::update(const RobotInput& input, double t_s, double period_s,
+                        PreparedCycle& prepared, ControllerState& state,
+                        ControllerOutput& output) const noexcept {
+  if (prepared.t_s != t_s || prepared.q_desired != state.q_desired)
+    computeMotion(t_s, state, prepared);
+  prepared.t_s = std::numeric_limits<double>::quiet_NaN();
+  respond(input, period_s, prepared, state, output);
+}
+
+void Controller::computeMotion(double t_s, const ControllerState& state,
+                               PreparedCycle& prepared) const noexcept {
+  computeKinematics(t_s, state, prepared);
+  Motion& motion = prepared.motion;
+  motion.y = prepared.kinematics.y_eff;
+  if (joint_limit_avoidance_) {
+    avoidJointLimits(prepared.kinematics, state, motion);
+  } else {
+    motion.v_scaled.setZero();
+  }
+}
+
+void Controller::respond(const RobotInput& input, double period_s, PreparedCycle& prepared,
+                         ControllerState& state, ControllerOutput& output) const noexcept {
+  const TaskKinematics& kinematics = prepared.kinematics;
+  Motion& motion = prepared.motion;
+  output.w = prepared.w;
+  output.w_d = prepared.w + kinematics.error;
+  output.w_d_dot = prepared.w_d_dot;
   output.contact = {};
   if (config_.tactile_module) {
     const Fault fault = readTactileModule(input, period_s, state);
@@ -106,9 +141,9 @@ void Controller::avoidJointLimits(const TaskKinematics& kinematics, const Contro
 }
 
 void Controller::computeKinematics(double t_s, const ControllerState& state,
-                                   TaskKinematics& kinematics,
-                                   ControllerOutput& output) const noexcept {
+                                   PreparedCycle& prepared) const noexcept {
   const TaskConfig& task = config_.task;
+  TaskKinematics& kinematics = prepared.kinematics;
   config_.chain.computePose(state.q_desired, kinematics.pose);
   const ToolReference reference = trajectory_.evaluate(t_s);
   Twist w = Twist::Zero();
@@ -117,7 +152,7 @@ void Controller::computeKinematics(double t_s, const ControllerState& state,
   w.head<3>() = framePosition(kinematics.pose, config_.chain.tip());
   error.head<3>() = reference.p_BaseTool - w.head<3>();
   w_d_dot << reference.v_BaseTool, reference.omega_BaseTool;
-  if (usesOrientation(task)) {
+  if (uses_orientation_) {
     const Matrix3 R_BaseTool = framePose(kinematics.pose, config_.chain.tip()).R_AB;
     w.tail<3>() = rotationVector(R_BaseTool);
     error.tail<3>() = rotationVector(reference.R_BaseTool * R_BaseTool.transpose());
@@ -127,17 +162,16 @@ void Controller::computeKinematics(double t_s, const ControllerState& state,
                      J);
   kinematics.pseudoinverse.factorise(J, inv_sqrt_weights_);
   kinematics.error.resize(task.size);
-  output.w.resize(task.size);
-  output.w_d_dot.resize(task.size);
+  prepared.w.resize(task.size);
+  prepared.w_d_dot.resize(task.size);
   for (int i = 0; i < task.size; ++i) {
     const int component = task.components[i];
     kinematics.error[i] = error[component];
-    output.w[i] = w[component];
-    output.w_d_dot[i] = w_d_dot[component];
+    prepared.w[i] = w[component];
+    prepared.w_d_dot[i] = w_d_dot[component];
   }
-  output.w_d = output.w + kinematics.error;
   kinematics.y_eff =
-      kinematics.pseudoinverse.solve(output.w_d_dot + task.drift_gain_per_s * kinematics.error);
+      kinematics.pseudoinverse.solve(prepared.w_d_dot + task.drift_gain_per_s * kinematics.error);
 }
 
 Fault Controller::readTactileModule(const RobotInput& input, double period_s,

@@ -95,6 +95,12 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   heartbeat_ = !heartbeat_;
 }
 
+void ControlCycle::prepare() noexcept {
+  if (!is_started_) return;
+  const long long next = task_cycles_ + (mode_.mode == Mode::kRunning ? 1 : 0);
+  controller_.prepare(static_cast<double>(next) * period_s_, state_, prepared_);
+}
+
 void ControlCycle::noteCulprit() noexcept {
   report_.joint = judged_.joint;
   report_.bus = judged_.bus;
@@ -212,7 +218,7 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   if (missed > 0) controller_.coast(missed, period_s_, state_);
   applyMode(controller_, mode_.mode, before, input_, state_);
   const double task_time_s = static_cast<double>(task_cycles_) * period_s_;
-  controller_.update(input_, task_time_s, period_s_, state_, output_);
+  controller_.update(input_, task_time_s, period_s_, prepared_, state_, output_);
   fillRecord(static_cast<double>(cycles_) * period_s_, input_, output_, Vector3::Zero(), record_);
   record_.task_time_s = task_time_s;
   record_.mode = static_cast<std::uint64_t>(mode_.mode);

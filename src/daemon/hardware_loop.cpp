@@ -47,6 +47,7 @@ bool HardwareLoop::cycle(const Wake& wake) noexcept {
   ++cycles_;
   missed_cycles_ += wake.skipped;
   publish(wake, read_ns - woken_ns, controlled_ns - read_ns, written_ns - controlled_ns);
+  cycle_.prepare();
   if (!cycle_.isFinished()) return true;
   cpu_end_ns_ = threadTime_ns();
   return false;

@@ -53,6 +53,7 @@ Trajectory::Trajectory(const TrajectoryConfig& config, const Pose& X_BaseTool_st
       rotation_vector = waypoint.rotation_vector_rad;
       R = rotationMatrix(rotation_vector) * X_start_.R_AB;
       segment.rotation_vector = rotationVector(R * segment.R_start.transpose());
+      segment.turns = true;
     }
     // The slower of the two motions sets the pace; short paths never reach their cruise speed.
     const double cruise_s =
@@ -82,9 +83,14 @@ ToolReference Trajectory::evaluate(double t_s) const noexcept {
   const PathPoint path = t >= segment.duration_s ? PathPoint{1.0, 0.0}
                                                  : timeLaw(t, segment.duration_s, segment.ramp_s,
                                                            segment.cruise_rate_per_s);
-  return {segment.p_start + path.s * segment.displacement, path.s_dot * segment.displacement,
-          rotationMatrix(path.s * segment.rotation_vector).lazyProduct(segment.R_start),
-          path.s_dot * segment.rotation_vector};
+  ToolReference reference{segment.p_start + path.s * segment.displacement,
+                          path.s_dot * segment.displacement, segment.R_start, Vector3::Zero()};
+  if (segment.turns) {
+    reference.R_BaseTool =
+        rotationMatrix(path.s * segment.rotation_vector).lazyProduct(segment.R_start);
+    reference.omega_BaseTool = path.s_dot * segment.rotation_vector;
+  }
+  return reference;
 }
 
 }  // namespace tactus

@@ -98,8 +98,8 @@ TEST(StepStudy, HasARowForEachCaseWithTheCountsItIsGiven) {
   sizes.batches = 1;
   sizes.cold_steps = 2;
   const Table table = measureSteps(sizes, {{"ours n=7 m=3 contacts=1", 1234.0}});
-  // n = 6: 4 + 3 with three components, 5 + 0 with six; n = 7: 3 more.
-  EXPECT_EQ(table.rows.size(), 12u + 15u);
+  // n = 6: 5 + 4 with three components, 6 + 0 with six; n = 7: 4 more.
+  EXPECT_EQ(table.rows.size(), 15u + 19u);
   const Filter ours = {{"code", std::string(kCodeOurs)},
                        {"joints", 7.0},
                        {"task_components", 3.0},

@@ -20,13 +20,15 @@ struct StepCase {
 
 inline constexpr int kStepStates = 64;
 inline constexpr const char* kCodeOurs = "ours";
+inline constexpr const char* kCodePrepared = "ours, sensor to command";
 inline constexpr const char* kCodeSvd = "Eigen SVD";
 inline constexpr const char* kCodeKdl = "KDL wdls";
 inline constexpr const char* kCodeWdlsOnce = "KDL wdls, one solve";
 inline constexpr const char* kCodeNsoOnce = "KDL pinv_nso, one solve";
 
-/// Every code for this robot. The same commands come from ours, from plain Eigen with an SVD, and
-/// from KDL's wdls; without contact also what KDL's solvers alone take.
+/// Every code for this robot. The same commands come from ours, whole and with what needs no sensor
+/// prepared, from plain Eigen with an SVD, and from KDL's wdls; without contact also what KDL's
+/// solvers alone take.
 std::vector<StepCase> stepCases(int joints, int task_components, int contacts);
 
 /// The tool's error and one solve, without joint limits: less than a step. J# w by wdls and, for

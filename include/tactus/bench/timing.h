@@ -33,7 +33,9 @@ class CacheWalker {
   std::vector<unsigned> memory_;
 };
 
-/// The same with the caches walked before each of `calls` calls; without the time of a clock call.
-TimeStatistics timeCold(int calls, CacheWalker& walker, const std::function<void(int)>& call);
+/// The same with the caches walked before each of `calls` calls, after `prepare`; without the time
+/// of a clock call.
+TimeStatistics timeCold(int calls, CacheWalker& walker, const std::function<void(int)>& prepare,
+                        const std::function<void(int)>& call);
 
 }  // namespace tactus

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "tactus/control/command_limiter.h"
@@ -36,6 +37,16 @@ struct ControllerState {
   ContactControllerState contact;
 };
 
+/// The part of a cycle that needs no sensor: kinematics, factorisation and joint-limit cost of the
+/// commanded configuration, computed while the drives still carry out the previous command.
+struct PreparedCycle {
+  double t_s = std::numeric_limits<double>::quiet_NaN();  ///< for this time only; NaN: for none
+  JointVector q_desired;                                  ///< and this configuration
+  TaskKinematics kinematics;
+  Motion motion;  ///< of task and joint limits, without contact
+  TaskVector w, w_d_dot;
+};
+
 /// One cycle of the paper: kinematics of the desired configuration, contact, law and limits. The
 /// output is a pure function of config, state, input, time and period, to the bit.
 class Controller {
@@ -53,9 +64,21 @@ class Controller {
   void update(const RobotInput& input, double t_s, double period_s, ControllerState& state,
               ControllerOutput& output) const noexcept;
 
+  /// Does ahead what update() will need at t_s if the state is still the same then.
+  void prepare(double t_s, const ControllerState& state, PreparedCycle& prepared) const noexcept;
+
+  /// The same to the bit, but takes what is prepared, if it is for this time and state, and uses it
+  /// up. Between sensor and command only the contact is left to compute.
+  void update(const RobotInput& input, double t_s, double period_s, PreparedCycle& prepared,
+              ControllerState& state, ControllerOutput& output) const noexcept;
+
  private:
-  void computeKinematics(double t_s, const ControllerState& state, TaskKinematics& kinematics,
-                         ControllerOutput& output) const noexcept;
+  void computeMotion(double t_s, const ControllerState& state,
+                     PreparedCycle& prepared) const noexcept;
+  void respond(const RobotInput& input, double period_s, PreparedCycle& prepared,
+               ControllerState& state, ControllerOutput& output) const noexcept;
+  void computeKinematics(double t_s, const ControllerState& state,
+                         PreparedCycle& prepared) const noexcept;
   void avoidJointLimits(const TaskKinematics& kinematics, const ControllerState& state,
                         Motion& motion) const noexcept;
   Fault readTactileModule(const RobotInput& input, double period_s,
@@ -66,6 +89,7 @@ class Controller {
   ControllerConfig config_;
   Trajectory trajectory_;
   ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
+  bool uses_orientation_;
   CommandLimiter limiter_;
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
   std::optional<ContactController> contact_controller_;

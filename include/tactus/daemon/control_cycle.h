@@ -33,7 +33,8 @@ struct ModeReport {
 };
 
 /// One cycle of the daemon between frames in and frames out: read - judge - control - limit -
-/// write. Knows no socket, no line and no clock, so that the whole of it runs in virtual time, too.
+/// write, and between cycles prepare. Knows no socket, no line and no clock, so that the whole of
+/// it runs in virtual time, too.
 class ControlCycle {
  public:
   /// The scene must have hardware.
@@ -41,6 +42,9 @@ class ControlCycle {
 
   void receive(int bus, std::span<const CanFrame> frames) noexcept { robot_.receive(bus, frames); }
   void update(const CycleInput& input) noexcept;
+  /// Does ahead, while frames travel and drives move, what the next cycle needs and already can
+  /// know. May be left out.
+  void prepare() noexcept;
   const FrameBatch& outbox(int bus) const noexcept { return robot_.outbox(bus); }
   const CanFrame& probe() const noexcept { return robot_.probe(); }
   GpioOutputs lines() const noexcept;
@@ -93,6 +97,7 @@ class ControlCycle {
   Judged judged_;
   ModeReport report_;
   ControllerState state_;
+  PreparedCycle prepared_;
   RobotInput input_;
   ControllerOutput output_;
   CycleRecord record_;

@@ -48,6 +48,7 @@ class Trajectory {
     Vector3 p_start, displacement;
     Matrix3 R_start;
     Vector3 rotation_vector;  ///< base frame
+    bool turns = false;       ///< else R_start all the way, and rotation_vector is zero
   };
 
   Pose X_start_;

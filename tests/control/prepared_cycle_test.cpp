@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include "support/controller_run.h"
+
+/// Work done ahead must not show in what is commanded, whether it was done, left out, or done for
+/// another time or state.
+namespace tactus {
+namespace {
+
+enum class Ahead { kRight, kNever, kWrongTime, kBeforeCoasting };
+
+/// The same run, where now and then cycles are missed.
+std::vector<ControllerOutput> run(const Controller& controller, std::uint64_t seed, Ahead ahead) {
+  Random random(seed);
+  test::RandomTouches touches(random);
+  ControllerState state = controller.initialState();
+  PreparedCycle prepared;
+  std::vector<ControllerOutput> outputs(400);
+  int cycle = 0;
+  for (ControllerOutput& output : outputs) {
+    const double t_s = 0.001 * cycle;
+    if (ahead == Ahead::kRight) controller.prepare(t_s, state, prepared);
+    if (ahead == Ahead::kWrongTime) controller.prepare(t_s + 0.001, state, prepared);
+    if (ahead == Ahead::kBeforeCoasting) controller.prepare(t_s, state, prepared);
+    if (cycle % 50 == 49) controller.coast(2, 0.001, state);
+    const RobotInput input = touches.next(state.q_desired);
+    if (ahead == Ahead::kNever) {
+      controller.update(input, t_s, 0.001, state, output);
+    } else {
+      controller.update(input, t_s, 0.001, prepared, state, output);
+    }
+    ++cycle;
+  }
+  return outputs;
+}
+
+TEST(PreparedCycle, ChangesNoBit) {
+  Random random(101);
+  for (const Variant variant : test::kAllVariants) {
+    const Controller controller(test::fullController(random, random.integer(3, 16), variant));
+    const std::vector<ControllerOutput> expected = run(controller, 7, Ahead::kNever);
+    for (const Ahead ahead : {Ahead::kRight, Ahead::kWrongTime, Ahead::kBeforeCoasting}) {
+      const std::vector<ControllerOutput> outputs = run(controller, 7, ahead);
+      for (std::size_t i = 0; i < outputs.size(); ++i) test::expectSame(outputs[i], expected[i]);
+    }
+    EXPECT_FALSE(expected.back().velocity.isZero(0.0)) << "at rest everything is the same";
+  }
+}
+
+TEST(PreparedCycle, IsUsedOnceOnly) {
+  Random random(102);
+  const Controller controller(test::fullController(random, 7, Variant::kNullTask));
+  ControllerState state = controller.initialState();
+  PreparedCycle prepared;
+  controller.prepare(0.25, state, prepared);
+  EXPECT_EQ(prepared.t_s, 0.25);
+  ControllerOutput output;
+  controller.update({}, 0.25, 0.001, prepared, state, output);
+  EXPECT_NE(prepared.t_s, prepared.t_s) << "NaN: for no time";
+}
+
+}  // namespace
+}  // namespace tactus
