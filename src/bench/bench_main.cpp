@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -108,9 +109,12 @@ std::string toJson(const std::vector<StudyResult>& results) {
 
 void printGoals(const std::vector<StudyResult>& results) {
   const Table goals = goalTable(results);
-  for (std::size_t row = 0; row < goals.rows.size(); ++row)
-    fmt::print("{:<84} {:10.3g} of at most {:<7.3g} {}\n", goals.word(row, "goal"),
-               goals.number(row, "measured"), goals.number(row, "limit"), goals.word(row, "met"));
+  for (std::size_t row = 0; row < goals.rows.size(); ++row) {
+    const double measured = goals.number(row, "measured");
+    fmt::print("{:<92}{:>9} of at most {:<7.3g} {}\n", goals.word(row, "goal"),
+               std::isfinite(measured) ? fmt::format("{:.3g}", measured) : "",
+               goals.number(row, "limit"), goals.word(row, "met"));
+  }
 }
 
 void bench(const Options& options) {

@@ -167,7 +167,10 @@ StudyResult studyClosedLoop(const BenchOptions& options) {
       "the "
       "end of contact has a standard deviation of at most {} N around its straight trend. "
       "Stability "
-      "is looked for also where the loader refuses a period; by which key it does is in the table.",
+      "is looked for also where the loader refuses a period; by which key it does is in the table. "
+      "A longer period ages sensor and command; the loop has room for it where the assumed "
+      "stiffness "
+      "lies above the contact's, and less where it is estimated.",
       sizes.periods_s.front() / kMillisecond, sizes.longest_period_s / kMillisecond,
       sizes.reference_period_s / kMillisecond, kMaxRipple_N);
   result.plots = makePlots(tables.runs);

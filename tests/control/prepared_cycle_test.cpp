@@ -11,7 +11,7 @@ enum class Ahead { kRight, kNever, kWrongTime, kBeforeCoasting };
 
 /// The same run, where now and then cycles are missed.
 std::vector<ControllerOutput> run(const Controller& controller, std::uint64_t seed, Ahead ahead) {
-  Random random(seed);
+  test::Random random(seed);
   test::RandomTouches touches(random);
   ControllerState state = controller.initialState();
   PreparedCycle prepared;
@@ -35,7 +35,7 @@ std::vector<ControllerOutput> run(const Controller& controller, std::uint64_t se
 }
 
 TEST(PreparedCycle, ChangesNoBit) {
-  Random random(101);
+  test::Random random(101);
   for (const Variant variant : test::kAllVariants) {
     const Controller controller(test::fullController(random, random.integer(3, 16), variant));
     const std::vector<ControllerOutput> expected = run(controller, 7, Ahead::kNever);
@@ -48,7 +48,7 @@ TEST(PreparedCycle, ChangesNoBit) {
 }
 
 TEST(PreparedCycle, IsUsedOnceOnly) {
-  Random random(102);
+  test::Random random(102);
   const Controller controller(test::fullController(random, 7, Variant::kNullTask));
   ControllerState state = controller.initialState();
   PreparedCycle prepared;
