@@ -1,11 +1,13 @@
-#include "tactus/bench/pseudoinverse_methods.h"
+#pragma once
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
-#include "tactus/math/weighted_pseudoinverse.h"
+#include "tactus/bench/pseudoinverse_methods.h"
 
+/// Definitions for the two sources that instantiate them, one a scalar: together they would take a
+/// compiler 2 GB.
 namespace tactus {
 namespace {
 
@@ -92,36 +94,6 @@ void solveDampedSvd(const Problem<Scalar>& problem, MotionParts<Scalar>& parts) 
   solveBySvd<Scalar>(problem, Scalar(kBenchDamping), parts);
 }
 
-ScaledVector noWeights(Eigen::Index joints) {
-  ScaledVector ones = ScaledVector::Zero();
-  ones.head(joints).setOnes();
-  return ones;
-}
-
-/// J times `scale`, for which J# w is divided by it and N v stays the same.
-void solveOurs(const Problem<double>& problem, double scale, MotionParts<double>& parts) {
-  const auto n = problem.J.cols();
-  const ScaledVector inv_sqrt_weights = noWeights(n);
-  const TaskJacobian J = scale * problem.J;
-  WeightedPseudoinverse factors;
-  factors.factorise(J, inv_sqrt_weights);
-  const ScaledVector v = scaled(problem.v, inv_sqrt_weights);
-  const ScaledVector task = factors.expand(factors.solve(problem.w));
-  const ScaledVector null = v - factors.expand(factors.project(v));
-  parts.task = scale * task.head(n).cwiseProduct(inv_sqrt_weights.head(n));
-  parts.null = null.head(n).cwiseProduct(inv_sqrt_weights.head(n));
-}
-
-/// A power of two changes no digit, and lifts even singular values of 1e-12 over the threshold
-/// below which an arm's are damped.
-void solveOursExactly(const Problem<double>& problem, MotionParts<double>& parts) {
-  solveOurs(problem, 0x1p40, parts);
-}
-
-void solveOursDamped(const Problem<double>& problem, MotionParts<double>& parts) {
-  solveOurs(problem, 1.0, parts);
-}
-
 }  // namespace
 
 template <typename Scalar>
@@ -133,11 +105,4 @@ std::vector<PseudoinverseMethod<Scalar>> textbookMethods() {
           {"normal equations, damped", true, solveDampedNormalEquations<Scalar>},
           {"Jacobi SVD, damped", true, solveDampedSvd<Scalar>}};
 }
-template std::vector<PseudoinverseMethod<double>> textbookMethods<double>();
-template std::vector<PseudoinverseMethod<float>> textbookMethods<float>();
-
-std::vector<PseudoinverseMethod<double>> ourMethods() {
-  return {{"ours", false, solveOursExactly}, {"ours, damped", true, solveOursDamped}};
-}
-
 }  // namespace tactus

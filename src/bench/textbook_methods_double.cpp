@@ -1,0 +1,7 @@
+#include "textbook_methods.h"
+
+namespace tactus {
+
+template std::vector<PseudoinverseMethod<double>> textbookMethods<double>();
+
+}  // namespace tactus
