@@ -28,7 +28,7 @@ TimeStatistics statistics(std::vector<double> times_ns) {
   const auto at = [&](double share) {
     return times_ns[static_cast<std::size_t>(share * static_cast<double>(times_ns.size() - 1))];
   };
-  return {at(0.5), at(0.9)};
+  return {times_ns.front(), at(0.5), at(0.9)};
 }
 
 TimeStatistics timeWarm(int batches, int calls, const std::function<void()>& prepare,
