@@ -15,11 +15,12 @@ RESET_NODE_2 = bytes([0x81, 2])
 
 class FaultCase:
     """Times are us of the wall clock of the guest. lost: buses and drives, (bus, node id), that can
-    neither be reached nor heard."""
+    neither be reached nor heard; faulty: drives that stop by themselves."""
 
-    def __init__(self, folder, lost=()):
+    def __init__(self, folder, lost=(), faulty=()):
         self.name = folder.name
         self.lost = lost
+        self.faulty = faulty
         self.frames = candump_log.read(folder / "candump.log")
         self.commands = candump_log.commands(self.frames)
         self.statuses = candump_log.statuses(self.frames)
@@ -83,7 +84,7 @@ class FaultCase:
         """A quick stop for all drives. To one that is off already the same word means less."""
         times = []
         for node, own in self.commands.items():
-            if self._is_lost(node):
+            if self._is_lost(node) or node in self.faulty:
                 continue
             off = [s.t_us for s in self.until_restart(self.statuses[node]) if s.is_off]
             end_us = off[0] if off else self.restart_us

@@ -30,6 +30,7 @@ class Expected:
     quick_stop: int | None = None
     off: int | None = None
     lost: tuple = ()  # buses and drives out of reach
+    faulty: tuple = ()  # drives that stop by themselves, maybe before they are told
     restarts: bool = True
 
 
@@ -51,7 +52,8 @@ EXPECTED = {
     "drive_silent": Expected("fault", "drive_silent", "quick stop", 8, 8, QUICK_STOP_LASTS),
     "overrun": Expected("stopping", "overrun", "ramp", 6, None, RAMP_LASTS),
     "bus_off": Expected("fault", "bus_off", "quick stop", 3, 3, QUICK_STOP_LASTS, ("can2",)),
-    "drive_fault": Expected("fault", "drive_fault", "quick stop", 3, 3, QUICK_STOP_LASTS),
+    "drive_fault": Expected("fault", "drive_fault", "quick stop", 3, 3, QUICK_STOP_LASTS,
+                            faulty=(("can0", 2),)),
     "tactile_stale": Expected("holding", "tactile_stale", "hold", 26),  # max_sample_age_s: 20 ms
     # Sixteen attempts without acknowledgement, and the controller is error-passive.
     "power_cut": Expected("fault", "bus_unacknowledged", "quick stop", 5, 5, QUICK_STOP_LASTS,
@@ -62,7 +64,7 @@ EXPECTED = {
 class Faults(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.cases = {name: FaultCase(results / name, expected.lost)
+        cls.cases = {name: FaultCase(results / name, expected.lost, expected.faulty)
                      for name, expected in EXPECTED.items()}  # fmt: skip
         print("\n".join([TITLE, *map(row, cls.cases.values())]))
 
