@@ -24,18 +24,23 @@ ContactController::ContactController(const ControllerConfig& config,
   } else {
     transition_.emplace(config_.transition);
   }
-  if (config_.estimator) estimator_.emplace(*config_.estimator);
+  if (config_.variant == Variant::kNullLimit) {
+    approach_limit_.emplace(config);
+  } else if (config_.estimator) {
+    estimator_.emplace(*config_.estimator);
+  }
 }
 
 ContactControllerState ContactController::initialState() const {
   ContactControllerState state;
   state.joint_space_transition.contact.position_m = initial_position_m_;
   state.estimator = {config_.assumed_stiffness_N_per_m, config_.assumed_stiffness_N_per_m};
+  if (approach_limit_) state.approach = approach_limit_->initialState();
   return state;
 }
 
 void ContactController::update(const TaskKinematics& kinematics, const ContactPointState& sensor,
-                               const JointVector& velocity_before, double period_s,
+                               const CommandedMotion& commanded, double period_s,
                                ContactControllerState& state, ContactReport& report,
                                Motion& motion) const noexcept {
   if (joint_space_transition_)
@@ -45,11 +50,20 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
 
   ControlLawInput input;
   input.F_p_N = std::max(0.0, sensor.force_N - config_.contact_threshold_N);
-  if (estimator_) {
-    const double approach_m_per_s = -contact.a.dot(velocity_before);  // (15)
-    estimator_->update(input.F_p_N, approach_m_per_s, period_s, state.estimator);
+  const ApproachContact approach{contact.a, input.F_p_N, sensor.is_new};
+  if (approach_limit_) {
+    input.F_ahead_N = approach_limit_->observe(approach, commanded.q, period_s, state.approach);
+    input.stiffness_N_per_m = state.approach.estimator.stiffness_N_per_m;
+    report.stiffness_raw_N_per_m = state.approach.estimator.stiffness_raw_N_per_m;
+  } else {
+    input.F_ahead_N = input.F_p_N;
+    if (estimator_) {
+      const double approach_m_per_s = -contact.a.dot(commanded.velocity);  // (15)
+      estimator_->update(input.F_p_N, approach_m_per_s, period_s, state.estimator);
+    }
+    input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
+    report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
   }
-  input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
   if (joint_space_transition_) {
     passJointSpaceTransition(kinematics, contact, period_s, state, report, input, motion);
   } else {
@@ -57,14 +71,20 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
   }
   ControlLawOutput u;
   law_.update(input, contact.space, period_s, state.law, u);
+  if (approach_limit_) {
+    const ContactSpace& space = contact.space;
+    const double v_res =
+        space.a_task.dot(motion.y) + space.a_scaled.dot(motion.v_scaled) - space.k_n * u.u_n;
+    u.u_t = approach_limit_->excess(approach, v_res, state.approach) *
+            invertRegularised(space.k_t, space.k_j);
+  }
 
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
   motion.y += (u.u_n - u.u_t) * contact.space.a_task;
   motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
 
   report.force_contact_N = input.F_p_N;
-  report.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
-  report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
+  report.stiffness_N_per_m = input.stiffness_N_per_m;
   report.k_n = contact.space.k_n;
   report.k_j = contact.space.k_j;
   report.k_t = contact.space.k_t;

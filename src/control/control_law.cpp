@@ -7,7 +7,10 @@ namespace tactus {
 
 ControlLaw::ControlLaw(const ForceControlConfig& config, const SerialChain& chain,
                        const ScaledVector& inv_sqrt_weights)
-    : config_(config), inv_max_null_speed_(ScaledVector::Zero()) {
+    : config_(config),
+      has_null_space_(config.variant != Variant::kJointSpace &&
+                      config.variant != Variant::kTaskSpace),
+      inv_max_null_speed_(ScaledVector::Zero()) {
   for (int i = 0; i < chain.size(); ++i) {
     const double limit = chain.type(i) == JointType::kPrismatic ? config.max_null_speed_m_per_s
                                                                 : config.max_null_speed_rad_per_s;
@@ -22,7 +25,7 @@ double ControlLaw::proportionalGain(double stiffness_N_per_m) const noexcept {
 
 double ControlLaw::singleSpace(const ControlLawInput& input,
                                const ControlLawState& state) const noexcept {
-  return input.x_dot_ff_m_per_s - proportionalGain(input.stiffness_N_per_m) * input.F_p_N -
+  return input.x_dot_ff_m_per_s - proportionalGain(input.stiffness_N_per_m) * input.F_ahead_N -
          input.integral_share * state.V_m_per_s;
 }
 
@@ -61,10 +64,10 @@ void ControlLaw::update(const ControlLawInput& input, const ContactSpace& space,
       output.u_j = second * invertRegularised(space.k_j, space.k_j);
       break;
     case Variant::kNullSpace:
+    case Variant::kNullLimit:
       break;
   }
-  if (config_.variant == Variant::kNullSpace || config_.variant == Variant::kNullTask ||
-      config_.variant == Variant::kNullJoint) {
+  if (has_null_space_) {
     output.u_n = single * invertRegularised(space.k_n, space.k_j);
     const double share = speedShare(output.u_n * space.a_scaled);
     output.u_n *= share;

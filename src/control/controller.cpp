@@ -99,8 +99,9 @@ void Controller::respond(const RobotInput& input, double period_s, PreparedCycle
     output.contact.contact_direction = state.contact_point.direction;
   }
   if (contact_controller_)
-    contact_controller_->update(kinematics, state.contact_point, state.velocity_before, period_s,
-                                state.contact, output.contact, motion);
+    contact_controller_->update(kinematics, state.contact_point,
+                                {state.q_desired, state.velocity_before}, period_s, state.contact,
+                                output.contact, motion);
 
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
@@ -177,6 +178,7 @@ void Controller::computeKinematics(double t_s, const ControllerState& state,
 Fault Controller::readTactileModule(const RobotInput& input, double period_s,
                                     ControllerState& state) const noexcept {
   const TactileModuleConfig& module = *config_.tactile_module;
+  state.contact_point.is_new = false;
   if (input.tactile.sequence == state.sample_sequence) {
     state.sample_age_s += period_s;
     return state.sample_age_s > module.max_sample_age_s ? Fault::kTactileStale : state.sample_fault;
@@ -186,6 +188,7 @@ Fault Controller::readTactileModule(const RobotInput& input, double period_s,
   const bool is_valid = isValid(input.tactile, module);
   state.sample_fault = is_valid ? Fault::kNone : Fault::kTactileInvalid;
   if (is_valid) locateContact(input.tactile, module.length_m, state.contact_point);
+  state.contact_point.is_new = is_valid;
   return state.sample_fault;
 }
 

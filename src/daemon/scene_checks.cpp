@@ -117,7 +117,8 @@ void checkController(const Checked& c) {
   if (!findGiven(c.robot.root, "tactile_module")) {
     c.fail("controller", "the robot has no tactile_module", "no controller, or such a robot");
   }
-  const bool is_multi_space = c.draft.variant == "null_task" || c.draft.variant == "null_joint";
+  const bool is_multi_space = c.draft.variant == "null_task" || c.draft.variant == "null_joint" ||
+                              c.draft.variant == "null_limit";
   if (is_multi_space && !findGiven(c.root, "controller.activation_force_N")) {
     c.fail("controller.activation_force_N", "is missing",
            fmt::format("a number > 0 in N with the variant {}", c.draft.variant));

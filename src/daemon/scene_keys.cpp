@@ -127,6 +127,23 @@ KeySpec transitionSection() {
       });
 }
 
+KeySpec approachLimitSection() {
+  return section(
+      "approach_limit", "null_limit only: how fast contact is approached",
+      {
+          defaulted("300", number("min_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                                  "c_floor: on softer contact the arm is no faster than on this, "
+                                  "for what may be behind it",
+                                  [](Draft& d) -> double& {
+                                    return d.force.approach_limit.min_stiffness_N_per_m;
+                                  })),
+          defaulted("0.3",
+                    number("memory_s", "s", above(0, 100),
+                           "T_m: time constant with which the limit fades after contact",
+                           [](Draft& d) -> double& { return d.force.approach_limit.memory_s; })),
+      });
+}
+
 KeySpec controllerSection() {
   KeySpec variant = value(ValueType::kChoice, "variant", "",
                           "where the reaction to contact takes place; none: only measure",
@@ -147,8 +164,8 @@ KeySpec controllerSection() {
                                   "F_th: a smaller reading is no contact",
                                   [](Draft& d) -> double& { return d.force.contact_threshold_N; })),
           optional(number("activation_force_N", "N", above(0, 1000),
-                          "F_act: contact force from which null_task and null_joint leave the "
-                          "null space",
+                          "F_act: contact force from which null_task, null_joint and null_limit "
+                          "leave the null space",
                           [](Draft& d) -> double& { return d.force.activation_force_N; })),
           defaulted("5",
                     number("max_null_speed_m_per_s", "m/s", above(0, 1000),
@@ -163,6 +180,7 @@ KeySpec controllerSection() {
                                   "elsewhere",
                                   [](Draft& d) -> double& { return d.force.pull_gain_per_s; })),
           defaulted("", transitionSection()),
+          defaulted("", approachLimitSection()),
       });
 }
 
@@ -178,7 +196,7 @@ KeySpec stiffnessSection() {
                           "be stable; absent: as stiff as assumed",
                           [](Draft& d) -> double& { return d.stiffest_N_per_m; })),
           optional(section(
-              "estimate", "Algorithm 1; absent: no estimator",
+              "estimate", "Algorithm 1, or with null_limit an estimator of its own; absent: none",
               {
                   defaulted("0.2", number("min_force_change_N", "N", above(0, 1000),
                                           "F_est,min: change of force that makes an estimate",
@@ -215,8 +233,8 @@ KeySpec requirementSection() {
 }  // namespace
 
 const std::vector<std::string>& variantNames() {
-  static const std::vector<std::string> names = {"none",       "null_space", "joint_space",
-                                                 "task_space", "null_task",  "null_joint"};
+  static const std::vector<std::string> names = {
+      "none", "null_space", "joint_space", "task_space", "null_task", "null_joint", "null_limit"};
   return names;
 }
 

@@ -84,6 +84,8 @@ ControllerConfig makeController(const YamlNode& root, const ConfigDraft& draft,
   config.joint_limit_avoidance = draft.joint_limit_avoidance;
   if (!findGiven(root, "controller")) return config;
   config.tactile_module = draft.module;
+  config.tactile_module->filter_cutoff_hz = draft.plant.module.filter_cutoff_hz;
+  config.drive_lag_s = draft.plant.drive_lag_s;
   if (draft.variant == "none") return config;
   config.force_control = draft.force;
   config.force_control->variant = static_cast<Variant>(

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "tactus/control/approach_limit.h"
 #include "tactus/control/contact_point.h"
 #include "tactus/control/contact_transition.h"
 #include "tactus/control/control_law.h"
@@ -30,7 +31,14 @@ struct ContactControllerState {
   ContactTransitionState transition;
   JointSpaceTransitionState joint_space_transition;  ///< instead, for joint space
   StiffnessEstimatorState estimator;
+  ApproachLimitState approach;  ///< with an estimator of its own, for null_limit
   ControlLawState law;
+};
+
+/// Where earlier commands have led to.
+struct CommandedMotion {
+  const JointVector& q;         ///< desired, at the start of this cycle
+  const JointVector& velocity;  ///< the previous command
 };
 
 /// The answer to contact: contact space, stiffness estimate, contact transition and law, added to
@@ -42,10 +50,9 @@ class ContactController {
 
   ContactControllerState initialState() const;
 
-  /// sensor: the newest contact point; velocity_before: the previous command. Fills the report from
-  /// force_contact_N on.
+  /// sensor: the newest contact point. Fills the report from force_contact_N on.
   void update(const TaskKinematics& kinematics, const ContactPointState& sensor,
-              const JointVector& velocity_before, double period_s, ContactControllerState& state,
+              const CommandedMotion& commanded, double period_s, ContactControllerState& state,
               ContactReport& report, Motion& motion) const noexcept;
 
  private:
@@ -68,6 +75,7 @@ class ContactController {
   std::optional<ContactTransition> transition_;
   std::optional<JointSpaceTransition> joint_space_transition_;
   std::optional<StiffnessEstimator> estimator_;
+  std::optional<ApproachLimit> approach_limit_;
 };
 
 }  // namespace tactus

@@ -12,6 +12,7 @@ struct ControlLawState {
 
 struct ControlLawInput {
   double F_p_N = 0.0;
+  double F_ahead_N = 0.0;          ///< what P answers: F_p, or what it will be
   double stiffness_N_per_m = 0.0;  ///< c
   double x_dot_ff_m_per_s = 0.0;   ///< gamma min(x_dot_eff, 0)
   double integral_decay = 1.0;     ///< of V in this cycle, from the contact transition
@@ -29,6 +30,7 @@ struct ControlLawOutput {
 ///   u = -max(0, P (F_p - F_act) + I) / k,   dI/dt = (F_p - F_act) / (T^2 c), I >= 0
 /// First-order target dynamics: P = 1 / (T c), no integrals. The null-space output is limited: b
 /// u_n is scaled as a whole so that no component exceeds its speed, and V holds meanwhile.
+/// kNullLimit: u_n alone; what it lacks is added by approach_limit.h.
 class ControlLaw {
  public:
   ControlLaw(const ForceControlConfig& config, const SerialChain& chain,
@@ -49,6 +51,7 @@ class ControlLaw {
   double proportionalGain(double stiffness_N_per_m) const noexcept;
 
   ForceControlConfig config_;
+  bool has_null_space_;
   ScaledVector inv_max_null_speed_;  ///< 1 / (W^1/2 limit), for a_scaled u_n
 };
 

@@ -41,9 +41,18 @@ struct TactileModuleConfig {
   double length_m = 0.0;           ///< contact lies at 0 <= x <= length
   double max_force_N = 100.0;      ///< a larger reading is a sensor fault
   double max_sample_age_s = 0.02;  ///< an older sample is a sensor fault
+  double filter_cutoff_hz = 15.0;  ///< of the module's 3rd-order Butterworth filter
 };
 
-enum class Variant { kNone, kNullSpace, kJointSpace, kTaskSpace, kNullTask, kNullJoint };
+enum class Variant {
+  kNone,
+  kNullSpace,
+  kJointSpace,
+  kTaskSpace,
+  kNullTask,
+  kNullJoint,
+  kNullLimit,  ///< not the paper's: null space, and the approach-speed limit of approach_limit.h
+};
 
 /// What happens to feedforward and integral when contact is lost and found; see
 /// contact_transition.h, and for joint space joint_space_transition.h, for the equations.
@@ -55,7 +64,13 @@ struct ContactTransitionConfig {
   double search_speed_m_per_s = 0.01;  ///< v_search: joint space only, speed of the return
 };
 
-/// Algorithm 1; see stiffness_estimator.h.
+/// null_limit only; see approach_limit.h.
+struct ApproachLimitConfig {
+  double min_stiffness_N_per_m = 300.0;  ///< c_floor: softer contact is approached no faster
+  double memory_s = 0.3;                 ///< T_m
+};
+
+/// Algorithm 1; see stiffness_estimator.h. For null_limit see approach_estimator.h.
 struct StiffnessEstimatorConfig {
   double min_force_change_N = 0.2;       ///< F_est,min
   double filter_time_constant_s = 0.03;  ///< T_est
@@ -69,12 +84,13 @@ struct ForceControlConfig {
   double time_constant_s = 0.1;             ///< T
   double damping = 0.5;                     ///< d, second order only
   double contact_threshold_N = 1.2;         ///< F_th
-  double activation_force_N = 3.8;          ///< F_act, multi-space variants only
+  double activation_force_N = 3.8;          ///< F_act, multi-space variants and null_limit only
   double max_null_speed_m_per_s = 5.0;      ///< limit of u_n,q for prismatic joints
   double max_null_speed_rad_per_s = 5.0;    ///< and for revolute joints
   double pull_gain_per_s = 500.0;           ///< beta of the pull, joint space only
   double assumed_stiffness_N_per_m = 7000;  ///< c_0
   ContactTransitionConfig transition;
+  ApproachLimitConfig approach_limit;
   std::optional<StiffnessEstimatorConfig> estimator;
 };
 
@@ -86,6 +102,7 @@ struct ControllerConfig {
   JointVector weights{};  ///< diagonal of W, > 0
   std::optional<JointLimitAvoidanceConfig> joint_limit_avoidance{};
   std::optional<TactileModuleConfig> tactile_module{};
+  double drive_lag_s = 0.005;  ///< nominal first-order lag of position; only null_limit asks
   std::optional<ForceControlConfig> force_control{};  ///< absent also for `variant: none`
 };
 

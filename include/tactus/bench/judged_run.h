@@ -1,0 +1,46 @@
+#pragma once
+
+#include "tactus/control/controller_config.h"
+#include "tactus/control/fault.h"
+#include "tactus/sim/plant_config.h"
+
+namespace tactus {
+
+/// A controller in a world, for as long as it takes.
+struct RunSetup {
+  ControllerConfig controller;
+  PlantConfig plant;
+  double period_s = 0.001;
+  double duration_s = 13.0;
+};
+
+/// How a run went with its last obstacle, the profile. Forces are the sensor's.
+struct JudgedRun {
+  double peak_force_N = 0.0;
+  double final_force_N = 0.0;
+  double restlessness_N = 0.0;  ///< standard deviation of the force over the last kRest_s
+  double tcp_error_final_m = 0.0;
+  /// When the profile was first touched: the speed against it, and F_p of what was already there.
+  double touch_speed_m_per_s = 0.0;
+  double touch_force_N = 0.0;
+  Fault fault = Fault::kNone;  ///< of the last cycle
+
+  static constexpr double kRest_s = 2.0;
+  static constexpr double kMaxRestlessness_N = 0.05;
+  bool isRestless() const { return !(restlessness_N <= kMaxRestlessness_N); }
+};
+
+JudgedRun judgeRun(const RunSetup& setup);
+
+/// Time from a motion of the command to the law that sees its force: drives, filter, and the mean
+/// age of a sample.
+double feedbackDelay_s(const PlantConfig& plant);
+
+/// Force per way of the obstacle, its foam left out, with the arm behind it.
+double contactStiffness(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m);
+
+/// What no law could avoid: nothing is seen before the filtered force passes F_th, and by then the
+/// arm has gone on for the delay; and what is asked for, F_act. N.
+double naturalScale(const RunSetup& setup, const JudgedRun& run);
+
+}  // namespace tactus

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tactus/bench/judged_run.h"
+
+namespace tactus {
+
+/// A soft band, then a stiff profile behind it, at some speed: where laws peak and bounce.
+struct LawGridPoint {
+  double band_N_per_m = 0.0;  ///< 0: no band
+  double profile_N_per_m = 0.0;
+  double robot_stiffness_N_per_m = 0.0;
+  double speed_factor = 1.0;  ///< of the base's speed
+};
+
+/// 240 points: six bands, five profiles, an arm as compliant as the base's and a rigid one, four
+/// speeds.
+std::vector<LawGridPoint> lawGridPoints(double robot_stiffness_N_per_m);
+
+/// null_task with the assumed stiffness; with Algorithm 1; null_limit with its estimator.
+enum class GridLaw { kAssumed, kEstimated, kLimited };
+inline constexpr int kGridLaws = 3;
+const char* gridLawName(GridLaw law);
+
+struct LawGridRow {
+  LawGridPoint point;
+  std::array<JudgedRun, kGridLaws> runs;
+  std::array<double, kGridLaws> scale_N;  ///< naturalScale() of each
+};
+
+/// The base with a point's obstacles, arm and speed, and a law. base: a scene with a waypoint, a
+/// band and a profile behind it (scenario 2), force control and an estimator; foam is taken away,
+/// and the sensor's range is not felt.
+RunSetup lawGridSetup(const RunSetup& base, const LawGridPoint& point, GridLaw law);
+
+LawGridRow runLawGridPoint(const RunSetup& base, const LawGridPoint& point);
+
+/// Counts and extremes of a law over rows.
+struct LawGridFigures {
+  int restless = 0;               ///< limit cycles
+  double peak_N = 0.0;            ///< largest
+  double final_min_N = 0.0, final_max_N = 0.0;  ///< of the runs that come to rest
+  double peak_to_scale = 0.0;     ///< largest
+  double peak_to_assumed = 0.0;   ///< largest peak over that of kAssumed at the same point
+};
+LawGridFigures lawGridFigures(const std::vector<LawGridRow>& rows, GridLaw law);
+
+/// One line a point, with a header line.
+std::string lawGridCsv(const std::vector<LawGridRow>& rows);
+
+}  // namespace tactus

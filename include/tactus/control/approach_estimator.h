@@ -1,0 +1,55 @@
+#pragma once
+
+#include "tactus/control/controller_config.h"
+
+namespace tactus {
+
+struct ApproachEstimatorState {
+  double stiffness_N_per_m = 0.0;      ///< c; c_0 at first
+  double stiffness_raw_N_per_m = 0.0;  ///< r: the newest quotient; likewise
+  double x_m = 0.0;                    ///< way since F_ref, as sensed; > 0 towards the obstacle
+  double F_ref_N = 0.0;
+  double F_before_N = 0.0;  ///< F_p of the sample before
+  double since_sample_s = 0.0;
+};
+
+// clang-format off: equations
+/// Stiffness for the approach-speed limit, a quotient of force and way as sensed, where a mistake
+/// costs least: c rises at once, and falls slowly and only far from F_act. At each force sample,
+/// with dx the way since the one before it and kappa = 1 - exp(-dt / T_est):
+///   turned (dx x < 0):  x = 0, F_ref = F_p of the sample before
+///   x += dx,  dF = F_p - F_ref
+///   dx > 0, dF > F_min:   r = dF / max(x, x_min);  c = r if r > c,
+///                         c += kappa (r - c) else and only if F_p < F_act / 2;
+///                         re-armed (x = 0, F_ref = F_p) if x > x_min
+///   dx > 0, |dF| <= F_min, x > x_min, F_p < F_act / 2:
+///                         r = (max(dF, 0) + F_min) / x is an upper bound: c falls towards it
+///   dx <= 0, dF < -F_min, x < -x_min:   r = dF / x: c falls towards it;  re-armed
+///   force against the way by more than F_min:  re-armed
+/// r is clamped to its range. Without contact x = F_ref = 0, and c returns to c_0 with T_c.
+// clang-format on
+class ApproachEstimator {
+ public:
+  ApproachEstimator(const StiffnessEstimatorConfig& config, double assumed_stiffness_N_per_m,
+                    double activation_force_N)
+      : config_(config),
+        assumed_N_per_m_(assumed_stiffness_N_per_m),
+        far_from_activation_N_(0.5 * activation_force_N) {}
+
+  /// dx_m: way of the contact point towards the obstacle between the two newest samples, as sensed;
+  /// only read if is_new_sample.
+  void update(double F_p_N, double dx_m, bool is_new_sample, double period_s,
+              ApproachEstimatorState& state) const noexcept;
+
+ private:
+  void load(double F_p_N, double dF_N, double share, ApproachEstimatorState& state) const noexcept;
+  void unload(double F_p_N, double dF_N, double share,
+              ApproachEstimatorState& state) const noexcept;
+  double clamp(double stiffness_N_per_m) const noexcept;
+
+  StiffnessEstimatorConfig config_;
+  double assumed_N_per_m_;
+  double far_from_activation_N_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+
+#include "tactus/control/approach_estimator.h"
+#include "tactus/control/sensed_position.h"
+
+namespace tactus {
+
+struct ApproachLimitState {
+  SensedPositionState position;
+  ApproachEstimatorState estimator;
+  double memory_N_per_m = 0.0;  ///< m; 0: no limit
+  double way_ahead_m = 0.0;     ///< e
+};
+
+/// What the law knows of the contact in this cycle.
+struct ApproachContact {
+  const JointVector& a;  ///< J_p^T F^
+  double F_p_N = 0.0;
+  bool is_new_sample = false;
+};
+
+// clang-format off: equations
+/// The approach-speed limit. While the contact point approaches at v, contact behind a stiffness
+/// c_e obeys dF/dt = c_e v. So let it approach no faster than
+///   v_max = (F_act - F^) / (T m)
+/// and for m = c_e the force follows dF/dt = -(F - F_act) / T at most: it settles at F_act without
+/// overshoot, whatever pushes the arm on. m >= c_e / 7.5 keeps that loop stable with the filter,
+/// sample hold and drive lag of the default robot; see docs/approach_speed_limit.md.
+///   F^ = max(0, F_p + m e),   e = -a^T (q_d - q_f): the way that no sample has told of yet
+///   m  = max(c, c_floor) in contact, fading with T_m after it
+/// What the rest of (1) would do, v_res = a^T (J# w_eff - N (b u_n + alpha W^-1 dH/dq)) with
+/// v_res < 0 towards the obstacle, is cut by exactly the excess:
+///   u_t = min(0, v_res + v_max) / k_t
+// clang-format on
+class ApproachLimit {
+ public:
+  /// config.force_control and config.tactile_module must be there.
+  explicit ApproachLimit(const ControllerConfig& config);
+
+  ApproachLimitState initialState() const noexcept;
+
+  /// Returns max(0, F_p + c e), N.
+  double observe(const ApproachContact& contact, const JointVector& q_desired, double period_s,
+                 ApproachLimitState& state) const noexcept;
+
+  /// min(0, v_res + v_max); call after observe().
+  double excess(const ApproachContact& contact, double v_res_m_per_s,
+                const ApproachLimitState& state) const noexcept;
+
+ private:
+  ForceControlConfig config_;
+  SensedPosition position_;
+  std::optional<ApproachEstimator> estimator_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,110 @@
+#include "tactus/bench/judged_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "tactus/control/controller.h"
+#include "tactus/sim/simulated_robot.h"
+
+namespace tactus {
+namespace {
+
+/// The last obstacle alone, to see when the arm meets it and how fast.
+class ProfileProbe {
+ public:
+  explicit ProfileProbe(const RunSetup& setup)
+      : chain_(setup.controller.chain),
+        module_(*setup.controller.tactile_module),
+        radius_m_(setup.plant.cover_radius_m),
+        obstacle_({setup.plant.obstacles.back().x_m, setup.plant.obstacles.back().y_m, 1.0, {},
+                   setup.plant.obstacles.back().appears_s, setup.plant.obstacles.back().vanishes_s},
+                  kNoLimit) {}
+
+  /// Way that the arm has gone into the obstacle, m.
+  double penetration_m(const JointVector& q, double t_s) {
+    ChainPose pose;
+    chain_.computePose(q, pose);
+    const Pose X = framePose(pose, module_.link);
+    return obstacle_.touch({X.p_AB, X.R_AB.col(0), module_.length_m, radius_m_}, t_s).force_N;
+  }
+
+ private:
+  SerialChain chain_;
+  TactileModuleConfig module_;
+  double radius_m_;
+  Obstacle obstacle_;  ///< of 1 N/m
+};
+
+/// Mean and spread of numbers that come one by one (Welford).
+struct Spread {
+  long count = 0;
+  double mean = 0.0, sum_of_squares = 0.0;
+
+  void add(double x) {
+    ++count;
+    const double off = x - mean;
+    mean += off / static_cast<double>(count);
+    sum_of_squares += off * (x - mean);
+  }
+  double deviation() const { return std::sqrt(sum_of_squares / static_cast<double>(count)); }
+};
+
+}  // namespace
+
+JudgedRun judgeRun(const RunSetup& setup) {
+  const Controller controller(setup.controller);
+  SimulatedRobot robot(setup.controller, setup.plant, setup.period_s);
+  ProfileProbe probe(setup);
+  ControllerState state = controller.initialState();
+  RobotInput input;
+  ControllerOutput output;
+  JudgedRun run;
+  Spread last_forces;
+  std::optional<double> depth_m;  // of the first cycle in the profile
+  const long cycles = std::lround(setup.duration_s / setup.period_s);
+  const long rest_from = cycles - std::lround(JudgedRun::kRest_s / setup.period_s);
+  for (long cycle = 0; cycle < cycles; ++cycle) {
+    const double t_s = static_cast<double>(cycle) * setup.period_s;
+    robot.read(input);
+    controller.update(input, t_s, setup.period_s, state, output);
+    const Vector3 goal = output.w_d.size() >= 3 ? Vector3(output.w_d.head<3>()) : Vector3::Zero();
+    run.tcp_error_final_m = (goal - robot.toolPosition()).norm();
+    robot.write(output.velocity);
+    run.peak_force_N = std::max(run.peak_force_N, output.contact.force_sensor_N);
+    run.final_force_N = output.contact.force_sensor_N;
+    if (cycle >= rest_from) last_forces.add(run.final_force_N);
+    if (run.touch_speed_m_per_s > 0.0) continue;
+    const double way_m = probe.penetration_m(input.q_measured, t_s);
+    if (depth_m && way_m > *depth_m) {
+      run.touch_speed_m_per_s = (way_m - *depth_m) / setup.period_s;
+      run.touch_force_N = output.contact.force_contact_N;
+    }
+    depth_m.reset();
+    if (way_m > 0.0) depth_m = way_m;
+  }
+  run.restlessness_N = last_forces.deviation();
+  run.fault = output.fault;
+  return run;
+}
+
+double feedbackDelay_s(const PlantConfig& plant) {
+  // A 3rd-order Butterworth filter delays slow signals by 2 / w_c.
+  return plant.drive_lag_s + 1.0 / (std::numbers::pi * plant.module.filter_cutoff_hz) +
+         0.5 * plant.module.sample_period_s;
+}
+
+double contactStiffness(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m) {
+  return 1.0 / (1.0 / obstacle.stiffness_N_per_m + 1.0 / robot_stiffness_N_per_m);
+}
+
+double naturalScale(const RunSetup& setup, const JudgedRun& run) {
+  const ForceControlConfig& force = *setup.controller.force_control;
+  const double stiffness =
+      contactStiffness(setup.plant.obstacles.back(), setup.plant.robot_stiffness_N_per_m);
+  const double unseen_N = stiffness * run.touch_speed_m_per_s * feedbackDelay_s(setup.plant);
+  return force.contact_threshold_N + std::max(force.activation_force_N, run.touch_force_N + unseen_N);
+}
+
+}  // namespace tactus

@@ -1,0 +1,128 @@
+#include "tactus/bench/law_grid.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace tactus {
+namespace {
+
+constexpr std::array kBands = {0.0, 10.0, 30.0, 60.0, 200.0, 600.0};         // N/m
+constexpr std::array kProfiles = {3e3, 7e3, 17e3, 1e5, 1e6};                 // N/m
+constexpr std::array kSpeedFactors = {0.5, 1.0, 2.4, 5.0};
+constexpr double kSettling_s = 4.5;  ///< after the motion's end
+
+constexpr std::array kLaws = {GridLaw::kAssumed, GridLaw::kEstimated, GridLaw::kLimited};
+
+/// "1e+06", "0.0537": the shortest text that reads back as the same number.
+void append(double value, std::string& text) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  text += ',';
+  text.append(digits, end);
+}
+
+}  // namespace
+
+const char* gridLawName(GridLaw law) {
+  switch (law) {
+    case GridLaw::kAssumed:
+      return "assumed";
+    case GridLaw::kEstimated:
+      return "estimated";
+    case GridLaw::kLimited:
+      return "limited";
+  }
+  return "";
+}
+
+std::vector<LawGridPoint> lawGridPoints(double robot_stiffness_N_per_m) {
+  std::vector<LawGridPoint> points;
+  for (const double band : kBands)
+    for (const double profile : kProfiles)
+      for (const double robot : {robot_stiffness_N_per_m, kNoLimit})
+        for (const double speed : kSpeedFactors) points.push_back({band, profile, robot, speed});
+  return points;
+}
+
+RunSetup lawGridSetup(const RunSetup& base, const LawGridPoint& point, GridLaw law) {
+  RunSetup setup = base;
+  ForceControlConfig& force = *setup.controller.force_control;
+  force.variant = law == GridLaw::kLimited ? Variant::kNullLimit : Variant::kNullTask;
+  if (law == GridLaw::kAssumed) force.estimator.reset();
+  setup.controller.tactile_module->max_force_N = kNoLimit;
+  setup.plant.module.quantised = false;  // counts have a range
+  setup.plant.robot_stiffness_N_per_m = point.robot_stiffness_N_per_m;
+  setup.plant.obstacles.back().stiffness_N_per_m = point.profile_N_per_m;
+  setup.plant.obstacles.back().foam.clear();
+  if (point.band_N_per_m > 0.0) {
+    setup.plant.obstacles.front().stiffness_N_per_m = point.band_N_per_m;
+  } else {
+    setup.plant.obstacles.erase(setup.plant.obstacles.begin());
+  }
+  TrajectoryConfig& trajectory = setup.controller.task.trajectory;
+  Waypoint& line = trajectory.waypoints.front();
+  line.speed_m_per_s *= point.speed_factor;
+  const double motion_s = trajectory.start_s + line.displacement_m.norm() / line.speed_m_per_s;
+  setup.duration_s = std::max(base.duration_s, motion_s + line.ramp_s + kSettling_s);
+  return setup;
+}
+
+LawGridRow runLawGridPoint(const RunSetup& base, const LawGridPoint& point) {
+  LawGridRow row{point, {}, {}};
+  for (int i = 0; i < kGridLaws; ++i) {
+    const RunSetup setup = lawGridSetup(base, point, kLaws[i]);
+    row.runs[i] = judgeRun(setup);
+    row.scale_N[i] = naturalScale(setup, row.runs[i]);
+  }
+  return row;
+}
+
+LawGridFigures lawGridFigures(const std::vector<LawGridRow>& rows, GridLaw law) {
+  const int i = static_cast<int>(law);
+  LawGridFigures figures;
+  figures.final_min_N = std::numeric_limits<double>::infinity();
+  figures.final_max_N = -figures.final_min_N;
+  for (const LawGridRow& row : rows) {
+    const JudgedRun& run = row.runs[i];
+    figures.peak_N = std::max(figures.peak_N, run.peak_force_N);
+    figures.peak_to_scale = std::max(figures.peak_to_scale, run.peak_force_N / row.scale_N[i]);
+    figures.peak_to_assumed =
+        std::max(figures.peak_to_assumed, run.peak_force_N / row.runs[0].peak_force_N);
+    if (run.isRestless()) {
+      ++figures.restless;
+    } else {
+      figures.final_min_N = std::min(figures.final_min_N, run.final_force_N);
+      figures.final_max_N = std::max(figures.final_max_N, run.final_force_N);
+    }
+  }
+  return figures;
+}
+
+std::string lawGridCsv(const std::vector<LawGridRow>& rows) {
+  std::string text = "band_N_per_m,profile_N_per_m,robot_N_per_m,speed_factor";
+  for (const GridLaw law : kLaws) {
+    for (const char* column : {"peak_force_N", "final_force_N", "restlessness_N", "scale_N"})
+      text += std::string(",") + gridLawName(law) + "_" + column;
+  }
+  text += '\n';
+  for (const LawGridRow& row : rows) {
+    std::string line;
+    append(row.point.band_N_per_m, line);
+    append(row.point.profile_N_per_m, line);
+    append(row.point.robot_stiffness_N_per_m, line);
+    append(row.point.speed_factor, line);
+    for (int i = 0; i < kGridLaws; ++i) {
+      append(row.runs[i].peak_force_N, line);
+      append(row.runs[i].final_force_N, line);
+      append(row.runs[i].restlessness_N, line);
+      append(row.scale_N[i], line);
+    }
+    text.append(line, 1);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace tactus
