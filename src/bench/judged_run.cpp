@@ -18,8 +18,12 @@ class ProfileProbe {
       : chain_(setup.controller.chain),
         module_(*setup.controller.tactile_module),
         radius_m_(setup.plant.cover_radius_m),
-        obstacle_({setup.plant.obstacles.back().x_m, setup.plant.obstacles.back().y_m, 1.0, {},
-                   setup.plant.obstacles.back().appears_s, setup.plant.obstacles.back().vanishes_s},
+        obstacle_({setup.plant.obstacles.back().x_m,
+                   setup.plant.obstacles.back().y_m,
+                   1.0,
+                   {},
+                   setup.plant.obstacles.back().appears_s,
+                   setup.plant.obstacles.back().vanishes_s},
                   kNoLimit) {}
 
   /// Way that the arm has gone into the obstacle, m.
@@ -61,7 +65,7 @@ JudgedRun judgeRun(const RunSetup& setup) {
   RobotInput input;
   ControllerOutput output;
   JudgedRun run;
-  Spread last_forces;
+  Spread last_readings, last_forces;
   std::optional<double> depth_m;  // of the first cycle in the profile
   const long cycles = std::lround(setup.duration_s / setup.period_s);
   const long rest_from = cycles - std::lround(JudgedRun::kRest_s / setup.period_s);
@@ -73,8 +77,10 @@ JudgedRun judgeRun(const RunSetup& setup) {
     run.tcp_error_final_m = (goal - robot.toolPosition()).norm();
     robot.write(output.velocity);
     run.peak_force_N = std::max(run.peak_force_N, output.contact.force_sensor_N);
-    run.final_force_N = output.contact.force_sensor_N;
-    if (cycle >= rest_from) last_forces.add(run.final_force_N);
+    if (cycle >= rest_from) {
+      last_readings.add(output.contact.force_sensor_N);
+      last_forces.add(robot.trueForce_N());
+    }
     if (run.touch_speed_m_per_s > 0.0) continue;
     const double way_m = probe.penetration_m(input.q_measured, t_s);
     if (depth_m && way_m > *depth_m) {
@@ -84,6 +90,7 @@ JudgedRun judgeRun(const RunSetup& setup) {
     depth_m.reset();
     if (way_m > 0.0) depth_m = way_m;
   }
+  run.final_force_N = last_readings.mean;
   run.restlessness_N = last_forces.deviation();
   run.fault = output.fault;
   return run;
@@ -104,7 +111,8 @@ double naturalScale(const RunSetup& setup, const JudgedRun& run) {
   const double stiffness =
       contactStiffness(setup.plant.obstacles.back(), setup.plant.robot_stiffness_N_per_m);
   const double unseen_N = stiffness * run.touch_speed_m_per_s * feedbackDelay_s(setup.plant);
-  return force.contact_threshold_N + std::max(force.activation_force_N, run.touch_force_N + unseen_N);
+  return force.contact_threshold_N +
+         std::max(force.activation_force_N, run.touch_force_N + unseen_N);
 }
 
 }  // namespace tactus

@@ -8,8 +8,8 @@
 namespace tactus {
 namespace {
 
-constexpr std::array kBands = {0.0, 10.0, 30.0, 60.0, 200.0, 600.0};         // N/m
-constexpr std::array kProfiles = {3e3, 7e3, 17e3, 1e5, 1e6};                 // N/m
+constexpr std::array kBands = {0.0, 10.0, 30.0, 60.0, 200.0, 600.0};  // N/m
+constexpr std::array kProfiles = {3e3, 7e3, 17e3, 1e5, 1e6};          // N/m
 constexpr std::array kSpeedFactors = {0.5, 1.0, 2.4, 5.0};
 constexpr double kSettling_s = 4.5;  ///< after the motion's end
 

@@ -43,17 +43,15 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
                                const CommandedMotion& commanded, double period_s,
                                ContactControllerState& state, ContactReport& report,
                                Motion& motion) const noexcept {
-  if (joint_space_transition_)
-    joint_space_transition_->follow(sensor, period_s, state.joint_space_transition);
-  const Contact contact =
-      locate(kinematics, joint_space_transition_ ? state.joint_space_transition.contact : sensor);
+  const Contact contact = locate(kinematics, follow(sensor, period_s, state));
 
   ControlLawInput input;
   input.F_p_N = std::max(0.0, sensor.force_N - config_.contact_threshold_N);
-  const ApproachContact approach{contact.a, input.F_p_N, sensor.is_new};
   if (approach_limit_) {
-    input.F_ahead_N = approach_limit_->observe(approach, commanded.q, period_s, state.approach);
+    input.F_ahead_N =
+        approach_limit_->observe(contact.a, input.F_p_N, commanded.q, period_s, state.approach);
     input.stiffness_N_per_m = state.approach.estimator.stiffness_N_per_m;
+    input.hold_integral = state.approach.is_limiting;
     report.stiffness_raw_N_per_m = state.approach.estimator.stiffness_raw_N_per_m;
   } else {
     input.F_ahead_N = input.F_p_N;
@@ -75,7 +73,7 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
     const ContactSpace& space = contact.space;
     const double v_res =
         space.a_task.dot(motion.y) + space.a_scaled.dot(motion.v_scaled) - space.k_n * u.u_n;
-    u.u_t = approach_limit_->excess(approach, v_res, state.approach) *
+    u.u_t = approach_limit_->excess(input.F_p_N, v_res, state.approach) *
             invertRegularised(space.k_t, space.k_j);
   }
 
@@ -91,6 +89,17 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
   report.u_n = u.u_n;
   report.u_j = u.u_j;
   report.u_t = u.u_t;
+}
+
+const ContactPointState& ContactController::follow(const ContactPointState& sensor, double period_s,
+                                                   ContactControllerState& state) const noexcept {
+  if (joint_space_transition_) {
+    joint_space_transition_->follow(sensor, period_s, state.joint_space_transition);
+    return state.joint_space_transition.contact;
+  }
+  if (!approach_limit_) return sensor;
+  approach_limit_->follow(sensor, state.approach);
+  return state.approach.smoother.contact;
 }
 
 ContactController::Contact ContactController::locate(

@@ -76,7 +76,7 @@ void ControlLaw::update(const ControlLawInput& input, const ContactSpace& space,
   if (config_.order == 1) return;
   const double rate =
       period_s / (config_.time_constant_s * config_.time_constant_s * input.stiffness_N_per_m);
-  if (!limited) state.V_m_per_s += rate * input.F_p_N;
+  if (!limited && !input.hold_integral) state.V_m_per_s += rate * input.F_p_N;
   state.It_m_per_s =
       std::max(0.0, state.It_m_per_s + rate * (input.F_p_N - config_.activation_force_N));
 }

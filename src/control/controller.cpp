@@ -178,17 +178,20 @@ void Controller::computeKinematics(double t_s, const ControllerState& state,
 Fault Controller::readTactileModule(const RobotInput& input, double period_s,
                                     ControllerState& state) const noexcept {
   const TactileModuleConfig& module = *config_.tactile_module;
-  state.contact_point.is_new = false;
+  state.contact_point.interval_s = 0.0;
   if (input.tactile.sequence == state.sample_sequence) {
     state.sample_age_s += period_s;
     return state.sample_age_s > module.max_sample_age_s ? Fault::kTactileStale : state.sample_fault;
   }
   state.sample_sequence = input.tactile.sequence;
+  const double interval_s = state.sample_age_s + period_s;
   state.sample_age_s = 0.0;
   const bool is_valid = isValid(input.tactile, module);
   state.sample_fault = is_valid ? Fault::kNone : Fault::kTactileInvalid;
-  if (is_valid) locateContact(input.tactile, module.length_m, state.contact_point);
-  state.contact_point.is_new = is_valid;
+  if (is_valid) {
+    locateContact(input.tactile, module.length_m, state.contact_point);
+    state.contact_point.interval_s = interval_s;
+  }
   return state.sample_fault;
 }
 

@@ -9,14 +9,21 @@ struct ApproachEstimatorState {
   double stiffness_raw_N_per_m = 0.0;  ///< r: the newest quotient; likewise
   double x_m = 0.0;                    ///< way since F_ref, as sensed; > 0 towards the obstacle
   double F_ref_N = 0.0;
-  double F_before_N = 0.0;  ///< F_p of the sample before
-  double since_sample_s = 0.0;
+  double F_before_N = 0.0;  ///< F_p of the newest sample
+};
+
+/// A force sample in contact, and the way that led to it.
+struct ApproachSample {
+  double F_p_N = 0.0;          ///< > 0
+  double dx_m = 0.0;           ///< as sensed, since the sample before, towards the obstacle
+  double interval_s = 0.0;     ///< since the sample before
+  double significant_N = 0.0;  ///< F_min: a smaller change of force is noise
 };
 
 // clang-format off: equations
 /// Stiffness for the approach-speed limit, a quotient of force and way as sensed, where a mistake
-/// costs least: c rises at once, and falls slowly and only far from F_act. At each force sample,
-/// with dx the way since the one before it and kappa = 1 - exp(-dt / T_est):
+/// costs least: c rises at once, and falls slowly and only far from F_act. At each force sample in
+/// contact, with kappa = 1 - exp(-dt / T_est):
 ///   turned (dx x < 0):  x = 0, F_ref = F_p of the sample before
 ///   x += dx,  dF = F_p - F_ref
 ///   dx > 0, dF > F_min:   r = dF / max(x, x_min);  c = r if r > c,
@@ -36,16 +43,17 @@ class ApproachEstimator {
         assumed_N_per_m_(assumed_stiffness_N_per_m),
         far_from_activation_N_(0.5 * activation_force_N) {}
 
-  /// dx_m: way of the contact point towards the obstacle between the two newest samples, as sensed;
-  /// only read if is_new_sample.
-  void update(double F_p_N, double dx_m, bool is_new_sample, double period_s,
-              ApproachEstimatorState& state) const noexcept;
+  void touch(const ApproachSample& sample, ApproachEstimatorState& state) const noexcept;
+
+  /// A cycle without contact.
+  void release(double period_s, ApproachEstimatorState& state) const noexcept;
 
  private:
-  void load(double F_p_N, double dF_N, double share, ApproachEstimatorState& state) const noexcept;
-  void unload(double F_p_N, double dF_N, double share,
-              ApproachEstimatorState& state) const noexcept;
-  double clamp(double stiffness_N_per_m) const noexcept;
+  void load(const ApproachSample& sample, ApproachEstimatorState& state) const noexcept;
+  void unload(const ApproachSample& sample, ApproachEstimatorState& state) const noexcept;
+  /// r = stiffness, clamped; c falls towards it.
+  void fall(double stiffness_N_per_m, double interval_s,
+            ApproachEstimatorState& state) const noexcept;
 
   StiffnessEstimatorConfig config_;
   double assumed_N_per_m_;

@@ -3,31 +3,27 @@
 #include <optional>
 
 #include "tactus/control/approach_estimator.h"
+#include "tactus/control/contact_smoother.h"
 #include "tactus/control/sensed_position.h"
 
 namespace tactus {
 
 struct ApproachLimitState {
+  ContactSmootherState smoother;
   SensedPositionState position;
   ApproachEstimatorState estimator;
   double memory_N_per_m = 0.0;  ///< m; 0: no limit
   double way_ahead_m = 0.0;     ///< e
-};
-
-/// What the law knows of the contact in this cycle.
-struct ApproachContact {
-  const JointVector& a;  ///< J_p^T F^
-  double F_p_N = 0.0;
-  bool is_new_sample = false;
+  bool is_limiting = false;     ///< the residual motion was cut in the last cycle
 };
 
 // clang-format off: equations
-/// The approach-speed limit. While the contact point approaches at v, contact behind a stiffness
-/// c_e obeys dF/dt = c_e v. So let it approach no faster than
+/// The approach-speed limit. While the contact point approaches at v, contact of stiffness c_e
+/// obeys dF/dt = c_e v. So let it approach no faster than
 ///   v_max = (F_act - F^) / (T m)
 /// and for m = c_e the force follows dF/dt = -(F - F_act) / T at most: it settles at F_act without
-/// overshoot, whatever pushes the arm on. m >= c_e / 7.5 keeps that loop stable with the filter,
-/// sample hold and drive lag of the default robot; see docs/approach_speed_limit.md.
+/// overshoot, whatever pushes the arm on. The derivation, and how small m may be, are in
+/// docs/approach_speed_limit.md.
 ///   F^ = max(0, F_p + m e),   e = -a^T (q_d - q_f): the way that no sample has told of yet
 ///   m  = max(c, c_floor) in contact, fading with T_m after it
 /// What the rest of (1) would do, v_res = a^T (J# w_eff - N (b u_n + alpha W^-1 dH/dq)) with
@@ -41,16 +37,24 @@ class ApproachLimit {
 
   ApproachLimitState initialState() const noexcept;
 
-  /// Returns max(0, F_p + c e), N.
-  double observe(const ApproachContact& contact, const JointVector& q_desired, double period_s,
+  /// Takes over a sensor's reading; the contact to use is state.smoother.contact.
+  void follow(const ContactPointState& sensor, ApproachLimitState& state) const noexcept;
+
+  /// a: J_p^T F^ of that contact; q_desired: at the start of the cycle. Returns max(0, F_p + c e):
+  /// the force, ahead of the sample, N.
+  double observe(const JointVector& a, double F_p_N, const JointVector& q_desired, double period_s,
                  ApproachLimitState& state) const noexcept;
 
-  /// min(0, v_res + v_max); call after observe().
-  double excess(const ApproachContact& contact, double v_res_m_per_s,
-                const ApproachLimitState& state) const noexcept;
+  /// min(0, v_res + v_max), m/s; after observe().
+  double excess(double F_p_N, double v_res_m_per_s, ApproachLimitState& state) const noexcept;
 
  private:
+  void estimate(const JointVector& a, double F_p_N, double period_s,
+                ApproachLimitState& state) const noexcept;
+
   ForceControlConfig config_;
+  double middle_m_;  ///< of the cover
+  ContactSmoother smoother_;
   SensedPosition position_;
   std::optional<ApproachEstimator> estimator_;
 };

@@ -58,6 +58,9 @@ class ContactController {
  private:
   struct Contact;
 
+  /// The contact that the law uses: as read, or smoothed by a stage.
+  const ContactPointState& follow(const ContactPointState& sensor, double period_s,
+                                  ContactControllerState& state) const noexcept;
   Contact locate(const TaskKinematics& kinematics, const ContactPointState& point) const noexcept;
   void passTransition(const Contact& contact, double period_s, ContactControllerState& state,
                       ContactReport& report, ControlLawInput& input) const noexcept;

@@ -10,7 +10,9 @@ struct ContactPointState {
   double force_N = 0.0;                 ///< F_sen
   double position_m = 0.0;              ///< x of the contact on the link's axis
   Vector3 direction = Vector3::Zero();  ///< F^, unit force on the robot; zero before any contact
-  bool is_new = false;                  ///< of a sample that has arrived since the last cycle
+  double interval_s = 0.0;              ///< from the sample before to this one; 0: it is not new
+
+  bool isNew() const noexcept { return interval_s > 0.0; }
 };
 
 /// Force below which point and direction of contact are noise; the last ones stay.

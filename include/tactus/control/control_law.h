@@ -17,6 +17,7 @@ struct ControlLawInput {
   double x_dot_ff_m_per_s = 0.0;   ///< gamma min(x_dot_eff, 0)
   double integral_decay = 1.0;     ///< of V in this cycle, from the contact transition
   double integral_share = 1.0;     ///< of V that acts, likewise
+  bool hold_integral = false;      ///< V holds: another space does its work
 };
 
 /// Scalar controller outputs, 1/(m s) each: u_q = b u moves the contact point by -k u.
