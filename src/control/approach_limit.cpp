@@ -18,8 +18,8 @@ double approach(const JointVector& a, const ScaledVector& from, const ScaledVect
 
 ApproachLimit::ApproachLimit(const ControllerConfig& config)
     : config_(*config.force_control),
-      middle_m_(0.5 * config.tactile_module->length_m),
-      smoother_(config_.estimator.value_or(StiffnessEstimatorConfig{}).min_force_change_N),
+      smoother_(config_.estimator.value_or(StiffnessEstimatorConfig{}).min_force_change_N,
+                config.tactile_module->length_m),
       position_(config.drive_lag_s, config.tactile_module->filter_cutoff_hz) {
   if (config_.estimator) {
     estimator_.emplace(*config_.estimator, config_.assumed_stiffness_N_per_m,
@@ -29,7 +29,7 @@ ApproachLimit::ApproachLimit(const ControllerConfig& config)
 
 ApproachLimitState ApproachLimit::initialState() const noexcept {
   ApproachLimitState state;
-  state.smoother = smoother_.initialState(middle_m_);
+  state.smoother = smoother_.initialState();
   state.estimator.stiffness_N_per_m = config_.assumed_stiffness_N_per_m;
   state.estimator.stiffness_raw_N_per_m = config_.assumed_stiffness_N_per_m;
   return state;

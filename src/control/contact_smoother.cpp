@@ -1,23 +1,24 @@
 #include "tactus/control/contact_smoother.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tactus/math/filter.h"
 
 namespace tactus {
 namespace {
 
-constexpr double kSmoothing_s = 0.2;           ///< T_s
+constexpr double kSmoothing_s = 0.2;           ///< T_s           ///< T_s
 constexpr double kLearning = 0.01;             ///< a sample: settles within half a second at 4 ms
 constexpr double kMedianOfNoise = 0.48;        ///< of |d2| / s: sqrt(2 ln 2) sqrt(6) / 6
 constexpr double kMaxSignificantRatio = 10.0;  ///< s / s_min; more would be no sensor
 
 }  // namespace
 
-ContactSmootherState ContactSmoother::initialState(double position_m) const noexcept {
+ContactSmootherState ContactSmoother::initialState() const noexcept {
   ContactSmootherState state;
   state.significant_N = min_significant_N_;
-  state.contact.position_m = position_m;
+  state.contact.position_m = half_length_m_;
   return state;
 }
 
@@ -38,19 +39,22 @@ void ContactSmoother::update(const ContactPointState& sensor,
   contact.force_N = sensor.force_N;
   contact.interval_s = sensor.interval_s;
   if (!sensor.isNew()) return;
-  const Vector3 force_N = sensor.force_N * sensor.direction;
-  learnNoise(force_N, state);
-  const Vector3 change_N = force_N - state.force_N;
-  const double slow = lagShare(sensor.interval_s, kSmoothing_s);
-  const double noise = state.significant_N * state.significant_N;
-  const double share = 1.0 - (1.0 - slow) * std::min(1.0, noise / change_N.squaredNorm());
-  state.force_N += share * change_N;
-  state.magnitude_N += share * (sensor.force_N - state.magnitude_N);
-  state.leverage_Nm += share * (sensor.force_N * sensor.position_m - state.leverage_Nm);
-  const double length_N = state.force_N.norm();
-  if (length_N <= kMinForceForDirection_N) return;
-  contact.direction = state.force_N / length_N;
-  contact.position_m = state.leverage_Nm / state.magnitude_N;
+  learnNoise(sensor.force_N * sensor.direction, state);
+  const double weight = sensor.force_N * sensor.force_N;
+  state.weight *= 1.0 - lagShare(sensor.interval_s, kSmoothing_s);
+  state.weight += weight;
+  if (!(state.weight > kMinForceForDirection_N * kMinForceForDirection_N)) return;
+  const Vector3 turn = sensor.direction - contact.direction;
+  const double shift_m = sensor.position_m - contact.position_m;
+  const double shift = shift_m / half_length_m_;
+  const double d_N = sensor.force_N * std::sqrt(turn.squaredNorm() + shift * shift);
+  const double slow = weight / state.weight;
+  const double ratio = state.significant_N / d_N;
+  const double share = 1.0 - (1.0 - slow) * std::min(1.0, ratio * ratio);
+  contact.position_m += share * shift_m;
+  contact.direction += share * turn;
+  const double length = contact.direction.norm();
+  if (length > 0.0) contact.direction /= length;
 }
 
 }  // namespace tactus

@@ -145,6 +145,15 @@ void checkDuration(const Checked& c) {
   }
 }
 
+void checkSimulatedModule(const Checked& c) {
+  const std::string key = "simulation.tactile_module.filter_cutoff_hz";
+  const double limit_hz = 0.5 * c.draft.plant.module.filter_rate_hz;
+  if (findGiven(c.root, key) && c.draft.simulated_filter_cutoff_hz >= limit_hz) {
+    c.fail(key, fmt::format("{} Hz is too high", c.draft.simulated_filter_cutoff_hz),
+           fmt::format("less than half the filter's rate, {} Hz", limit_hz));
+  }
+}
+
 /// The simulated module filters a whole number of times a cycle, or once in a whole number of them.
 void checkPeriod(const Checked& c) {
   if (!findGiven(c.root, "controller")) return;
@@ -201,6 +210,7 @@ void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobo
   checkController(checked);
   checkDuration(checked);
   checkPeriod(checked);
+  checkSimulatedModule(checked);
   checkStiffness(checked);
   checkObstacles(checked);
 }

@@ -93,6 +93,15 @@ ControllerConfig makeController(const YamlNode& root, const ConfigDraft& draft,
   return config;
 }
 
+/// The robot as it is simulated, which may differ from the one that the controller reckons with.
+PlantConfig makePlant(const YamlNode& root, const ConfigDraft& draft) {
+  PlantConfig plant = draft.plant;
+  if (findGiven(root, "simulation.drive_lag_s")) plant.drive_lag_s = draft.simulated_drive_lag_s;
+  if (findGiven(root, "simulation.tactile_module.filter_cutoff_hz"))
+    plant.module.filter_cutoff_hz = draft.simulated_filter_cutoff_hz;
+  return plant;
+}
+
 /// What the scene needs of the robot's hardware: without a controller, the module is not read.
 std::optional<HardwareConfig> chooseHardware(const YamlNode& root, const LoadedRobot& robot) {
   if (!robot.hardware || findGiven(root, "controller")) return robot.hardware;
@@ -127,7 +136,7 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, Scen
                .period_s = draft.period_s,
                .duration_s = draft.duration_s,
                .stiffest_N_per_m = draft.stiffest_N_per_m,
-               .plant = draft.plant,
+               .plant = makePlant(root, draft),
                .robot_name = robot.chain.robot_name,
                .joint_names = robot.chain.joint_names,
                .sources = reader.files(),

@@ -69,8 +69,16 @@ KeySpec simulationSection() {
       {
           number("duration_s", "s", above(0, kMaxTime_s), "length of the run",
                  [](Draft& d) -> double& { return d.duration_s; }),
+          optional(number("drive_lag_s", "s", within(0, 1),
+                          "lag of the simulated drives; absent: as robot.yaml says",
+                          [](Draft& d) -> double& { return d.simulated_drive_lag_s; })),
           defaulted("", section("tactile_module", "imperfections of the simulated tactile module",
                                 {
+                                    optional(number("filter_cutoff_hz", "Hz", within(0.1, 1e5),
+                                                    "of its filter; absent: as robot.yaml says",
+                                                    [](Draft& d) -> double& {
+                                                      return d.simulated_filter_cutoff_hz;
+                                                    })),
                                     defaulted("true", boolean("quantised", "24-bit channels",
                                                               [](Draft& d) -> bool& {
                                                                 return d.plant.module.quantised;

@@ -10,7 +10,7 @@ std::vector<std::string> stageNames(const ControllerConfig& config) {
     names.insert(names.end(), {"contact_space", "contact_transition", "control_law"});
     if (config.force_control->estimator) names.push_back("stiffness_estimator");
     if (config.force_control->variant == Variant::kNullLimit) {
-      names.insert(names.end(), {"sensed_position", "approach_limit"});
+      names.push_back("approach_limit");
     }
   }
   names.insert(names.end(), {"limits", "telemetry"});

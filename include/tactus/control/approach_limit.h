@@ -53,7 +53,6 @@ class ApproachLimit {
                 ApproachLimitState& state) const noexcept;
 
   ForceControlConfig config_;
-  double middle_m_;  ///< of the cover
   ContactSmoother smoother_;
   SensedPosition position_;
   std::optional<ApproachEstimator> estimator_;
