@@ -19,13 +19,13 @@ void rearm(double F_p_N, ApproachEstimatorState& state) {
 
 }  // namespace
 
-void ApproachEstimator::fall(double stiffness_N_per_m, double interval_s,
-                             ApproachEstimatorState& state) const noexcept {
+void ApproachEstimator::learn(double stiffness_N_per_m, double falling_s,
+                              ApproachEstimatorState& state) const noexcept {
   const double r = std::clamp(stiffness_N_per_m, config_.min_N_per_m, config_.max_N_per_m);
   state.stiffness_raw_N_per_m = r;
   if (r < state.stiffness_N_per_m) {
     state.stiffness_N_per_m +=
-        lagShare(interval_s, config_.filter_time_constant_s) * (r - state.stiffness_N_per_m);
+        lagShare(falling_s, config_.filter_time_constant_s) * (r - state.stiffness_N_per_m);
   }
 }
 
@@ -34,14 +34,16 @@ void ApproachEstimator::load(const ApproachSample& sample,
   const bool is_far = sample.F_p_N < far_from_activation_N_;
   const double dF_N = sample.F_p_N - state.F_ref_N;
   if (dF_N > sample.significant_N) {
-    const double r = dF_N / std::max(state.x_m, kMinWay_m);
-    fall(r, is_far ? sample.interval_s : 0.0, state);
+    // Over too short a way r is a lower bound: nothing that c could fall to.
+    const bool is_known = state.x_m > kMinWay_m;
+    learn(dF_N / std::max(state.x_m, kMinWay_m), is_known && is_far ? sample.interval_s : 0.0,
+          state);
     state.stiffness_N_per_m = std::max(state.stiffness_N_per_m, state.stiffness_raw_N_per_m);
-    if (state.x_m > kMinWay_m) rearm(sample.F_p_N, state);
+    if (is_known) rearm(sample.F_p_N, state);
   } else if (dF_N < -sample.significant_N) {
     rearm(sample.F_p_N, state);
   } else if (is_far && state.x_m > kMinWay_m) {
-    fall((std::max(dF_N, 0.0) + sample.significant_N) / state.x_m, sample.interval_s, state);
+    learn((std::max(dF_N, 0.0) + sample.significant_N) / state.x_m, sample.interval_s, state);
   }
 }
 
@@ -49,7 +51,7 @@ void ApproachEstimator::unload(const ApproachSample& sample,
                                ApproachEstimatorState& state) const noexcept {
   const double dF_N = sample.F_p_N - state.F_ref_N;
   if (dF_N < -sample.significant_N && state.x_m < -kMinWay_m) {
-    fall(dF_N / state.x_m, sample.interval_s, state);
+    learn(dF_N / state.x_m, sample.interval_s, state);
     rearm(sample.F_p_N, state);
   } else if (dF_N > sample.significant_N) {
     rearm(sample.F_p_N, state);

@@ -7,6 +7,9 @@
 namespace tactus {
 namespace {
 
+/// A smaller memory limits nothing that an arm could do, and would fade for minutes.
+constexpr double kNoMemory_N_per_m = 1e-3;
+
 /// -a^T (to - from): way towards the obstacle.
 double approach(const JointVector& a, const ScaledVector& from, const ScaledVector& to) {
   double way = 0.0;
@@ -19,7 +22,7 @@ double approach(const JointVector& a, const ScaledVector& from, const ScaledVect
 ApproachLimit::ApproachLimit(const ControllerConfig& config)
     : config_(*config.force_control),
       smoother_(config_.estimator.value_or(StiffnessEstimatorConfig{}).min_force_change_N,
-                config.tactile_module->length_m),
+                config_.contact_threshold_N, config.tactile_module->length_m),
       position_(config.drive_lag_s, config.tactile_module->filter_cutoff_hz) {
   if (config_.estimator) {
     estimator_.emplace(*config_.estimator, config_.assumed_stiffness_N_per_m,
@@ -52,19 +55,18 @@ void ApproachLimit::estimate(const JointVector& a, double F_p_N, double period_s
   }
 }
 
-double ApproachLimit::observe(const JointVector& a, double F_p_N, const JointVector& q_desired,
-                              double period_s, ApproachLimitState& state) const noexcept {
-  const ApproachLimitConfig& limit = config_.approach_limit;
+void ApproachLimit::observe(const JointVector& a, double F_p_N, const JointVector& q_desired,
+                            double period_s, ApproachLimitState& state) const noexcept {
   position_.update(q_desired, state.smoother.contact.isNew(), period_s, state.position);
   if (estimator_) estimate(a, F_p_N, period_s, state);
   const double c = state.estimator.stiffness_N_per_m;
   if (F_p_N > 0.0) {
-    state.memory_N_per_m = std::max(c, limit.min_stiffness_N_per_m);
+    state.memory_N_per_m = std::max(c, config_.min_approach_stiffness_N_per_m);
   } else {
-    state.memory_N_per_m -= lagShare(period_s, limit.memory_s) * state.memory_N_per_m;
+    state.memory_N_per_m -= lagShare(period_s, config_.time_constant_s) * state.memory_N_per_m;
+    if (state.memory_N_per_m < kNoMemory_N_per_m) state.memory_N_per_m = 0.0;
   }
   state.way_ahead_m = approach(a, state.position.sensed, state.position.commanded);
-  return std::max(0.0, F_p_N + c * state.way_ahead_m);
 }
 
 double ApproachLimit::excess(double F_p_N, double v_res_m_per_s,

@@ -48,13 +48,11 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
   ControlLawInput input;
   input.F_p_N = std::max(0.0, sensor.force_N - config_.contact_threshold_N);
   if (approach_limit_) {
-    input.F_ahead_N =
-        approach_limit_->observe(contact.a, input.F_p_N, commanded.q, period_s, state.approach);
+    approach_limit_->observe(contact.a, input.F_p_N, commanded.q, period_s, state.approach);
     input.stiffness_N_per_m = state.approach.estimator.stiffness_N_per_m;
     input.hold_integral = state.approach.is_limiting;
     report.stiffness_raw_N_per_m = state.approach.estimator.stiffness_raw_N_per_m;
   } else {
-    input.F_ahead_N = input.F_p_N;
     if (estimator_) {
       const double approach_m_per_s = -contact.a.dot(commanded.velocity);  // (15)
       estimator_->update(input.F_p_N, approach_m_per_s, period_s, state.estimator);

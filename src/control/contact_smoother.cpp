@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kSmoothing_s = 0.2;           ///< T_s           ///< T_s
 constexpr double kLearning = 0.01;             ///< a sample: settles within half a second at 4 ms
+constexpr double kGrowth = 1.2;                ///< of force from sample to sample in an impact
 constexpr double kMedianOfNoise = 0.48;        ///< of |d2| / s: sqrt(2 ln 2) sqrt(6) / 6
 constexpr double kMaxSignificantRatio = 10.0;  ///< s / s_min; more would be no sensor
 
@@ -39,11 +40,12 @@ void ContactSmoother::update(const ContactPointState& sensor,
   contact.force_N = sensor.force_N;
   contact.interval_s = sensor.interval_s;
   if (!sensor.isNew()) return;
+  const bool grows = sensor.force_N > kGrowth * state.force_before_N.norm();
   learnNoise(sensor.force_N * sensor.direction, state);
   const double weight = sensor.force_N * sensor.force_N;
   state.weight *= 1.0 - lagShare(sensor.interval_s, kSmoothing_s);
-  state.weight += weight;
-  if (!(state.weight > kMinForceForDirection_N * kMinForceForDirection_N)) return;
+  if (sensor.force_N <= contact_threshold_N_ || weight == 0.0) return;
+  state.weight = grows ? weight : state.weight + weight;
   const Vector3 turn = sensor.direction - contact.direction;
   const double shift_m = sensor.position_m - contact.position_m;
   const double shift = shift_m / half_length_m_;

@@ -25,7 +25,7 @@ double ControlLaw::proportionalGain(double stiffness_N_per_m) const noexcept {
 
 double ControlLaw::singleSpace(const ControlLawInput& input,
                                const ControlLawState& state) const noexcept {
-  return input.x_dot_ff_m_per_s - proportionalGain(input.stiffness_N_per_m) * input.F_ahead_N -
+  return input.x_dot_ff_m_per_s - proportionalGain(input.stiffness_N_per_m) * input.F_p_N -
          input.integral_share * state.V_m_per_s;
 }
 

@@ -1,11 +1,15 @@
 #include "tactus/control/sensed_position.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "tactus/math/filter.h"
 
 namespace tactus {
 namespace {
+
+/// A cut-off above rate / pi is no filter for this cycle; its model would ring.
+constexpr double kMaxK = 1.0;
 
 /// One step of the 3rd-order Butterworth filter of filter.h for all joints, at the cycle's rate and
 /// without prewarping: K is rational in the period, and 15 Hz at 1 kHz is met to 0.1 %.
@@ -35,7 +39,8 @@ void SensedPosition::update(const JointVector& q_desired, bool is_new_sample, do
   for (int i = 0; i < q_desired.size(); ++i) state.commanded[i] = q_desired[i] - state.origin[i];
   state.lagged += lagShare(period_s, drive_lag_s_) * (state.commanded - state.lagged);
   ScaledVector filtered;
-  filter(state.lagged, std::numbers::pi * filter_cutoff_hz_ * period_s, state, filtered);
+  filter(state.lagged, std::min(kMaxK, std::numbers::pi * filter_cutoff_hz_ * period_s), state,
+         filtered);
   if (!is_new_sample) return;
   state.sensed_before = state.sensed;
   state.sensed = filtered;

@@ -127,23 +127,6 @@ KeySpec transitionSection() {
       });
 }
 
-KeySpec approachLimitSection() {
-  return section(
-      "approach_limit", "null_limit only: how fast contact is approached",
-      {
-          defaulted("300", number("min_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
-                                  "c_floor: on softer contact the arm is no faster than on this, "
-                                  "for what may be behind it",
-                                  [](Draft& d) -> double& {
-                                    return d.force.approach_limit.min_stiffness_N_per_m;
-                                  })),
-          defaulted("0.3",
-                    number("memory_s", "s", above(0, 100),
-                           "T_m: time constant with which the limit fades after contact",
-                           [](Draft& d) -> double& { return d.force.approach_limit.memory_s; })),
-      });
-}
-
 KeySpec controllerSection() {
   KeySpec variant = value(ValueType::kChoice, "variant", "",
                           "where the reaction to contact takes place; none: only measure",
@@ -179,8 +162,13 @@ KeySpec controllerSection() {
                                   "beta of joint_space in contact; drift_gain_per_s holds "
                                   "elsewhere",
                                   [](Draft& d) -> double& { return d.force.pull_gain_per_s; })),
+          defaulted(
+              "300",
+              number("min_approach_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                     "c_floor, null_limit only: softer contact is approached no faster "
+                     "than this, for what may be behind it",
+                     [](Draft& d) -> double& { return d.force.min_approach_stiffness_N_per_m; })),
           defaulted("", transitionSection()),
-          defaulted("", approachLimitSection()),
       });
 }
 

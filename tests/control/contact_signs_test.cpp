@@ -134,7 +134,7 @@ TEST_P(ContactSigns, CommandIsEquation1WithMatrices) {
 INSTANTIATE_TEST_SUITE_P(Variants, ContactSigns,
                          testing::Values(Variant::kNone, Variant::kNullSpace, Variant::kJointSpace,
                                          Variant::kTaskSpace, Variant::kNullTask,
-                                         Variant::kNullJoint));
+                                         Variant::kNullJoint, Variant::kNullLimit));
 
 TEST(ContactSigns, JointSpaceIsEquation6) {
   test::Random random(123);

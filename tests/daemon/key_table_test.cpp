@@ -93,6 +93,7 @@ TEST(KeyTable, DefaultsEqualThoseOfTheStructs) {
   EXPECT_EQ(force.transition.engage_force_N, force_default.transition.engage_force_N);
   EXPECT_EQ(force.transition.release_force_N, force_default.transition.release_force_N);
   EXPECT_EQ(force.transition.search_speed_m_per_s, force_default.transition.search_speed_m_per_s);
+  EXPECT_EQ(force.min_approach_stiffness_N_per_m, force_default.min_approach_stiffness_N_per_m);
   EXPECT_EQ(force.pull_gain_per_s, force_default.pull_gain_per_s);
   const StiffnessEstimatorConfig estimator_default;
   EXPECT_EQ(force.estimator->min_force_change_N, estimator_default.min_force_change_N);
@@ -113,6 +114,9 @@ TEST(KeyTable, DefaultsEqualThoseOfTheStructs) {
   const TactileModuleConfig module_default;
   EXPECT_EQ(scene.controller.tactile_module->max_force_N, module_default.max_force_N);
   EXPECT_EQ(scene.controller.tactile_module->max_sample_age_s, module_default.max_sample_age_s);
+  EXPECT_EQ(scene.controller.tactile_module->filter_cutoff_hz, module_default.filter_cutoff_hz);
+  EXPECT_EQ(scene.controller.drive_lag_s,
+            ControllerConfig{.chain = scene.controller.chain}.drive_lag_s);
   const PlantConfig plant_default;
   EXPECT_EQ(scene.plant.drive_lag_s, plant_default.drive_lag_s);
   EXPECT_EQ(scene.plant.module.filter_cutoff_hz, plant_default.module.filter_cutoff_hz);

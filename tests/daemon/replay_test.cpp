@@ -51,7 +51,7 @@ ReplayComparison compare(const ControllerConfig& config, const std::vector<Cycle
 
 TEST(Replay, OfEveryVariantIsEqualToTheBit) {
   for (const Variant variant : {Variant::kNullSpace, Variant::kJointSpace, Variant::kTaskSpace,
-                                Variant::kNullTask, Variant::kNullJoint}) {
+                                Variant::kNullTask, Variant::kNullJoint, Variant::kNullLimit}) {
     for (const bool estimated : {false, true}) {
       const ControllerConfig config = test::crops9Controller(variant, estimated);
       const auto records = record(config, 1500);

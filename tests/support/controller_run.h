@@ -105,8 +105,8 @@ inline std::vector<RecordedCycle> record(const Controller& controller, Random& r
   return run;
 }
 
-inline constexpr Variant kAllVariants[] = {Variant::kNone,       Variant::kNullSpace,
-                                           Variant::kJointSpace, Variant::kTaskSpace,
-                                           Variant::kNullTask,   Variant::kNullJoint};
+inline constexpr Variant kAllVariants[] = {
+    Variant::kNone,     Variant::kNullSpace, Variant::kJointSpace, Variant::kTaskSpace,
+    Variant::kNullTask, Variant::kNullJoint, Variant::kNullLimit};
 
 }  // namespace tactus::test

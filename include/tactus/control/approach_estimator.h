@@ -27,8 +27,8 @@ struct ApproachSample {
 ///   turned (dx x < 0):  x = 0, F_ref = F_p of the sample before
 ///   x += dx,  dF = F_p - F_ref
 ///   dx > 0, dF > F_min:   r = dF / max(x, x_min);  c = r if r > c,
-///                         c += kappa (r - c) else and only if F_p < F_act / 2;
-///                         re-armed (x = 0, F_ref = F_p) if x > x_min
+///                         if x > x_min: c += kappa (r - c) else, but only if F_p < F_act / 2,
+///                         and re-armed (x = 0, F_ref = F_p)
 ///   dx > 0, |dF| <= F_min, x > x_min, F_p < F_act / 2:
 ///                         r = (max(dF, 0) + F_min) / x is an upper bound: c falls towards it
 ///   dx <= 0, dF < -F_min, x < -x_min:   r = dF / x: c falls towards it;  re-armed
@@ -51,9 +51,9 @@ class ApproachEstimator {
  private:
   void load(const ApproachSample& sample, ApproachEstimatorState& state) const noexcept;
   void unload(const ApproachSample& sample, ApproachEstimatorState& state) const noexcept;
-  /// r = stiffness, clamped; c falls towards it.
-  void fall(double stiffness_N_per_m, double interval_s,
-            ApproachEstimatorState& state) const noexcept;
+  /// r = stiffness, clamped; c falls towards it for falling_s.
+  void learn(double stiffness_N_per_m, double falling_s,
+             ApproachEstimatorState& state) const noexcept;
 
   StiffnessEstimatorConfig config_;
   double assumed_N_per_m_;

@@ -25,7 +25,7 @@ struct ApproachLimitState {
 /// overshoot, whatever pushes the arm on. The derivation, and how small m may be, are in
 /// docs/approach_speed_limit.md.
 ///   F^ = max(0, F_p + m e),   e = -a^T (q_d - q_f): the way that no sample has told of yet
-///   m  = max(c, c_floor) in contact, fading with T_m after it
+///   m  = max(c, c_floor) in contact, fading with T after it
 /// What the rest of (1) would do, v_res = a^T (J# w_eff - N (b u_n + alpha W^-1 dH/dq)) with
 /// v_res < 0 towards the obstacle, is cut by exactly the excess:
 ///   u_t = min(0, v_res + v_max) / k_t
@@ -40,10 +40,9 @@ class ApproachLimit {
   /// Takes over a sensor's reading; the contact to use is state.smoother.contact.
   void follow(const ContactPointState& sensor, ApproachLimitState& state) const noexcept;
 
-  /// a: J_p^T F^ of that contact; q_desired: at the start of the cycle. Returns max(0, F_p + c e):
-  /// the force, ahead of the sample, N.
-  double observe(const JointVector& a, double F_p_N, const JointVector& q_desired, double period_s,
-                 ApproachLimitState& state) const noexcept;
+  /// a: J_p^T F^ of that contact; q_desired: at the start of the cycle.
+  void observe(const JointVector& a, double F_p_N, const JointVector& q_desired, double period_s,
+               ApproachLimitState& state) const noexcept;
 
   /// min(0, v_res + v_max), m/s; after observe().
   double excess(double F_p_N, double v_res_m_per_s, ApproachLimitState& state) const noexcept;

@@ -20,16 +20,21 @@ struct ContactSmootherState {
 /// Noise is told from signal by the second difference d2 of the force: the module's filter makes it
 /// small for every real force. Its median is 2.88 sigma for noise alone, tracked by
 ///   s = 6 sigma:  s rises by 1 % if |d2| > 0.48 s, and else falls by 1 %;  at least s_min
-/// A sample moves x and F^ by the share g of the difference. Smaller than s, measured as a force,
-/// it is smoothed with T_s = 0.2 s; what is larger is followed at once:
-///   g = max(g_s, 1 - (1 - g_s) (s / d)^2),   d = F |(dF^, dx / (L / 2))|
-/// A force below s says nothing of either.
+/// x and F^ are means of the samples of the last T_s = 0.2 s, weighed by F^2 as their errors go
+/// with 1 / F. In an impact, where F grows by a fifth from one sample to the next, the newest is
+/// all that counts; and a difference d from the mean that is larger than s, measured as a force, is
+/// followed at once:
+///   W = W exp(-dt / T_s) + F^2,   g = 1 - (1 - F^2 / W) min(1, (s / d)^2),
+///   d = F |(dF^, dx / (L / 2))|,   x += g dx,  F^ += g dF^
+/// A force up to F_th says nothing of either.
 // clang-format on
 class ContactSmoother {
  public:
-  /// min_significant_N: s_min; link_length_m: L, of the cover.
-  ContactSmoother(double min_significant_N, double link_length_m)
-      : min_significant_N_(min_significant_N), half_length_m_(0.5 * link_length_m) {}
+  /// min_significant_N: s_min; contact_threshold_N: F_th; link_length_m: L, of the cover.
+  ContactSmoother(double min_significant_N, double contact_threshold_N, double link_length_m)
+      : min_significant_N_(min_significant_N),
+        contact_threshold_N_(contact_threshold_N),
+        half_length_m_(0.5 * link_length_m) {}
 
   ContactSmootherState initialState() const noexcept;
 
@@ -40,6 +45,7 @@ class ContactSmoother {
   void learnNoise(const Vector3& force_N, ContactSmootherState& state) const noexcept;
 
   double min_significant_N_;
+  double contact_threshold_N_;
   double half_length_m_;
 };
 

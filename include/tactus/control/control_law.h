@@ -12,7 +12,6 @@ struct ControlLawState {
 
 struct ControlLawInput {
   double F_p_N = 0.0;
-  double F_ahead_N = 0.0;          ///< what P answers: F_p, or what it will be
   double stiffness_N_per_m = 0.0;  ///< c
   double x_dot_ff_m_per_s = 0.0;   ///< gamma min(x_dot_eff, 0)
   double integral_decay = 1.0;     ///< of V in this cycle, from the contact transition

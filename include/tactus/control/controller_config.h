@@ -64,12 +64,6 @@ struct ContactTransitionConfig {
   double search_speed_m_per_s = 0.01;  ///< v_search: joint space only, speed of the return
 };
 
-/// null_limit only; see approach_limit.h.
-struct ApproachLimitConfig {
-  double min_stiffness_N_per_m = 300.0;  ///< c_floor: softer contact is approached no faster
-  double memory_s = 0.3;                 ///< T_m
-};
-
 /// Algorithm 1; see stiffness_estimator.h. For null_limit see approach_estimator.h.
 struct StiffnessEstimatorConfig {
   double min_force_change_N = 0.2;       ///< F_est,min
@@ -80,17 +74,17 @@ struct StiffnessEstimatorConfig {
 
 struct ForceControlConfig {
   Variant variant = Variant::kNullSpace;
-  int order = 2;                            ///< of the target dynamics (4): 1 or 2
-  double time_constant_s = 0.1;             ///< T
-  double damping = 0.5;                     ///< d, second order only
-  double contact_threshold_N = 1.2;         ///< F_th
-  double activation_force_N = 3.8;          ///< F_act, multi-space variants and null_limit only
-  double max_null_speed_m_per_s = 5.0;      ///< limit of u_n,q for prismatic joints
-  double max_null_speed_rad_per_s = 5.0;    ///< and for revolute joints
-  double pull_gain_per_s = 500.0;           ///< beta of the pull, joint space only
-  double assumed_stiffness_N_per_m = 7000;  ///< c_0
+  int order = 2;                          ///< of the target dynamics (4): 1 or 2
+  double time_constant_s = 0.1;           ///< T
+  double damping = 0.5;                   ///< d, second order only
+  double contact_threshold_N = 1.2;       ///< F_th
+  double activation_force_N = 3.8;        ///< F_act, multi-space variants and null_limit only
+  double max_null_speed_m_per_s = 5.0;    ///< limit of u_n,q for prismatic joints
+  double max_null_speed_rad_per_s = 5.0;  ///< and for revolute joints
+  double pull_gain_per_s = 500.0;         ///< beta of the pull, joint space only
+  double min_approach_stiffness_N_per_m = 300.0;  ///< c_floor, null_limit only
+  double assumed_stiffness_N_per_m = 7000;        ///< c_0
   ContactTransitionConfig transition;
-  ApproachLimitConfig approach_limit;
   std::optional<StiffnessEstimatorConfig> estimator;
 };
 

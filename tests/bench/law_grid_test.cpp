@@ -1,0 +1,96 @@
+#include "tactus/bench/law_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/crops9.h"
+
+namespace tactus {
+namespace {
+
+RunSetup base() {
+  return {test::crops9Controller(Variant::kNullTask, true), test::crops9Plant(test::scenario2())};
+}
+
+TEST(LawGrid, HasEachCombinationOnce) {
+  const std::vector<LawGridPoint> points = lawGridPoints(7000.0);
+  EXPECT_EQ(points.size(), 240u);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      EXPECT_FALSE(points[i].band_N_per_m == points[k].band_N_per_m &&
+                   points[i].profile_N_per_m == points[k].profile_N_per_m &&
+                   points[i].robot_stiffness_N_per_m == points[k].robot_stiffness_N_per_m &&
+                   points[i].speed_factor == points[k].speed_factor);
+    }
+  }
+}
+
+TEST(LawGrid, APointChangesWhatItNamesOnly) {
+  const RunSetup setup = lawGridSetup(base(), {0.0, 1e5, kNoLimit, 2.0}, GridLaw::kAssumed);
+  ASSERT_EQ(setup.plant.obstacles.size(), 1u);
+  EXPECT_EQ(setup.plant.obstacles[0].stiffness_N_per_m, 1e5);
+  EXPECT_TRUE(setup.plant.obstacles[0].foam.empty());
+  EXPECT_EQ(setup.plant.obstacles[0].x_m, base().plant.obstacles[1].x_m);
+  EXPECT_EQ(setup.plant.robot_stiffness_N_per_m, kNoLimit);
+  EXPECT_DOUBLE_EQ(setup.controller.task.trajectory.waypoints[0].speed_m_per_s, 2.0 * 0.0537);
+  EXPECT_EQ(setup.controller.force_control->variant, Variant::kNullTask);
+  EXPECT_FALSE(setup.controller.force_control->estimator);
+  const RunSetup slow = lawGridSetup(base(), {60.0, 1e5, 7000.0, 0.5}, GridLaw::kLimited);
+  EXPECT_EQ(slow.plant.obstacles[0].stiffness_N_per_m, 60.0);
+  EXPECT_GT(slow.duration_s, 20.0) << "the motion alone takes 17 s";
+  EXPECT_EQ(slow.controller.force_control->variant, Variant::kNullLimit);
+  EXPECT_TRUE(slow.controller.force_control->estimator);
+}
+
+TEST(LawGrid, SeesTheTouchOfTheProfile) {
+  // Nothing reacts, so the speed of touch is that of the task, and the scale follows from it.
+  RunSetup setup = lawGridSetup(base(), {0.0, 3000.0, kNoLimit, 1.0}, GridLaw::kAssumed);
+  setup.controller.force_control->activation_force_N = 1e9;
+  setup.controller.force_control->max_null_speed_m_per_s = 1e-9;
+  setup.controller.force_control->max_null_speed_rad_per_s = 1e-9;
+  setup.duration_s = 8.0;
+  const JudgedRun run = judgeRun(setup);
+  EXPECT_GT(run.touch_speed_m_per_s, 0.02);
+  EXPECT_LT(run.touch_speed_m_per_s, 0.0537);
+  EXPECT_EQ(run.touch_force_N, 0.0);
+  setup.controller.force_control->activation_force_N = 0.1;
+  const double delay_s = 0.005 + 1.0 / (M_PI * 15.0) + 0.002;
+  EXPECT_NEAR(feedbackDelay_s(setup.plant), delay_s, 1e-12);
+  EXPECT_NEAR(naturalScale(setup, run), 1.2 + 3000.0 * run.touch_speed_m_per_s * delay_s, 1e-9);
+}
+
+TEST(LawGrid, JudgesRestByTheTrueForce) {
+  const JudgedRun bouncing =
+      judgeRun(lawGridSetup(base(), {0.0, 1e5, kNoLimit, 1.0}, GridLaw::kAssumed));
+  EXPECT_TRUE(bouncing.isRestless()) << "fourteen times as stiff as assumed";
+  const JudgedRun quiet =
+      judgeRun(lawGridSetup(base(), {0.0, 3000.0, 7000.0, 1.0}, GridLaw::kAssumed));
+  EXPECT_FALSE(quiet.isRestless());
+}
+
+/// The corners of the grid, where it is hardest.
+TEST(LawGrid, TheLimitPeaksNearTheNaturalScaleAndComesToRest) {
+  std::vector<LawGridRow> rows;
+  for (const LawGridPoint& point : lawGridPoints(7000.0)) {
+    const bool is_corner = (point.band_N_per_m == 0.0 || point.band_N_per_m == 30.0) &&
+                           (point.profile_N_per_m == 3e3 || point.profile_N_per_m >= 1e5) &&
+                           (point.speed_factor == 0.5 || point.speed_factor == 5.0);
+    if (is_corner) rows.push_back(runLawGridPoint(base(), point));
+  }
+  ASSERT_EQ(rows.size(), 24u);
+  const LawGridFigures limited = lawGridFigures(rows, GridLaw::kLimited);
+  EXPECT_EQ(limited.restless, 0);
+  EXPECT_GT(limited.final_min_N, 4.98);
+  EXPECT_LT(limited.final_max_N, 5.02);
+  EXPECT_LT(limited.peak_to_scale, 1.2);
+  EXPECT_LT(limited.peak_to_assumed, 1.05);
+  EXPECT_GT(lawGridFigures(rows, GridLaw::kAssumed).restless, 5);
+  const std::string csv = lawGridCsv(rows);
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 25);
+  EXPECT_EQ(std::ranges::count(csv.substr(0, csv.find('\n')), ','), 15);
+  EXPECT_EQ(std::ranges::count(csv, ','), 25 * 15);
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,123 @@
+#include "tactus/control/approach_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/random.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kAssumed = 7000.0;
+constexpr double kAct_N = 3.8;
+constexpr double kMin_N = 0.2;
+constexpr double kSample_s = 0.004;
+const double kKappa = 1.0 - std::exp(-kSample_s / 0.03);
+
+class ApproachEstimate : public testing::Test {
+ protected:
+  void touch(double F_p_N, double dx_m) {
+    estimator_.touch({F_p_N, dx_m, kSample_s, kMin_N}, state_);
+  }
+  double c() const { return state_.stiffness_N_per_m; }
+
+  ApproachEstimator estimator_{{}, kAssumed, kAct_N};
+  ApproachEstimatorState state_{kAssumed, kAssumed};
+};
+
+TEST_F(ApproachEstimate, RisesAtOnce) {
+  touch(0.1, 1e-6);
+  EXPECT_EQ(c(), kAssumed) << "no change of force that means anything";
+  touch(3.0, 99e-6);  // 3 N over 0.1 mm
+  EXPECT_NEAR(c(), 3e4, 1e-8);
+  EXPECT_EQ(state_.x_m, 0.0) << "re-armed";
+  EXPECT_EQ(state_.F_ref_N, 3.0);
+}
+
+TEST_F(ApproachEstimate, FallsSlowlyFarFromTheActivationForce) {
+  touch(0.5, 1e-3);  // 500 N/m
+  EXPECT_NEAR(c(), kAssumed + kKappa * (500.0 - kAssumed), 1e-9);
+  EXPECT_EQ(state_.stiffness_raw_N_per_m, 500.0);
+}
+
+TEST_F(ApproachEstimate, DoesNotFallWhileLoadedNearTheActivationForce) {
+  touch(0.5 * kAct_N, 1e-3);
+  EXPECT_EQ(c(), kAssumed);
+  EXPECT_EQ(state_.F_ref_N, 0.5 * kAct_N) << "re-armed all the same";
+}
+
+TEST_F(ApproachEstimate, AWayWithoutForceIsAnUpperBound) {
+  touch(0.05, 0.01);  // at most (0.05 + 0.2) N over 10 mm
+  EXPECT_NEAR(c(), kAssumed + kKappa * (25.0 - kAssumed), 1e-9);
+  touch(0.05, 0.01);  // x goes on
+  EXPECT_NEAR(state_.stiffness_raw_N_per_m, 12.5, 1e-9);
+}
+
+TEST_F(ApproachEstimate, AShortWayCountsAsTheShortestKnown) {
+  touch(1.0, 1e-9);  // 1 N over 50 um
+  EXPECT_NEAR(c(), 2e4, 1e-8);
+  EXPECT_EQ(state_.F_ref_N, 0.0) << "not re-armed: the way is still too short";
+  touch(0.5, 1e-9);
+  EXPECT_NEAR(c(), 2e4, 1e-8) << "1e4 is a lower bound only";
+}
+
+TEST_F(ApproachEstimate, UnloadingTellsTheStiffnessToo) {
+  touch(3.0, 1e-3);  // 3000 N/m, but near F_act: c stays
+  ASSERT_EQ(c(), kAssumed);
+  touch(2.5, -1e-3);  // turned: from 3 N on, -0.5 N over -1 mm
+  EXPECT_NEAR(state_.stiffness_raw_N_per_m, 500.0, 1e-9);
+  EXPECT_NEAR(c(), kAssumed + kKappa * (500.0 - kAssumed), 1e-9);
+}
+
+TEST_F(ApproachEstimate, UnloadingNeverRaises) {
+  touch(3.0, 1e-3);
+  touch(0.5, -51e-6);  // 49 kN/m
+  EXPECT_EQ(c(), kAssumed);
+}
+
+TEST_F(ApproachEstimate, ForceAgainstTheWayOnlyRearms) {
+  touch(3.0, 1e-4);
+  const double before = c();
+  touch(1.0, 1e-6);  // on, and the force falls
+  EXPECT_EQ(c(), before);
+  EXPECT_EQ(state_.x_m, 0.0);
+  EXPECT_EQ(state_.F_ref_N, 1.0);
+}
+
+TEST_F(ApproachEstimate, ForgetsWithoutContact) {
+  touch(3.0, 1e-4);
+  ASSERT_NEAR(c(), 3e4, 1e-8);
+  for (int i = 0; i < 1000; ++i) estimator_.release(0.001, state_);
+  EXPECT_NEAR(c(), kAssumed + (3e4 - kAssumed) * std::exp(-1.0), 1e-6);
+  EXPECT_EQ(state_.x_m, 0.0);
+  EXPECT_EQ(state_.F_ref_N, 0.0);
+  EXPECT_EQ(state_.F_before_N, 0.0);
+}
+
+TEST_F(ApproachEstimate, FindsSpringsSofterAndStiffer) {
+  for (const double stiffness : {30.0, 600.0, 2e4, 3e5}) {
+    state_ = {kAssumed, kAssumed};
+    // To 1.5 N within 300 samples, below F_act / 2.
+    const double dx_m = 1.5 / stiffness / 300.0;
+    double way_m = 0.0;
+    for (int i = 0; i < 300; ++i) touch(stiffness * (way_m += dx_m), dx_m);
+    const double known = std::min(stiffness, 1.5 / 50e-6);
+    EXPECT_GT(c(), 0.95 * known) << stiffness;
+    EXPECT_LT(c(), 1.7 * known) << stiffness << ", an upper bound while nothing is felt";
+  }
+}
+
+TEST_F(ApproachEstimate, StaysInRangeWhateverComes) {
+  test::Random random(321);
+  for (int i = 0; i < 100000; ++i) {
+    if (random.chance(0.1)) estimator_.release(random.logUniform(1e-9, 1e9), state_);
+    touch(random.logUniform(1e-9, 1e9), random.sign() * random.logUniform(1e-12, 1e6));
+    ASSERT_GE(c(), 10.0);
+    ASSERT_LE(c(), 1e6);
+    ASSERT_TRUE(std::isfinite(state_.x_m + state_.F_ref_N));
+  }
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,220 @@
+#include "tactus/control/approach_limit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/controller_run.h"
+#include "support/rail_robot.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kPeriod_s = 0.001;
+constexpr double kT_s = 0.1;
+constexpr double kAct_N = 3.8;
+constexpr double kC_N_per_m = 1000.0;
+
+/// Nothing delays or filters, c is known, and the null space cannot do anything.
+ControllerConfig bareRail(double speed_m_per_s) {
+  ControllerConfig config = test::railController(Variant::kNullLimit);
+  config.drive_lag_s = 0.0;
+  config.tactile_module->filter_cutoff_hz = 1e6;
+  config.force_control->assumed_stiffness_N_per_m = kC_N_per_m;
+  config.force_control->max_null_speed_m_per_s = 1e-12;
+  Waypoint line;
+  line.displacement_m = Vector3(0.0, 10.0, 0.0);
+  line.speed_m_per_s = speed_m_per_s;
+  line.ramp_s = 0.0;
+  config.task.trajectory.waypoints = {line};
+  return config;
+}
+
+TEST(ApproachLimit, LetsTheForceSettleExponentiallyAtTheActivationForce) {
+  const Controller controller(bareRail(10.0));
+  test::RailWorld world{kC_N_per_m, 0.0};
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  double force_N = 0.0;
+  double largest_N = 0.0;
+  for (int cycle = 0; cycle < 1000; ++cycle) {
+    const double before_N = force_N;
+    controller.update(world.input(state), cycle * kPeriod_s, kPeriod_s, state, output);
+    force_N = world.force_N(state.q_desired);
+    largest_N = std::max(largest_N, force_N);
+    if (cycle < 20) continue;  // until it is felt, nothing limits
+    // dF/dt = -(F - F_act) / T, one explicit step of it.
+    const double expected_N = -kPeriod_s / kT_s * (before_N - kAct_N);
+    ASSERT_NEAR(force_N - before_N, expected_N, 0.05 * std::abs(expected_N) + 1e-5) << cycle;
+  }
+  EXPECT_NEAR(force_N, kAct_N, 1e-3);
+}
+
+TEST(ApproachLimit, CutsExactlyTheExcessByHand) {
+  const ApproachLimit limit(bareRail(0.1));
+  ApproachLimitState state = limit.initialState();
+  state.memory_N_per_m = 2000.0;  // T m = 200 Ns/m
+  EXPECT_EQ(limit.excess(1.8, -0.0099, state), 0.0) << "2 N are left: 10 mm/s";
+  EXPECT_FALSE(state.is_limiting);
+  EXPECT_NEAR(limit.excess(1.8, -0.0125, state), -0.0025, 1e-15);
+  EXPECT_TRUE(state.is_limiting);
+  EXPECT_NEAR(limit.excess(5.8, 0.004, state), -0.006, 1e-15)
+      << "back at 10 mm/s, 4 of it by others";
+  state.way_ahead_m = 1e-3;  // 2 N more
+  EXPECT_NEAR(limit.excess(1.8, -0.0125, state), -0.0125, 1e-15);
+  state.way_ahead_m = -1.0;
+  EXPECT_NEAR(limit.excess(1.8, -0.05, state), -0.05 + 3.8 / 200.0, 1e-15)
+      << "no force is less than none";
+}
+
+TEST(ApproachLimit, MemoryFadesAfterContactAndThenLimitsNothing) {
+  const ApproachLimit limit(bareRail(0.1));
+  ApproachLimitState state = limit.initialState();
+  const JointVector q = JointVector::Zero(2);
+  const JointVector a{{-1.0, 0.0}};
+  EXPECT_EQ(limit.excess(0.0, -1e9, state), 0.0) << "before the first contact";
+  limit.observe(a, 1.0, q, kPeriod_s, state);
+  EXPECT_EQ(state.memory_N_per_m, kC_N_per_m);
+  for (int i = 0; i < 100; ++i) limit.observe(a, 0.0, q, kPeriod_s, state);
+  EXPECT_NEAR(state.memory_N_per_m, kC_N_per_m * std::exp(-1.0), 1e-6);
+  for (int i = 0; i < 20000; ++i) limit.observe(a, 0.0, q, kPeriod_s, state);
+  EXPECT_EQ(state.memory_N_per_m, 0.0) << "and not a denormal number";
+  EXPECT_EQ(limit.excess(0.0, -1e9, state), 0.0);
+}
+
+TEST(ApproachLimit, SofterContactIsApproachedNoFasterThanTheFloorAllows) {
+  ControllerConfig config = bareRail(0.1);
+  config.force_control->assumed_stiffness_N_per_m = 20.0;
+  const ApproachLimit limit(config);
+  ApproachLimitState state = limit.initialState();
+  limit.observe(JointVector{{-1.0, 0.0}}, 1.0, JointVector::Zero(2), kPeriod_s, state);
+  EXPECT_EQ(state.memory_N_per_m, 300.0);
+}
+
+/// A robot that nothing limits, touched at one point of its cover, pushed towards what touches it.
+struct TouchedRobot {
+  explicit TouchedRobot(test::Random& random)
+      : n(random.integer(4, 12)),
+        config(test::randomController(random, n, random.integer(1, 3))),
+        x_m(random.uniform(0.05, 0.35)),
+        angle_rad(random.uniform(-3.0, 3.0)) {
+    config.force_control.emplace();
+    config.force_control->variant = Variant::kNullLimit;
+    if (random.chance(0.7)) config.force_control->estimator.emplace();
+    config.limits.upper = JointVector::Constant(n, 50.0);
+    config.limits.lower = -config.limits.upper;
+    if (random.chance(0.5)) {
+      config.joint_limit_avoidance.emplace();
+      config.joint_limit_avoidance->active_fraction = 1.0;
+    }
+    Waypoint line;
+    line.displacement_m = random.vector<Vector3>(3, -5.0, 5.0);
+    line.rotation_vector_rad = random.vector<Vector3>(3, -1.0, 1.0);
+    line.speed_m_per_s = random.logUniform(0.01, 1.0);
+    config.task.trajectory = {0.05, {line}};
+  }
+
+  /// Speed of the touched point of the cover towards what touches it, by differences.
+  double approach(const ControllerOutput& output) const {
+    const double h = 1e-6;
+    const Vector3 way = point(output.q_desired + h * output.velocity) -
+                        point(output.q_desired - h * output.velocity);
+    ChainPose pose;
+    config.chain.computePose(output.q_desired, pose);
+    const Matrix3 R = framePose(pose, config.tactile_module->link).R_AB;
+    return -way.dot(R * Vector3(0.0, std::cos(angle_rad), std::sin(angle_rad))) / (2.0 * h);
+  }
+
+  Vector3 point(const JointVector& q) const {
+    ChainPose pose;
+    config.chain.computePose(q, pose);
+    const Pose X = framePose(pose, config.tactile_module->link);
+    return X.p_AB + x_m * X.R_AB.col(0);
+  }
+
+  int n;
+  ControllerConfig config;
+  double x_m, angle_rad;
+};
+
+TEST(ApproachLimit, IsNeverExceededByTheCommand) {
+  test::Random random(331);
+  int limited = 0;
+  int compared = 0;
+  for (int i = 0; i < 150; ++i) {
+    const TouchedRobot robot(random);
+    const Controller controller(robot.config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    double force_N = 0.0;
+    for (int cycle = 0; cycle < 300; ++cycle) {
+      if (cycle % 4 == 0) force_N = std::max(0.0, force_N + random.uniform(-0.5, 0.6));
+      const RobotInput input{state.q_desired,
+                             test::touchAt(robot.x_m, force_N, robot.angle_rad, cycle / 4 + 1)};
+      controller.update(input, cycle * kPeriod_s, kPeriod_s, state, output);
+      ASSERT_TRUE(output.velocity.allFinite());
+      const ContactReport& contact = output.contact;
+      if (contact.k_t < std::max(1.01e-3 * contact.k_j, 1.01e-4)) continue;
+      const ApproachLimitState& approach = state.contact.approach;
+      const double m = approach.memory_N_per_m;
+      if (m == 0.0) continue;
+      const double F_N = std::max(0.0, contact.force_contact_N + m * approach.way_ahead_m);
+      const double v_max = (kAct_N - F_N) / (kT_s * m);
+      const double v = robot.approach(output);
+      const double tolerance = 1e-6 * (1.0 + output.velocity.norm());
+      ASSERT_LE(v, v_max + tolerance) << "robot " << i << ", cycle " << cycle;
+      if (contact.u_t < 0.0) {
+        ASSERT_NEAR(v, v_max, tolerance) << "no more than the excess is cut";
+        ++limited;
+      }
+      ++compared;
+    }
+  }
+  EXPECT_GT(limited, 2000);
+  EXPECT_GT(compared, 10000);
+}
+
+TEST(ApproachLimit, NothingMovesTheTaskOnceTheMemoryHasFaded) {
+  test::Random random(332);
+  for (int i = 0; i < 20; ++i) {
+    TouchedRobot robot(random);
+    const Controller controller(robot.config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    for (int cycle = 0; cycle < 8000; ++cycle) {
+      const double force_N = cycle < 200 ? 10.0 : 0.0;
+      const RobotInput input{state.q_desired,
+                             test::touchAt(robot.x_m, force_N, robot.angle_rad, cycle + 1)};
+      controller.update(input, cycle * kPeriod_s, kPeriod_s, state, output);
+      ASSERT_TRUE(output.velocity.allFinite());
+    }
+    EXPECT_EQ(output.contact.u_t, 0.0);
+    EXPECT_EQ(state.contact.approach.memory_N_per_m, 0.0);
+  }
+}
+
+TEST(ApproachLimit, StaysFiniteWhateverTheSensorSays) {
+  test::Random random(333);
+  for (int i = 0; i < 30; ++i) {
+    TouchedRobot robot(random);
+    robot.config.tactile_module->max_force_N = 1e9;
+    robot.config.limits.max_velocity = JointVector::Constant(robot.n, 5.0);
+    robot.config.limits.max_acceleration = JointVector::Constant(robot.n, 200.0);
+    const Controller controller(robot.config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    std::uint32_t sequence = 0;
+    for (int cycle = 0; cycle < 1000; ++cycle) {
+      if (random.chance(0.5)) ++sequence;
+      TactileSample sample = test::touchAt(random.uniform(-1.0, 1.0),
+                                           random.chance(0.3) ? 0.0 : random.logUniform(1e-6, 1e8),
+                                           random.uniform(-4.0, 4.0), sequence);
+      controller.update({state.q_desired, sample}, cycle * kPeriod_s, kPeriod_s, state, output);
+      ASSERT_TRUE(output.velocity.allFinite()) << i << ", " << cycle;
+      ASSERT_NE(output.fault, Fault::kCommandNotFinite);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tactus

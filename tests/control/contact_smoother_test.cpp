@@ -1,0 +1,144 @@
+#include "tactus/control/contact_smoother.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/random.h"
+#include "support/tactile_samples.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kLength_m = 0.38;
+constexpr double kSample_s = 0.004;
+constexpr double kMin_N = 0.2;
+constexpr double kThreshold_N = 1.2;
+
+class Smoother : public testing::Test {
+ protected:
+  /// A sample of a touch whose force and moments are off by noise of sigma.
+  void feel(double x_m, double force_N, double angle_rad, double sigma_N = 0.0) {
+    TactileSample sample = test::touchAt(x_m, force_N, angle_rad, 1);
+    sample.force_y_N += noise(sigma_N);
+    sample.force_z_N += noise(sigma_N);
+    sample.moment_y_Nm += 0.15 * noise(sigma_N);
+    sample.moment_z_Nm += 0.15 * noise(sigma_N);
+    locateContact(sample, kLength_m, sensor_);
+    sensor_.interval_s = kSample_s;
+    smoother_.update(sensor_, state_);
+  }
+
+  /// Twelve uniform numbers: near enough to a normal one.
+  double noise(double sigma_N) {
+    double sum = 0.0;
+    for (int i = 0; i < 12; ++i) sum += random_.uniform(-0.5, 0.5);
+    return sigma_N * sum;
+  }
+
+  double angle() const {
+    return std::atan2(state_.contact.direction.z(), state_.contact.direction.y());
+  }
+
+  test::Random random_{311};
+  ContactSmoother smoother_{kMin_N, kThreshold_N, kLength_m};
+  ContactSmootherState state_ = smoother_.initialState();
+  ContactPointState sensor_;
+};
+
+TEST_F(Smoother, TakesTheFirstTouchAsItIs) {
+  feel(0.3, 0.0, 0.0);
+  EXPECT_EQ(state_.contact.direction, Vector3::Zero());
+  feel(0.3, 1.5, 0.7);
+  EXPECT_NEAR(angle(), 0.7, 1e-12);
+  EXPECT_NEAR(state_.contact.position_m, 0.3, 1e-12);
+  EXPECT_NEAR(state_.contact.force_N, 1.5, 1e-12);
+}
+
+TEST_F(Smoother, KeepsEverythingBetweenSamples) {
+  feel(0.3, 1.5, 0.7);
+  const ContactSmootherState before = state_;
+  ContactPointState old = sensor_;
+  old.interval_s = 0.0;
+  old.position_m = 0.1;
+  smoother_.update(old, state_);
+  EXPECT_FALSE(state_.contact.isNew());
+  EXPECT_EQ(state_.contact.position_m, before.contact.position_m);
+  EXPECT_EQ(state_.significant_N, before.significant_N);
+}
+
+TEST_F(Smoother, WeighsSamplesByTheSquareOfTheirForce) {
+  feel(0.300, 3.0, 0.0);
+  feel(0.301, 3.3, 0.0);  // not significant: 3.3 N (0.001 / 0.19)
+  const double old = 9.0 * std::exp(-kSample_s / 0.2);
+  EXPECT_NEAR(state_.contact.position_m, 0.3 + 0.001 * 10.89 / (10.89 + old), 1e-9);
+}
+
+TEST_F(Smoother, InAnImpactTheNewestSampleIsAllThatCounts) {
+  for (int i = 0; i < 100; ++i) feel(0.300, 3.0, 0.0);
+  feel(0.301, 3.7, 0.0);
+  EXPECT_NEAR(state_.contact.position_m, 0.301, 1e-12);
+}
+
+TEST_F(Smoother, ForceBelowTheThresholdSaysNothing) {
+  feel(0.300, 3.0, 0.5);
+  feel(0.1, 1.2, -2.0);
+  EXPECT_NEAR(state_.contact.position_m, 0.3, 1e-12);
+  EXPECT_NEAR(angle(), 0.5, 1e-12);
+  EXPECT_NEAR(state_.contact.force_N, 1.2, 1e-12) << "but is passed on";
+}
+
+TEST_F(Smoother, FollowsAnotherContactAtOnce) {
+  for (int i = 0; i < 200; ++i) feel(0.1, 4.0, 0.0);
+  feel(0.3, 4.5, 1.0);
+  EXPECT_NEAR(state_.contact.position_m, 0.3, 0.002);
+  EXPECT_NEAR(angle(), 1.0, 0.01);
+}
+
+TEST_F(Smoother, QuietensPointAndDirection) {
+  for (const double sigma : {0.03, 0.1}) {
+    for (int i = 0; i < 1000; ++i) feel(0.25, 5.0, 0.5, sigma);
+    double raw = 0.0;
+    double smooth = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      feel(0.25, 5.0, 0.5, sigma);
+      raw += std::pow(std::atan2(sensor_.direction.z(), sensor_.direction.y()) - 0.5, 2.0);
+      smooth += std::pow(angle() - 0.5, 2.0);
+    }
+    EXPECT_LT(smooth, 0.02 * raw) << sigma;
+  }
+}
+
+TEST_F(Smoother, LearnsTheNoise) {
+  for (const double sigma : {0.1, 0.2, 0.05}) {
+    for (int i = 0; i < 2000; ++i) feel(0.25, 5.0, 0.5, sigma);
+    EXPECT_NEAR(state_.significant_N, 6.0 * sigma, 1.5 * sigma) << sigma;
+  }
+  for (int i = 0; i < 2000; ++i) feel(0.25, 5.0, 0.5, 0.0);
+  EXPECT_EQ(state_.significant_N, kMin_N);
+}
+
+TEST_F(Smoother, DoesNotTakeAnImpactForNoise) {
+  for (int i = 0; i < 100; ++i) feel(0.25, 0.0, 0.0, 0.02);
+  double force = 0.0;
+  for (int i = 0; i < 20; ++i) feel(0.25, force += 0.5 * i, 0.5, 0.02);  // to 95 N in 80 ms
+  EXPECT_LT(state_.significant_N, 1.3 * kMin_N);
+}
+
+TEST_F(Smoother, StaysAUnitVectorOnTheCoverWhateverComes) {
+  for (int i = 0; i < 20000; ++i) {
+    feel(random_.uniform(-1.0, 1.0), random_.chance(0.2) ? 0.0 : random_.logUniform(1e-6, 1e6),
+         random_.uniform(-4.0, 4.0), random_.logUniform(1e-6, 1e3));
+    ASSERT_GE(state_.contact.position_m, -1e-12);
+    ASSERT_LE(state_.contact.position_m, kLength_m + 1e-12);
+    const double length = state_.contact.direction.norm();
+    if (length != 0.0) {
+      ASSERT_NEAR(length, 1.0, 1e-12);
+    }
+    ASSERT_GE(state_.significant_N, kMin_N);
+    ASSERT_LE(state_.significant_N, 10.0 * kMin_N);
+  }
+}
+
+}  // namespace
+}  // namespace tactus
