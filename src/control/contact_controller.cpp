@@ -43,10 +43,11 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
                                const CommandedMotion& commanded, double period_s,
                                ContactControllerState& state, ContactReport& report,
                                Motion& motion) const noexcept {
-  const Contact contact = locate(kinematics, follow(sensor, period_s, state));
+  const ContactPointState& point = follow(sensor, period_s, state);
+  const Contact contact = locate(kinematics, point);
 
   ControlLawInput input;
-  input.F_p_N = std::max(0.0, sensor.force_N - config_.contact_threshold_N);
+  input.F_p_N = std::max(0.0, point.force_N - config_.contact_threshold_N);
   if (approach_limit_) {
     approach_limit_->observe(contact.a, input.F_p_N, commanded.q, period_s, state.approach);
     input.stiffness_N_per_m = state.approach.estimator.stiffness_N_per_m;

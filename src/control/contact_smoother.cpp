@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kSmoothing_s = 0.2;           ///< T_s           ///< T_s
 constexpr double kLearning = 0.01;             ///< a sample: settles within half a second at 4 ms
+constexpr double kMaxRebound = 0.25;           ///< of the peak; 0.18 after the shortest blow
+constexpr double kRinging_s = 0.05;            ///< the filter's, with a margin of two at 15 Hz
 constexpr double kGrowth = 1.2;                ///< of force from sample to sample in an impact
 constexpr double kMedianOfNoise = 0.48;        ///< of |d2| / s: sqrt(2 ln 2) sqrt(6) / 6
 constexpr double kMaxSignificantRatio = 10.0;  ///< s / s_min; more would be no sensor
@@ -34,17 +36,26 @@ void ContactSmoother::learnNoise(const Vector3& force_N,
   state.force_before_N = force_N;
 }
 
+bool ContactSmoother::isRebound(const ContactPointState& sensor,
+                                ContactSmootherState& state) const noexcept {
+  state.peak_N -= lagShare(sensor.interval_s, kRinging_s) * state.peak_N;
+  state.peak_N = std::max(state.peak_N, sensor.force_N);
+  return sensor.force_N < kMaxRebound * state.peak_N &&
+         sensor.direction.dot(state.contact.direction) < 0.0;
+}
+
 void ContactSmoother::update(const ContactPointState& sensor,
                              ContactSmootherState& state) const noexcept {
   ContactPointState& contact = state.contact;
-  contact.force_N = sensor.force_N;
   contact.interval_s = sensor.interval_s;
   if (!sensor.isNew()) return;
+  const bool is_rebound = isRebound(sensor, state);
+  contact.force_N = is_rebound ? 0.0 : sensor.force_N;
   const bool grows = sensor.force_N > kGrowth * state.force_before_N.norm();
   learnNoise(sensor.force_N * sensor.direction, state);
   const double weight = sensor.force_N * sensor.force_N;
   state.weight *= 1.0 - lagShare(sensor.interval_s, kSmoothing_s);
-  if (sensor.force_N <= contact_threshold_N_ || weight == 0.0) return;
+  if (is_rebound || sensor.force_N <= contact_threshold_N_ || weight == 0.0) return;
   state.weight = grows ? weight : state.weight + weight;
   const Vector3 turn = sensor.direction - contact.direction;
   const double shift_m = sensor.position_m - contact.position_m;

@@ -95,6 +95,20 @@ TEST_F(Smoother, FollowsAnotherContactAtOnce) {
   EXPECT_NEAR(angle(), 1.0, 0.01);
 }
 
+TEST_F(Smoother, TheFiltersReboundIsNoContact) {
+  for (int i = 0; i < 10; ++i) feel(0.3, 40.0, 0.5);
+  feel(0.1, 7.0, 0.5 + M_PI);
+  EXPECT_EQ(state_.contact.force_N, 0.0);
+  EXPECT_NEAR(angle(), 0.5, 1e-12);
+  EXPECT_NEAR(state_.contact.position_m, 0.3, 1e-12);
+  feel(0.1, 20.0, 0.5 + M_PI);
+  EXPECT_NEAR(state_.contact.force_N, 20.0, 1e-12) << "too much for a rebound";
+  feel(0.3, 40.0, 0.5);
+  for (int i = 0; i < 50; ++i) feel(0.3, 0.0, 0.5);
+  feel(0.1, 2.0, 0.5 + M_PI);
+  EXPECT_NEAR(state_.contact.force_N, 2.0, 1e-12) << "the blow is long over";
+}
+
 TEST_F(Smoother, QuietensPointAndDirection) {
   for (const double sigma : {0.03, 0.1}) {
     for (int i = 0; i < 1000; ++i) feel(0.25, 5.0, 0.5, sigma);

@@ -9,8 +9,9 @@ struct ContactSmootherState {
   double significant_N = 0.0;
   Vector3 force_before_N = Vector3::Zero();      ///< of the newest sample
   Vector3 force_two_before_N = Vector3::Zero();  ///< and of the one before it
+  double peak_N = 0.0;                           ///< of the last moments
   double weight = 0.0;                           ///< sum of the weights of all samples, N^2
-  ContactPointState contact;                     ///< force as read, point and direction smooth
+  ContactPointState contact;  ///< force as read, but for rebounds; point and direction smooth
 };
 
 // clang-format off: equations
@@ -26,7 +27,8 @@ struct ContactSmootherState {
 /// followed at once:
 ///   W = W exp(-dt / T_s) + F^2,   g = 1 - (1 - F^2 / W) min(1, (s / d)^2),
 ///   d = F |(dF^, dx / (L / 2))|,   x += g dx,  F^ += g dF^
-/// A force up to F_th says nothing of either.
+/// A force up to F_th says nothing of either. After a blow the module's filter swings through and
+/// shows up to 18 % of it from the other side: such a reading counts as no force.
 // clang-format on
 class ContactSmoother {
  public:
@@ -42,6 +44,8 @@ class ContactSmoother {
   void update(const ContactPointState& sensor, ContactSmootherState& state) const noexcept;
 
  private:
+  /// Keeps the peak, too.
+  bool isRebound(const ContactPointState& sensor, ContactSmootherState& state) const noexcept;
   void learnNoise(const Vector3& force_N, ContactSmootherState& state) const noexcept;
 
   double min_significant_N_;
