@@ -39,6 +39,11 @@ std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const Plan
     case Variant::kNullTask:
     case Variant::kNullJoint:
       return {{"both spaces", both}, {"both spaces, with beta", pulled(both)}, {"one space", one}};
+    case Variant::kNullLimit: {
+      ContactLoop limit = one;
+      limit.order = 1;  // without its prediction, which bears stiffer contacts still
+      return {{"one space", one}, {"approach limit", limit}};
+    }
   }
   return {};
 }

@@ -10,7 +10,7 @@ namespace tactus {
 namespace {
 
 constexpr double kAssumed = 7000.0;
-constexpr double kAct_N = 3.8;
+constexpr double kActivation_N = 3.8;
 constexpr double kMin_N = 0.2;
 constexpr double kSample_s = 0.004;
 const double kKappa = 1.0 - std::exp(-kSample_s / 0.03);
@@ -22,7 +22,7 @@ class ApproachEstimate : public testing::Test {
   }
   double c() const { return state_.stiffness_N_per_m; }
 
-  ApproachEstimator estimator_{{}, kAssumed, kAct_N};
+  ApproachEstimator estimator_{{}, kAssumed, kActivation_N};
   ApproachEstimatorState state_{kAssumed, kAssumed};
 };
 
@@ -42,9 +42,9 @@ TEST_F(ApproachEstimate, FallsSlowlyFarFromTheActivationForce) {
 }
 
 TEST_F(ApproachEstimate, DoesNotFallWhileLoadedNearTheActivationForce) {
-  touch(0.5 * kAct_N, 1e-3);
+  touch(0.5 * kActivation_N, 1e-3);
   EXPECT_EQ(c(), kAssumed);
-  EXPECT_EQ(state_.F_ref_N, 0.5 * kAct_N) << "re-armed all the same";
+  EXPECT_EQ(state_.F_ref_N, 0.5 * kActivation_N) << "re-armed all the same";
 }
 
 TEST_F(ApproachEstimate, AWayWithoutForceIsAnUpperBound) {

@@ -5,14 +5,15 @@
 #include <cmath>
 
 #include "support/controller_run.h"
+#include "support/period.h"
 #include "support/rail_robot.h"
 
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 constexpr double kT_s = 0.1;
-constexpr double kAct_N = 3.8;
+constexpr double kLimit_N = 3.8;
 constexpr double kC_N_per_m = 1000.0;
 
 /// Nothing delays or filters, c is known, and the null space cannot do anything.
@@ -44,10 +45,10 @@ TEST(ApproachLimit, LetsTheForceSettleExponentiallyAtTheActivationForce) {
     largest_N = std::max(largest_N, force_N);
     if (cycle < 20) continue;  // until it is felt, nothing limits
     // dF/dt = -(F - F_act) / T, one explicit step of it.
-    const double expected_N = -kPeriod_s / kT_s * (before_N - kAct_N);
+    const double expected_N = -kPeriod_s / kT_s * (before_N - kLimit_N);
     ASSERT_NEAR(force_N - before_N, expected_N, 0.05 * std::abs(expected_N) + 1e-5) << cycle;
   }
-  EXPECT_NEAR(force_N, kAct_N, 1e-3);
+  EXPECT_NEAR(force_N, kLimit_N, 1e-3);
 }
 
 TEST(ApproachLimit, CutsExactlyTheExcessByHand) {
@@ -159,7 +160,7 @@ TEST(ApproachLimit, IsNeverExceededByTheCommand) {
       const double m = approach.memory_N_per_m;
       if (m == 0.0) continue;
       const double F_N = std::max(0.0, contact.force_contact_N + m * approach.way_ahead_m);
-      const double v_max = (kAct_N - F_N) / (kT_s * m);
+      const double v_max = (kLimit_N - F_N) / (kT_s * m);
       const double v = robot.approach(output);
       const double tolerance = 1e-6 * (1.0 + output.velocity.norm());
       ASSERT_LE(v, v_max + tolerance) << "robot " << i << ", cycle " << cycle;

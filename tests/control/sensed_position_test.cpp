@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/period.h"
 #include "support/random.h"
 #include "tactus/math/filter.h"
 
@@ -11,7 +12,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 
 JointVector joints(double a, double b) { return JointVector{{a, b}}; }
 
