@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSmoothing_s = 0.2;           ///< T_s           ///< T_s
 constexpr double kLearning = 0.01;             ///< a sample: settles within half a second at 4 ms
-constexpr double kMaxRebound = 0.25;           ///< of the peak; 0.18 after the shortest blow
+constexpr double kMaxRebound = 0.2;            ///< of the peak; 0.115 after the shortest blow
 constexpr double kRinging_s = 0.05;            ///< the filter's, with a margin of two at 15 Hz
 constexpr double kGrowth = 1.2;                ///< of force from sample to sample in an impact
 constexpr double kMedianOfNoise = 0.48;        ///< of |d2| / s: sqrt(2 ln 2) sqrt(6) / 6

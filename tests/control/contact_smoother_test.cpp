@@ -101,8 +101,8 @@ TEST_F(Smoother, TheFiltersReboundIsNoContact) {
   EXPECT_EQ(state_.contact.force_N, 0.0);
   EXPECT_NEAR(angle(), 0.5, 1e-12);
   EXPECT_NEAR(state_.contact.position_m, 0.3, 1e-12);
-  feel(0.1, 20.0, 0.5 + M_PI);
-  EXPECT_NEAR(state_.contact.force_N, 20.0, 1e-12) << "too much for a rebound";
+  feel(0.1, 15.0, 0.5 + M_PI);
+  EXPECT_NEAR(state_.contact.force_N, 15.0, 1e-12) << "too much for a rebound";
   feel(0.3, 40.0, 0.5);
   for (int i = 0; i < 50; ++i) feel(0.3, 0.0, 0.5);
   feel(0.1, 2.0, 0.5 + M_PI);
