@@ -31,6 +31,16 @@ std::vector<KeySpec> obstacleKeys() {
                             [](Draft& d) -> double& { return obstacle(d).appears_s; })),
       optional(number("vanishes_s", "s", above(0, kMaxTime_s), "absent from then on",
                       [](Draft& d) -> double& { return obstacle(d).vanishes_s; })),
+      optional(section(
+          "swing", "motion to and fro around the place, along a sine",
+          {
+              defaulted("0", number("x_m", "m", within(-100, 100), "amplitude",
+                                    [](Draft& d) -> double& { return obstacle(d).swing.x_m; })),
+              defaulted("0", number("y_m", "m", within(-100, 100), "amplitude",
+                                    [](Draft& d) -> double& { return obstacle(d).swing.y_m; })),
+              number("frequency_hz", "Hz", above(0, 1000), "of the sine",
+                     [](Draft& d) -> double& { return obstacle(d).swing.frequency_hz; }),
+          })),
   };
 }
 
@@ -72,27 +82,33 @@ KeySpec simulationSection() {
           optional(number("drive_lag_s", "s", within(0, 1),
                           "lag of the simulated drives; absent: as robot.yaml says",
                           [](Draft& d) -> double& { return d.simulated_drive_lag_s; })),
-          defaulted("", section("tactile_module", "imperfections of the simulated tactile module",
-                                {
-                                    optional(number("filter_cutoff_hz", "Hz", within(0.1, 1e5),
-                                                    "of its filter; absent: as robot.yaml says",
+          defaulted(
+              "", section("tactile_module", "imperfections of the simulated tactile module",
+                          {
+                              optional(number("filter_cutoff_hz", "Hz", within(0.1, 1e5),
+                                              "of its filter; absent: as robot.yaml says",
+                                              [](Draft& d) -> double& {
+                                                return d.simulated_filter_cutoff_hz;
+                                              })),
+                              defaulted("true", boolean("quantised", "24-bit channels",
+                                                        [](Draft& d) -> bool& {
+                                                          return d.plant.module.quantised;
+                                                        })),
+                              defaulted("0", number("noise_N", "N", within(0, 100),
+                                                    "standard deviation of one channel",
                                                     [](Draft& d) -> double& {
-                                                      return d.simulated_filter_cutoff_hz;
+                                                      return d.plant.module.noise_N;
                                                     })),
-                                    defaulted("true", boolean("quantised", "24-bit channels",
-                                                              [](Draft& d) -> bool& {
-                                                                return d.plant.module.quantised;
-                                                              })),
-                                    defaulted("0", number("noise_N", "N", within(0, 100),
-                                                          "standard deviation of one channel",
-                                                          [](Draft& d) -> double& {
-                                                            return d.plant.module.noise_N;
-                                                          })),
-                                    defaulted("1", integer("seed", within(0, 1e15), "of the noise",
-                                                           [](Draft& d) -> std::uint64_t& {
-                                                             return d.plant.module.seed;
-                                                           })),
-                                })),
+                              defaulted("0", number("lost_share", "", within(0, 1),
+                                                    "share of the samples that get lost",
+                                                    [](Draft& d) -> double& {
+                                                      return d.plant.module.lost_share;
+                                                    })),
+                              defaulted("1", integer("seed", within(0, 1e15), "of noise and losses",
+                                                     [](Draft& d) -> std::uint64_t& {
+                                                       return d.plant.module.seed;
+                                                     })),
+                          })),
           optional(sectionList("obstacles", {0, 64}, "vertical lines that push on the cover",
                                obstacleKeys(), [](Draft& d) { d.plant.obstacles.emplace_back(); })),
           optional(sectionList("troubles", {0, 64},

@@ -1,8 +1,23 @@
 #include "tactus/sim/obstacle.h"
 
 #include <cmath>
+#include <numbers>
+
+#include "tactus/math/sin_cos.h"
 
 namespace tactus {
+namespace {
+
+/// -1 to 1. Whole turns are left out first, so that hours of swinging keep their precision.
+double swingShare(const Swing& swing, double t_s) noexcept {
+  const double turns = swing.frequency_hz * t_s;
+  const double angle = 2.0 * std::numbers::pi * (turns - std::floor(turns));
+  double sine, cosine;
+  sinCos(&angle, 1, &sine, &cosine);
+  return sine;
+}
+
+}  // namespace
 
 ContactSpring::ContactSpring(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m) {
   const double solid = inSeries(obstacle.stiffness_N_per_m, robot_stiffness_N_per_m);
@@ -31,8 +46,13 @@ ObstacleContact Obstacle::touch(const CoverAxis& axis, double t_s) noexcept {
   if (horizontal < 1e-9) return contact;  // a vertical link has no horizontal side to push on
   const double h_x = axis.direction.x() / horizontal;
   const double h_y = axis.direction.y() / horizontal;
-  const double r_x = config_.x_m - axis.p_BaseStart.x();
-  const double r_y = config_.y_m - axis.p_BaseStart.y();
+  double r_x = config_.x_m - axis.p_BaseStart.x();
+  double r_y = config_.y_m - axis.p_BaseStart.y();
+  if (config_.swing.frequency_hz > 0.0) {
+    const double share = swingShare(config_.swing, t_s - config_.appears_s);
+    r_x += share * config_.swing.x_m;
+    r_y += share * config_.swing.y_m;
+  }
   const double left_m = h_x * r_y - h_y * r_x;  // distance to the left of the axis
   contact.position_m = (h_x * r_x + h_y * r_y) / horizontal;
   if (contact.position_m < 0.0 || contact.position_m > axis.length_m) {

@@ -26,8 +26,14 @@ void SimulatedModule::update(const Wrench4& wrench) noexcept {
     filtered[i] = config_.filtered ? filters_[i].update(wrench[i]) : wrench[i];
   if (steps_to_sample_-- > 0) return;
   steps_to_sample_ = steps_a_sample_ - 1;
+  if (config_.lost_share > 0.0 && isLost()) return;
   const Wrench4 measured = measure(filtered);
   sample_ = {measured[0], measured[1], measured[2], measured[3], sample_.sequence + 1};
+}
+
+/// 53 random bits make up a number in [0, 1), the same on every machine.
+bool SimulatedModule::isLost() noexcept {
+  return static_cast<double>(random_() >> 11) * 0x1p-53 < config_.lost_share;
 }
 
 Wrench4 SimulatedModule::measure(const Wrench4& wrench) noexcept {

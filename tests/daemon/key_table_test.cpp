@@ -125,6 +125,7 @@ TEST(KeyTable, DefaultsEqualThoseOfTheStructs) {
   EXPECT_EQ(scene.plant.module.counts_per_N, plant_default.module.counts_per_N);
   EXPECT_EQ(scene.plant.module.quantised, plant_default.module.quantised);
   EXPECT_EQ(scene.plant.module.noise_N, plant_default.module.noise_N);
+  EXPECT_EQ(scene.plant.module.lost_share, plant_default.module.lost_share);
   EXPECT_EQ(scene.plant.module.seed, plant_default.module.seed);
 }
 

@@ -66,6 +66,17 @@ TEST(SceneLoad, PutsThePlantInItsPlace) {
   EXPECT_EQ(plant.obstacles[1].foam[0].until_force_N, 9.0);
 }
 
+TEST(SceneLoad, SwingsObstaclesAndLosesSamples) {
+  SceneFiles files;
+  const Scene scene = files.load({{"simulation.obstacles[1].swing", "{y_m: 0.02, frequency_hz: 3}"},
+                                  {"simulation.tactile_module.lost_share", "0.25"}});
+  EXPECT_EQ(scene.plant.obstacles[0].swing.frequency_hz, 0.0);
+  EXPECT_EQ(scene.plant.obstacles[1].swing.x_m, 0.0);
+  EXPECT_EQ(scene.plant.obstacles[1].swing.y_m, 0.02);
+  EXPECT_EQ(scene.plant.obstacles[1].swing.frequency_hz, 3.0);
+  EXPECT_EQ(scene.plant.module.lost_share, 0.25);
+}
+
 TEST(SceneLoad, LeavesOutWhatNoSectionNames) {
   SceneFiles files;
   files.scene = "robot: robot.yaml\ntask: {trajectory: {hold: {}}}\nsimulation: {duration_s: 1}\n";

@@ -110,6 +110,20 @@ TEST(Obstacle, AppearsAndVanishesInTime) {
   EXPECT_EQ(obstacle.touch(alongX(0.0), 2.0).force_N, 0.0);
 }
 
+TEST(Obstacle, SwingsAroundItsPlace) {
+  ObstacleConfig config = lineAt(0.2, 0.05);  // 10 mm in the cover
+  config.appears_s = 1.0;
+  config.swing = {0.03, -0.02, 0.25};
+  Obstacle obstacle(config, kNoLimit);
+  EXPECT_EQ(obstacle.touch(alongX(0.0), 0.0).force_N, 0.0);
+  EXPECT_NEAR(obstacle.touch(alongX(0.0), 1.0).force_N, 10.0, 1e-9);
+  const ObstacleContact quarter = obstacle.touch(alongX(0.0), 2.0);
+  EXPECT_NEAR(quarter.force_N, 30.0, 1e-9);
+  EXPECT_NEAR(quarter.position_m, 0.23, 1e-12);
+  EXPECT_EQ(obstacle.touch(alongX(0.0), 4.0).force_N, 0.0);
+  EXPECT_NEAR(obstacle.touch(alongX(0.0), 2.0 + 4.0 * 86400.0).force_N, 30.0, 1e-9) << "days later";
+}
+
 TEST(Obstacle, TakesItsSideWhenItAppears) {
   ObstacleConfig config = lineAt(0.2, 0.1);
   config.appears_s = 1.0;

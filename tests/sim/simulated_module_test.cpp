@@ -104,6 +104,28 @@ std::vector<Wrench4> noise(std::uint64_t seed, double noise_N, int count) {
   return samples;
 }
 
+TEST(SimulatedModule, LosesItsShareOfSamplesAndHoldsTheOneBefore) {
+  SimulatedModuleConfig config = moduleConfig();
+  config.lost_share = 0.3;
+  SimulatedModule module(config);
+  constexpr int kSamples = 10000;
+  const int steps_a_sample = std::lround(config.sample_period_s * config.filter_rate_hz);
+  TactileSample before;
+  for (int i = 0; i < kSamples * steps_a_sample; ++i) {
+    module.update(wrenchOf(0.1, 0.001 * i, 0.0));
+    const TactileSample now = module.sample();
+    if (now.sequence == before.sequence) {
+      ASSERT_EQ(now.force_y_N, before.force_y_N);
+    } else {
+      ASSERT_EQ(now.sequence, before.sequence + 1) << "numbers are given to what is sent";
+    }
+    before = now;
+  }
+  EXPECT_NEAR(before.sequence, 0.7 * kSamples, 200.0);
+  config.lost_share = 1.0;
+  EXPECT_EQ(settle(module = SimulatedModule(config), wrenchOf(0.1, 1.0, 0.0)).sequence, 0u);
+}
+
 TEST(SimulatedModule, NoiseRepeatsWithItsSeed) {
   EXPECT_EQ(noise(7, 0.02, 200), noise(7, 0.02, 200));
   EXPECT_NE(noise(7, 0.02, 200), noise(8, 0.02, 200));

@@ -39,9 +39,9 @@ struct ObstacleContact {
   Vector3 force_Base = Vector3::Zero();  ///< on the robot, horizontal, N
 };
 
-/// A vertical line with a spring. The side on which it meets the cover is fixed when it comes
-/// beside it, and until it leaves over an end, so an arm pushed through more than its radius is
-/// still pushed back.
+/// A vertical line with a spring, in its place or swinging around it. The side on which it meets
+/// the cover is fixed when it comes beside it, and until it leaves over an end, so an arm pushed
+/// through more than its radius is still pushed back.
 class Obstacle {
  public:
   Obstacle(const ObstacleConfig& config, double robot_stiffness_N_per_m)

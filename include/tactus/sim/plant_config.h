@@ -18,6 +18,13 @@ struct FoamLayer {
 /// A vertical line at (x, y) in the base frame that pushes on the cover of the tactile module,
 /// horizontally and without friction, wherever it crosses the cover: a latex band, or a profile
 /// behind foam.
+/// A motion of an obstacle around its place: way sin(2 pi frequency t), t since it appeared.
+struct Swing {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double frequency_hz = 0.0;
+};
+
 struct ObstacleConfig {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -25,6 +32,7 @@ struct ObstacleConfig {
   std::vector<FoamLayer> foam;     ///< outermost first, forces rising
   double appears_s = 0.0;
   double vanishes_s = kNoLimit;
+  Swing swing{};
 };
 
 /// The electronics of a simulated tactile module.
@@ -36,9 +44,10 @@ struct SimulatedModuleConfig {
   Eigen::Matrix<double, 4, 8> calibration = Eigen::Matrix<double, 4, 8>::Zero();
   double counts_per_N = 100000.0;  ///< of the 24-bit channels
   bool quantised = true;
-  bool filtered = true;  ///< false: a module that leaves the filter to its reader
-  double noise_N = 0.0;  ///< standard deviation of one channel
-  std::uint64_t seed = 1;
+  bool filtered = true;     ///< false: a module that leaves the filter to its reader
+  double noise_N = 0.0;     ///< standard deviation of one channel
+  double lost_share = 0.0;  ///< of the samples, each by chance
+  std::uint64_t seed = 1;   ///< of noise and losses
 };
 
 struct PlantConfig {

@@ -14,7 +14,8 @@ namespace tactus {
 using Wrench4 = Eigen::Vector4d;
 
 /// The electronics of the tactile module: filters at its own rate, and every sample period turns
-/// force and moment into eight channels of signed 24-bit counts, and back by its calibration.
+/// force and moment into eight channels of signed 24-bit counts, and back by its calibration. After
+/// a lost sample the one before stays.
 class SimulatedModule {
  public:
   explicit SimulatedModule(const SimulatedModuleConfig& config);
@@ -27,6 +28,7 @@ class SimulatedModule {
   const std::array<std::int32_t, 8>& counts() const noexcept { return counts_; }
 
  private:
+  bool isLost() noexcept;
   Wrench4 measure(const Wrench4& wrench) noexcept;
 
   SimulatedModuleConfig config_;
