@@ -64,7 +64,8 @@ std::vector<std::string> findScenes(const std::vector<std::string>& given) {
 std::vector<const Study*> chooseStudies(const Options& options) {
   std::vector<const Study*> chosen;
   for (const Study& study : studies()) {
-    if (options.names.empty() || std::ranges::count(options.names, study.name) > 0)
+    if (options.names.empty() ? study.is_default
+                              : std::ranges::count(options.names, study.name) > 0)
       chosen.push_back(&study);
   }
   return chosen;
@@ -122,6 +123,7 @@ void bench(const Options& options) {
   BenchOptions bench_options;
   bench_options.is_quick = options.is_quick;
   bench_options.counting_program = fs::read_symlink("/proc/self/exe").string();
+  bench_options.scenes = options.scenes;
   if (std::ranges::any_of(chosen, &Study::needs_scenes))
     bench_options.scenes = findScenes(options.scenes);
   prepareFolder(options.folder);
@@ -147,6 +149,9 @@ void parse(CLI::App& app, Options& options, int argc, char** argv) {
   app.add_option("--study", options.names, studyHelp())
       ->allow_extra_args(false)
       ->check(CLI::IsMember(studyNames()));
+  app.add_flag_callback(
+      "--stability", [&options] { options.names.push_back("stability"); },
+      "The table of extremes: --study stability; SCENE: its base");
   app.add_flag("--quick", options.is_quick, "A look: few repetitions, short sweeps");
   app.add_flag("--json", options.json, "Print all tables as JSON");
   app.add_flag("--count-steps", options.counts_steps)->group("");  // how valgrind runs this

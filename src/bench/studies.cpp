@@ -4,11 +4,12 @@ namespace tactus {
 
 const std::vector<Study>& studies() {
   static const std::vector<Study> list = {
-      {"pseudoinverse", "error and time of pseudoinverses down to singular", false,
+      {"pseudoinverse", "error and time of pseudoinverses down to singular", false, true,
        studyPseudoinverse},
-      {"step", "one whole control step beside Orocos KDL and a plain SVD", false, studyStep},
+      {"step", "one whole control step beside Orocos KDL and a plain SVD", false, true, studyStep},
       {"closed_loop", "force, tool error and stability of scenes against the cycle's period", true,
-       studyClosedLoop},
+       true, studyClosedLoop},
+      {"stability", "stiff and extreme cases, each with its outcome", false, false, studyStability},
   };
   return list;
 }

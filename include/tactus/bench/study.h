@@ -36,6 +36,7 @@ struct Study {
   const char* name;
   const char* help;
   bool needs_scenes;
+  bool is_default;  ///< runs if no study is asked for
   StudyResult (*run)(const BenchOptions& options);
 };
 
@@ -50,5 +51,6 @@ std::string reportPage(const std::vector<StudyResult>& results);
 StudyResult studyPseudoinverse(const BenchOptions& options);
 StudyResult studyStep(const BenchOptions& options);
 StudyResult studyClosedLoop(const BenchOptions& options);
+StudyResult studyStability(const BenchOptions& options);
 
 }  // namespace tactus

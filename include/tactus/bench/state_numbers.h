@@ -1,0 +1,53 @@
+#pragma once
+
+#include "tactus/control/controller.h"
+
+namespace tactus {
+
+/// Calls visit(name, index, value) for every number that a controller remembers from one cycle to
+/// the next; index is that of a joint or an axis, 0 for a single number. Each struct is taken apart
+/// as a whole, so that a member added to one of them does not compile before it is visited here.
+/// Left out are sample_sequence, which counts, and what is no number.
+template <typename Visit>
+void visitNumbers(const ControllerState& state, const Visit& visit) {
+  const auto list = [&visit](const char* name, const auto& values) {
+    for (Eigen::Index i = 0; i < values.size(); ++i) visit(name, static_cast<int>(i), values[i]);
+  };
+  const auto point = [&](const char* force, const char* position, const char* direction_name,
+                         const ContactPointState& contact) {
+    const auto& [force_N, position_m, direction] = contact;
+    visit(force, 0, force_N);
+    visit(position, 0, position_m);
+    list(direction_name, direction);
+  };
+  const auto& [q_desired, velocity_before, fault, is_stopping, sample_sequence, sample_age_s,
+               sample_fault, contact_point, contact] = state;
+  list("q_desired", q_desired);
+  list("velocity_before", velocity_before);
+  visit("sample_age_s", 0, sample_age_s);
+  point("force_N", "position_m", "direction", contact_point);
+
+  const auto& [transition, joint_space, estimator, law] = contact;
+  const auto& [touched, p_lost, gamma] = transition;
+  list("transition.p_lost", p_lost);
+  visit("transition.gamma", 0, gamma);
+
+  const auto& [touching, joint_gamma, kappa, joint_p_lost, joint_contact] = joint_space;
+  visit("joint_space.gamma", 0, joint_gamma);
+  visit("joint_space.kappa", 0, kappa);
+  list("joint_space.p_lost", joint_p_lost);
+  point("joint_space.force_N", "joint_space.position_m", "joint_space.direction", joint_contact);
+
+  const auto& [stiffness, stiffness_raw, x_int_m, v_prev, F_prev] = estimator;
+  visit("estimator.stiffness", 0, stiffness);
+  visit("estimator.stiffness_raw", 0, stiffness_raw);
+  visit("estimator.x_int", 0, x_int_m);
+  visit("estimator.v_prev", 0, v_prev);
+  visit("estimator.F_prev", 0, F_prev);
+
+  const auto& [V, It] = law;
+  visit("law.V", 0, V);
+  visit("law.It", 0, It);
+}
+
+}  // namespace tactus
