@@ -120,7 +120,7 @@ StudyResult studyStability(const BenchOptions& options) {
   if (options.is_quick) {
     std::size_t i = 0;
     std::erase_if(cases,
-                  [&](const ExtremeCase& extreme) { return !extreme.is_long && i++ % 8 > 0; });
+                  [&](const ExtremeCase& extreme) { return !extreme.is_long && i++ % 40 > 0; });
   }
   const std::vector<ExtremeRow> rows =
       runExtremes(base, cases, extremeLaws(), options.is_quick ? 0.01 : 1.0);

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/math/filter.h"
+
 namespace tactus {
 
 void locateContact(const TactileSample& sample, double link_length_m,
                    ContactPointState& contact) noexcept {
-  const double F_y = sample.force_y_N;
-  const double F_z = sample.force_z_N;
+  const double F_y = flushed(sample.force_y_N);  // their squares shall be normal numbers
+  const double F_z = flushed(sample.force_z_N);
   const double force_squared = F_y * F_y + F_z * F_z;
   contact.force_N = std::sqrt(force_squared);
   if (contact.force_N <= kMinForceForDirection_N) return;

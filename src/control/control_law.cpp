@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/math/filter.h"
+
 namespace tactus {
 
 ControlLaw::ControlLaw(const ForceControlConfig& config, const SerialChain& chain,
@@ -43,7 +45,7 @@ double ControlLaw::speedShare(const ScaledVector& v_scaled) const noexcept {
 
 void ControlLaw::update(const ControlLawInput& input, const ContactSpace& space, double period_s,
                         ControlLawState& state, ControlLawOutput& output) const noexcept {
-  state.V_m_per_s *= input.integral_decay;
+  state.V_m_per_s = flushed(state.V_m_per_s * input.integral_decay);
   const double single = singleSpace(input, state);
   const double second = secondSpace(input, state);
   bool limited = false;

@@ -48,7 +48,7 @@ IntegralShare JointSpaceTransition::update(const JointSpaceTransitionInput& inpu
   const double goal = state.touching ? state.gamma : 0.0;
   const double time_constant_s =
       goal > state.kappa ? config_.time_constant_s : transition.max_time_constant_s;
-  state.kappa += lagShare(period_s, time_constant_s) * (goal - state.kappa);
+  state.kappa = flushed(state.kappa + lagShare(period_s, time_constant_s) * (goal - state.kappa));
   return integral;
 }
 

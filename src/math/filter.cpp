@@ -52,9 +52,9 @@ ButterworthLowPass::ButterworthLowPass(double cutoff_hz, double rate_hz) {
 
 double ButterworthLowPass::update(double input) noexcept {
   const double output = b_[0] * input + state_[0];
-  state_[0] = b_[1] * input - a_[1] * output + state_[1];
-  state_[1] = b_[2] * input - a_[2] * output + state_[2];
-  state_[2] = b_[3] * input - a_[3] * output;
+  state_[0] = flushed(b_[1] * input - a_[1] * output + state_[1]);
+  state_[1] = flushed(b_[2] * input - a_[2] * output + state_[2]);
+  state_[2] = flushed(b_[3] * input - a_[3] * output);
   return output;
 }
 

@@ -41,6 +41,14 @@ TEST(LocateContact, KeepsPointAndDirectionWhileTheForceIsTooSmallToTell) {
   }
 }
 
+TEST(LocateContact, TakesForcesWithoutNormalSquaresForNone) {
+  for (const double force_N : {1e-160, 5e-324}) {
+    ContactPointState contact;
+    locateContact({force_N, -force_N, 0.0, 0.0, 1}, kLength_m, contact);
+    EXPECT_EQ(contact.force_N, 0.0);
+  }
+}
+
 TEST(LocateContact, KeepsThePointOnTheLink) {
   ContactPointState contact;
   locateContact(test::touchAt(-0.3, 5.0, 0.3, 1), kLength_m, contact);

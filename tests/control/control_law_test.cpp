@@ -113,6 +113,14 @@ TEST(ControlLaw, TheIntegralDecaysBeforeItIsUsed) {
   EXPECT_NEAR(r.state.V_m_per_s, 0.0015, 1e-16);
 }
 
+TEST(ControlLaw, TheIntegralFadesToZeroAndNotToSubnormalNumbers) {
+  ControlLawInput gone{.stiffness_N_per_m = 1000.0, .integral_decay = 0.999};
+  const ControlLawState before{.V_m_per_s = 1e-99};
+  EXPECT_DOUBLE_EQ(updateOnce(lawOf(Variant::kNullTask), gone, before).state.V_m_per_s, 0.999e-99);
+  gone.integral_decay = 1e-2;
+  EXPECT_EQ(updateOnce(lawOf(Variant::kNullTask), gone, before).state.V_m_per_s, 0.0);
+}
+
 TEST(ControlLaw, BoundsItsAnswerWhereASpaceHardlyMovesThePoint) {
   ContactSpace space = handmadeSpace();
   space.k_n = 0.0;

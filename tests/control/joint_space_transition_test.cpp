@@ -121,6 +121,14 @@ TEST_F(JointSpace, PullComesWithTheFeedforwardAndGoesGently) {
   EXPECT_NEAR(state_.kappa, kappa * std::exp(-0.1), 1e-9) << "with T_t,max";
 }
 
+TEST_F(JointSpace, PullFadesToZeroAndNotToSubnormalNumbers) {
+  state_.kappa = 1e-90;  // 1e-100 after 23 s
+  updateFor(20.0, 0.0);
+  EXPECT_GT(state_.kappa, 0.0);
+  updateFor(5.0, 0.0);
+  EXPECT_EQ(state_.kappa, 0.0);
+}
+
 TEST_F(JointSpace, TakesThePointAtOnceFirstAndSmoothlyLater) {
   transition_.follow({2.0, 0.1, Vector3::UnitY()}, kPeriod_s, state_);
   EXPECT_EQ(state_.contact.position_m, 0.1);

@@ -49,6 +49,28 @@ TEST(ButterworthLowPass, FollowsTheDifferenceEquationOfScipy) {
   }
 }
 
+TEST(Flushed, KeepsWhatIsAnything) {
+  for (const double x : {0.0, 1.0, -1.0, 1e-99, -1e-99, 1e300}) EXPECT_EQ(flushed(x), x);
+  for (const double x : {1e-101, -1e-101, 5e-324}) EXPECT_EQ(flushed(x), 0.0);
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(flushed(-infinity), -infinity);
+  EXPECT_TRUE(std::isnan(flushed(std::nan("")))) << "the gate has to see it";
+}
+
+TEST(ButterworthLowPass, EndsAtZeroWhenNothingIsLeft) {
+  for (const double cutoff_hz : {1.0, 15.0, 200.0}) {
+    ButterworthLowPass filter(cutoff_hz, 1000.0);
+    for (int i = 0; i < 1000; ++i) filter.update(20.0);
+    const int forgotten = static_cast<int>(400.0 * 1000.0 / cutoff_hz);
+    double output = 1.0;
+    for (int i = 0; i < forgotten; ++i) {
+      output = filter.update(0.0);
+      ASSERT_NE(std::fpclassify(output), FP_SUBNORMAL) << cutoff_hz << " Hz, step " << i;
+    }
+    EXPECT_EQ(output, 0.0) << cutoff_hz;
+  }
+}
+
 TEST(ButterworthLowPass, AnswersAStepLikeScipy) {
   // scipy.signal.lfilter(b, a, numpy.ones(60)) at samples 0, 1, 5, 10, 20, 40, 59
   ButterworthLowPass filter(15.0, 1000.0);

@@ -58,11 +58,25 @@ class Bench(unittest.TestCase):
         self.assertEqual(len(tables["goals"]), 4)
         self.assertEqual(list(self.folder.iterdir()), [])
 
+    def test_tells_the_outcome_of_extremes(self):
+        base = ROOT / "config/scenes/base/crops9_contact.yaml"
+        result = self.bench("--quick", "--stability", "--json", "-o", "out", base)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        tables = json.loads(result.stdout)
+        self.assertEqual(set(tables),
+                         {"goals", "extremes", "extremes_summary", "extremes_state"})
+        for goal in tables["goals"]:
+            self.assertEqual(goal["met"], "yes", goal)
+        rows = self.read("extremes.csv")
+        self.assertEqual(len(rows), len(tables["extremes"]))
+        self.assertEqual(sum(row["rows"] for row in tables["extremes_summary"]), len(rows))
+        self.assertTrue((self.folder / "out/report.html").exists())
+
     def test_knows_its_studies(self):
         self.assertEqual(self.bench("--study", "nothing").returncode, 2)
         result = self.bench("--help")
         self.assertEqual(result.returncode, 0)
-        for study in ("pseudoinverse", "step", "closed_loop"):
+        for study in ("pseudoinverse", "step", "closed_loop", "stability"):
             self.assertIn(study, result.stdout)
 
     def test_wants_scenes(self):

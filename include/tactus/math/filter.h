@@ -1,15 +1,23 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 namespace tactus {
+
+/// Zero for what is too small to be anything in SI units, else x. What fades by a share of itself
+/// never becomes zero, but after minutes subnormal, where rounding keeps it for ever, and every
+/// operation on it costs processors a hundred times as much. By code and not by the processor's
+/// mode, so that a recorded run replays to the bit on any machine.
+inline double flushed(double x) noexcept { return std::abs(x) < 1e-100 ? 0.0 : x; }
 
 /// 1 - exp(-dt / T): the share of the way to its input that a first-order lag covers in dt, exact
 /// for an input held over the step. T = 0 covers all of it.
 double lagShare(double dt_s, double time_constant_s) noexcept;
 
 /// 3rd-order Butterworth low pass by the bilinear transform with prewarping, direct form II
-/// transposed: the filter of the tactile module (scipy.signal.butter(3, cutoff, fs=rate)).
+/// transposed: the filter of the tactile module (scipy.signal.butter(3, cutoff, fs=rate)). After a
+/// force is gone it ends at zero.
 class ButterworthLowPass {
  public:
   /// Throws std::invalid_argument unless 0 < cutoff_hz < rate_hz / 2.
