@@ -6,6 +6,7 @@ const std::vector<ExtremeLaw>& extremeLaws() {
   static const std::vector<ExtremeLaw> laws = {
       {"assumed", {{"controller.variant", "null_task"}}},
       {"estimated", {{"controller.variant", "null_task"}, {"stiffness.estimate", "{}"}}},
+      {"null_limit", {{"controller.variant", "null_limit"}, {"stiffness.estimate", "{}"}}},
       {"null_joint", {{"controller.variant", "null_joint"}}},
       {"null_space", {{"controller.variant", "null_space"}}},
       {"joint_space",

@@ -15,7 +15,7 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
   };
   const auto point = [&](const char* force, const char* position, const char* direction_name,
                          const ContactPointState& contact) {
-    const auto& [force_N, position_m, direction] = contact;
+    const auto& [force_N, position_m, direction, interval_s] = contact;
     visit(force, 0, force_N);
     visit(position, 0, position_m);
     list(direction_name, direction);
@@ -27,7 +27,7 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
   visit("sample_age_s", 0, sample_age_s);
   point("force_N", "position_m", "direction", contact_point);
 
-  const auto& [transition, joint_space, estimator, law] = contact;
+  const auto& [transition, joint_space, estimator, approach, law] = contact;
   const auto& [touched, p_lost, gamma] = transition;
   list("transition.p_lost", p_lost);
   visit("transition.gamma", 0, gamma);
@@ -44,6 +44,33 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
   visit("estimator.x_int", 0, x_int_m);
   visit("estimator.v_prev", 0, v_prev);
   visit("estimator.F_prev", 0, F_prev);
+
+  const auto& [smoother, position, approach_estimator, memory, way_ahead, is_limiting] = approach;
+  const auto& [significant, before, two_before, peak, weight, smooth] = smoother;
+  visit("smoother.significant", 0, significant);
+  list("smoother.force_before", before);
+  list("smoother.force_two_before", two_before);
+  visit("smoother.peak", 0, peak);
+  visit("smoother.weight", 0, weight);
+  point("smoother.force_N", "smoother.position_m", "smoother.direction", smooth);
+  const auto& [has_started, origin, commanded, lagged, s0, s1, s2, sensed, sensed_before] =
+      position;
+  list("sensed.origin", origin);
+  list("sensed.commanded", commanded);
+  list("sensed.lagged", lagged);
+  list("sensed.s0", s0);
+  list("sensed.s1", s1);
+  list("sensed.s2", s2);
+  list("sensed.sensed", sensed);
+  list("sensed.sensed_before", sensed_before);
+  const auto& [c, r, x_m, F_ref, F_before] = approach_estimator;
+  visit("approach.c", 0, c);
+  visit("approach.r", 0, r);
+  visit("approach.x", 0, x_m);
+  visit("approach.F_ref", 0, F_ref);
+  visit("approach.F_before", 0, F_before);
+  visit("approach.memory", 0, memory);
+  visit("approach.way_ahead", 0, way_ahead);
 
   const auto& [V, It] = law;
   visit("law.V", 0, V);
