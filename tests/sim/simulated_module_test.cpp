@@ -109,7 +109,8 @@ TEST(SimulatedModule, LosesItsShareOfSamplesAndHoldsTheOneBefore) {
   config.lost_share = 0.3;
   SimulatedModule module(config);
   constexpr int kSamples = 10000;
-  const int steps_a_sample = std::lround(config.sample_period_s * config.filter_rate_hz);
+  const auto steps_a_sample =
+      static_cast<int>(std::lround(config.sample_period_s * config.filter_rate_hz));
   TactileSample before;
   for (int i = 0; i < kSamples * steps_a_sample; ++i) {
     module.update(wrenchOf(0.1, 0.001 * i, 0.0));
