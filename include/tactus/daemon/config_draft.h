@@ -50,7 +50,7 @@ struct ConfigDraft {
   std::string variant = "none";
   ForceControlConfig force;
   double stiffest_N_per_m = 0.0;  ///< 0: not given
-  PlantConfig plant;  ///< as robot.yaml describes the arm
+  PlantConfig plant;              ///< as robot.yaml describes the arm
   double simulated_drive_lag_s = 0.0, simulated_filter_cutoff_hz = 0.0;  ///< if given, other ones
   std::vector<TroubleDraft> troubles;
 
