@@ -1,7 +1,6 @@
 #include "tactus/bench/law_grid.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -14,14 +13,6 @@ constexpr std::array kSpeedFactors = {0.5, 1.0, 2.4, 5.0};
 constexpr double kSettling_s = 4.5;  ///< after the motion's end
 
 constexpr std::array kLaws = {GridLaw::kAssumed, GridLaw::kEstimated, GridLaw::kLimited};
-
-/// "1e+06", "0.0537": the shortest text that reads back as the same number.
-void append(double value, std::string& text) {
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-  text += ',';
-  text.append(digits, end);
-}
 
 }  // namespace
 
@@ -100,29 +91,42 @@ LawGridFigures lawGridFigures(const std::vector<LawGridRow>& rows, GridLaw law) 
   return figures;
 }
 
-std::string lawGridCsv(const std::vector<LawGridRow>& rows) {
-  std::string text = "band_N_per_m,profile_N_per_m,robot_N_per_m,speed_factor";
-  for (const GridLaw law : kLaws) {
-    for (const char* column : {"peak_force_N", "final_force_N", "restlessness_N", "scale_N"})
-      text += std::string(",") + gridLawName(law) + "_" + column;
-  }
-  text += '\n';
+Table lawGridTable(const std::vector<LawGridRow>& rows) {
+  Table table{"law_grid",
+              {"law", "band_N_per_m", "profile_N_per_m", "robot_N_per_m", "speed_factor",
+               "peak_force_N", "final_force_N", "restlessness_N", "natural_scale_N",
+               "peak_to_scale", "tcp_error_final_mm", "outcome"},
+              {}};
   for (const LawGridRow& row : rows) {
-    std::string line;
-    append(row.point.band_N_per_m, line);
-    append(row.point.profile_N_per_m, line);
-    append(row.point.robot_stiffness_N_per_m, line);
-    append(row.point.speed_factor, line);
     for (int i = 0; i < kGridLaws; ++i) {
-      append(row.runs[i].peak_force_N, line);
-      append(row.runs[i].final_force_N, line);
-      append(row.runs[i].restlessness_N, line);
-      append(row.scale_N[i], line);
+      const JudgedRun& run = row.runs[i];
+      const bool has_fault = run.fault != Fault::kNone;
+      table.rows.push_back({std::string(gridLawName(kLaws[i])), row.point.band_N_per_m,
+                            row.point.profile_N_per_m, row.point.robot_stiffness_N_per_m,
+                            row.point.speed_factor, run.peak_force_N, run.final_force_N,
+                            run.restlessness_N, row.scale_N[i], run.peak_force_N / row.scale_N[i],
+                            1e3 * run.tcp_error_final_m,
+                            std::string(has_fault          ? faultName(run.fault)
+                                        : run.isRestless() ? "limit cycle"
+                                                           : "at rest")});
     }
-    text.append(line, 1);
-    text += '\n';
   }
-  return text;
+  return table;
+}
+
+Table lawGridSummary(const std::vector<LawGridRow>& rows) {
+  Table table{"law_summary",
+              {"law", "points", "limit_cycles", "largest_peak_N", "final_min_N", "final_max_N",
+               "largest_peak_to_scale", "largest_peak_to_assumed"},
+              {}};
+  for (const GridLaw law : kLaws) {
+    const LawGridFigures figures = lawGridFigures(rows, law);
+    table.rows.push_back({std::string(gridLawName(law)), static_cast<double>(rows.size()),
+                          static_cast<double>(figures.restless), figures.peak_N,
+                          figures.final_min_N, figures.final_max_N, figures.peak_to_scale,
+                          figures.peak_to_assumed});
+  }
+  return table;
 }
 
 }  // namespace tactus

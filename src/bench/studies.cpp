@@ -10,6 +10,8 @@ const std::vector<Study>& studies() {
       {"closed_loop", "force, tool error and stability of scenes against the cycle's period", true,
        true, studyClosedLoop},
       {"stability", "stiff and extreme cases, each with its outcome", false, false, studyStability},
+      {"law", "the approach-speed limit beside the paper's law, on bands and profiles", false,
+       false, studyLaw},
   };
   return list;
 }

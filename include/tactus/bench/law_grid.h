@@ -1,10 +1,10 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "tactus/bench/judged_run.h"
+#include "tactus/bench/table.h"
 
 namespace tactus {
 
@@ -48,7 +48,9 @@ struct LawGridFigures {
 };
 LawGridFigures lawGridFigures(const std::vector<LawGridRow>& rows, GridLaw law);
 
-/// One line a point, with a header line.
-std::string lawGridCsv(const std::vector<LawGridRow>& rows);
+/// A row for each point and law.
+Table lawGridTable(const std::vector<LawGridRow>& rows);
+/// A row for each law: its figures.
+Table lawGridSummary(const std::vector<LawGridRow>& rows);
 
 }  // namespace tactus

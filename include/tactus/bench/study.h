@@ -52,5 +52,6 @@ StudyResult studyPseudoinverse(const BenchOptions& options);
 StudyResult studyStep(const BenchOptions& options);
 StudyResult studyClosedLoop(const BenchOptions& options);
 StudyResult studyStability(const BenchOptions& options);
+StudyResult studyLaw(const BenchOptions& options);
 
 }  // namespace tactus
