@@ -17,7 +17,7 @@
 namespace tactus {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::string scene;
   std::vector<std::string> settings;
   bool json = false;
@@ -119,8 +119,8 @@ void writeStability(JsonWriter& json, const std::optional<StabilityReport>& stab
   json.endObject();
 }
 
-std::string toJson(const Scene& scene, const StartPose& start,
-                   const std::optional<StabilityReport>& stability) {
+std::string checkJson(const Scene& scene, const StartPose& start,
+                      const std::optional<StabilityReport>& stability) {
   JsonWriter json;
   json.beginObject();
   json.key("scene").value(scene.name);
@@ -190,14 +190,14 @@ std::string toText(const Scene& scene, const StartPose& start,
   return text;
 }
 
-void runCheck(const Options& options) {
+void runCheck(const CheckOptions& options) {
   std::vector<Override> overrides;
   for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
   const Scene scene = loadScene(options.scene, overrides);
   const StartPose start = computeStart(scene.controller);
   const std::optional<StabilityReport> stability = checkStability(scene);
   const std::string report =
-      options.json ? toJson(scene, start, stability) : toText(scene, start, stability);
+      options.json ? checkJson(scene, start, stability) : toText(scene, start, stability);
   std::fputs(report.c_str(), stdout);
 }
 
@@ -205,7 +205,7 @@ void runCheck(const Options& options) {
 
 void addCheckCommand(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("check", "Validate a scene and show what it consists of");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   command->add_option("scene", options->scene, "Scene file")->required();
   command->add_option("--set", options->settings, "section.key=value, instead of the scene's value")
       ->allow_extra_args(false);

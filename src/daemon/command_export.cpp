@@ -13,10 +13,10 @@
 namespace tactus {
 
 void addExportCommand(CLI::App& app, int& exit_code) {
-  struct Options {
+  struct ExportOptions {
     std::string log, output;
   };
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportOptions>();
   CLI::App* const command = app.add_subcommand("export", "Turn a log into CSV");
   command->add_option("log", options->log, "Log of a run (run.ulg)")->required();
   command->add_option("-o,--output", options->output, "CSV file to write, - for standard output")

@@ -17,14 +17,14 @@
 namespace tactus {
 namespace {
 
-struct Options {
+struct PlantOptions {
   std::string scene;
   std::vector<std::string> settings;
   std::string e_stop_file;
   bool json = false;
 };
 
-std::string toJson(const PlantRunResult& result) {
+std::string countersJson(const PlantRunResult& result) {
   JsonWriter json;
   json.beginObject();
   const auto count = [&json](const char* name, std::uint64_t number) {
@@ -45,7 +45,7 @@ void printCounters(const PlantRunResult& result) {
   fmt::print("{:<26}{}\n", "refused by interfaces", result.interface_refused);
 }
 
-void play(const Options& options) {
+void play(const PlantOptions& options) {
   std::vector<Override> overrides;
   for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
   const Scene scene = loadScene(options.scene, overrides);
@@ -56,7 +56,7 @@ void play(const Options& options) {
     const PlantRunResult result =
         runPlant(scene, options.e_stop_file, options.json ? stderr : stdout);
     if (options.json) {
-      std::fputs(toJson(result).c_str(), stdout);
+      std::fputs(countersJson(result).c_str(), stdout);
     } else {
       printCounters(result);
     }
@@ -70,7 +70,7 @@ void play(const Options& options) {
 void addPlantCommand(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "plant", "Play drives, tactile module and obstacles on the scene's CAN interfaces");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PlantOptions>();
   command->add_option("SCENE", options->scene, "Scene file")->required();
   command->add_option("--set", options->settings, "Replace a value: simulation.drive_lag_s=0")
       ->allow_extra_args(false);

@@ -17,7 +17,7 @@
 namespace tactus {
 namespace {
 
-struct Options {
+struct ReplayOptions {
   std::string log, output;
   std::vector<std::string> settings;
   bool json = false;
@@ -32,7 +32,7 @@ void checkSize(const std::string& log, const char* field, const char* what, int 
 }
 
 /// The scene of the log with its own overrides and then those of the command line.
-Scene loadLoggedScene(const Options& options, const LogDescription& description) {
+Scene loadLoggedScene(const ReplayOptions& options, const LogDescription& description) {
   std::vector<Override> overrides = description.overrides;
   for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
   if (description.sources.empty()) {
@@ -46,7 +46,7 @@ Scene loadLoggedScene(const Options& options, const LogDescription& description)
   return scene;
 }
 
-ReplayComparison replayLog(const Options& options, UlogReader& reader) {
+ReplayComparison replayLog(const ReplayOptions& options, UlogReader& reader) {
   const RecordShape& shape = reader.description().shape;
   const Scene scene = loadLoggedScene(options, reader.description());
   const Controller controller(scene.controller);
@@ -74,7 +74,8 @@ void writeDifference(const ReplayDifference& difference, JsonWriter& json) {
   json.endObject();
 }
 
-std::string jsonReport(const Options& options, const ReplayComparison& comparison, bool cut_off) {
+std::string jsonReport(const ReplayOptions& options, const ReplayComparison& comparison,
+                       bool cut_off) {
   JsonWriter json;
   json.beginObject();
   json.key("log").value(options.log);
@@ -97,7 +98,7 @@ std::string jsonReport(const Options& options, const ReplayComparison& compariso
   return json.text();
 }
 
-std::string textReport(const Options& options, const ReplayComparison& comparison) {
+std::string textReport(const ReplayOptions& options, const ReplayComparison& comparison) {
   if (!comparison.first()) {
     return fmt::format("{} cycles, every output equal to the bit\n", comparison.cycles());
   }
@@ -115,7 +116,7 @@ std::string textReport(const Options& options, const ReplayComparison& compariso
   return text;
 }
 
-int runReplay(const Options& options) {
+int runReplay(const ReplayOptions& options) {
   const LogExtent extent = checkLog(options.log);
   if (!options.output.empty()) refuseOverwriting(options.log, options.output);
   std::ifstream in = openLog(options.log);
@@ -133,7 +134,7 @@ int runReplay(const Options& options) {
 }  // namespace
 
 void addReplayCommand(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayOptions>();
   CLI::App* const command =
       app.add_subcommand("replay", "Feed a log's inputs to the controller and compare its outputs");
   command->add_option("log", options->log, "Log of a run (run.ulg)")->required();

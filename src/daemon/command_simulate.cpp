@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct SimulateOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> settings;
   std::string directory;
@@ -31,7 +31,7 @@ struct Options {
 };
 
 /// All scenes are loaded before the first one runs, so that bad input writes nothing.
-std::vector<Scene> loadScenes(const Options& options) {
+std::vector<Scene> loadScenes(const SimulateOptions& options) {
   std::vector<Override> overrides;
   for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
   std::vector<Scene> scenes;
@@ -48,7 +48,8 @@ std::vector<Scene> loadScenes(const Options& options) {
 }
 
 /// All folders are prepared before the first scene runs, too.
-std::vector<fs::path> prepareFolders(const Options& options, const std::vector<Scene>& scenes) {
+std::vector<fs::path> prepareFolders(const SimulateOptions& options,
+                                     const std::vector<Scene>& scenes) {
   std::vector<fs::path> folders;
   for (const Scene& scene : scenes)
     folders.push_back(prepareRunFolder(options.directory, scene.name));
@@ -98,7 +99,7 @@ SimulationResult simulateScene(const Scene& scene, const fs::path& folder) {
   return result;
 }
 
-int simulateScenes(const Options& options) {
+int simulateScenes(const SimulateOptions& options) {
   const std::vector<Scene> scenes = loadScenes(options);
   const std::vector<fs::path> folders = prepareFolders(options, scenes);
   int exit_code = kExitDone;
@@ -122,7 +123,7 @@ int simulateScenes(const Options& options) {
 }  // namespace
 
 void addSimulateCommand(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateOptions>();
   CLI::App* command =
       app.add_subcommand("simulate", "Run scenes in virtual time; write a log and a summary each");
   command->add_option("SCENE", options->scenes, "Scene files")->required();

@@ -9,6 +9,7 @@ from .figures import scatter_figure
 
 CSS = pathlib.Path(__file__).with_name("page.css")
 PAPER_SCENES = {scene for figure in paper_figures.FIGURES for scene, *_ in figure.curves}
+OWN_SCENES = {scene for figure in paper_figures.BEYOND_FIGURES for scene, *_ in figure.curves}
 
 
 def build_page(runs):
@@ -18,7 +19,7 @@ def build_page(runs):
     body = [
         "<h1>Tactile feedback control: the paper&#8217;s experiments, simulated</h1>",
         f"<p>{len(runs)} runs of the controller in virtual time, the same code that drives the "
-        "arm. Figures carry the paper&#8217;s numbers.</p>",
+        "arm. Figures 2 to 8 carry the paper&#8217;s numbers.</p>",
         "<h2>Paper, reference, ours</h2>",
         "<p>The number in front is the paper&#8217;s scenario: 1 a soft band, 2 a softer band and a stiff "
         "profile behind it, 3 the profile alone.</p>",
@@ -27,6 +28,7 @@ def build_page(runs):
         f'{html.escape(sources["reference"])}.</p>',
         "<h2>Figures</h2>",
         *(paper_figures.render(figure, runs) for figure in paper_figures.FIGURES),
+        *beyond_the_paper(runs),
         "<h2>Error against run time</h2>",
         error_figure(runs),
         runs_table(of_paper),
@@ -39,6 +41,16 @@ def build_page(runs):
             "<title>Tactus report</title>\n"
             f"<style>\n{CSS.read_text(encoding='utf-8')}</style>\n</head>\n<body>\n<main>\n"
             + "\n".join(body) + "\n</main>\n</body>\n</html>\n")
+
+
+def beyond_the_paper(runs):
+    """Nothing where none of its scenes was run."""
+    if not (OWN_SCENES - PAPER_SCENES) & runs.keys():
+        return []
+    return ["<h2>Beyond the paper</h2>",
+            "<p>The approach-speed limit (variant null_limit) beside the paper&#8217;s multi-space "
+            "law.</p>",
+            *(paper_figures.render(figure, runs) for figure in paper_figures.BEYOND_FIGURES)]
 
 
 def comparison_table(rows):

@@ -1,4 +1,4 @@
-"""The paper's figures 2 to 8: which runs, what of them, and what to see."""
+"""The paper's figures 2 to 8, and ours beyond it: which runs, what of them, and what to see."""
 
 import dataclasses
 import html
@@ -30,6 +30,10 @@ ESTIMATED_2 = ("scenario2_estimated", "estimated", ORANGE, SOLID)
 ASSUMED_3 = ("scenario3_assumed", "assumed", BLUE, DASHED)
 ESTIMATED_3 = ("scenario3_estimated", "estimated", ORANGE, SOLID)
 FAST_3 = ("scenario3_estimated_fast", "estimated, fast", GREEN, DASH_DOT)
+LIMIT_1 = ("scenario1_tactus", "approach limit", BLUE, DASHED)
+LIMIT_2 = ("scenario2_tactus", "approach limit", BLUE, DASHED)
+LIMIT_3 = ("scenario3_tactus", "approach limit", BLUE, DASHED)
+LIMIT_FAST_3 = ("scenario3_tactus_fast", "approach limit, fast", RED, DOTTED)
 
 FORCE = ("force_N", "sensor force in N", "N")
 STIFFNESS = ("stiffness_N_per_m", "stiffness in N/m", "N/m")
@@ -73,6 +77,22 @@ FIGURES = [
         "Foam and profile are averaged. At its peak force the fast run has gone deeper, and its "
         "estimate holds more of the profile than the slow one's.",
         *STIFFNESS, [ESTIMATED_3, ASSUMED_3, FAST_3], log_axis=True),
+]
+
+BEYOND_FIGURES = [
+    PaperFigure(
+        9, "Scenario 1, soft band: contact force with the approach-speed limit",
+        "The force goes to 5 N and stays there, where the paper's law overshoots and comes back "
+        "slowly.",
+        *FORCE, [MULTI, LIMIT_1], label_peak=True),
+    PaperFigure(
+        10, "Scenario 2, soft band then profile: contact force with the approach-speed limit",
+        "At the profile the tool stops approaching before the force has passed its threshold.",
+        *FORCE, [ESTIMATED_2, LIMIT_2], label_peak=True),
+    PaperFigure(
+        11, "Scenario 3, profile alone: contact force with the approach-speed limit",
+        "Neither the stiff profile nor 2.4 times the speed leads beyond 5 N.",
+        *FORCE, [ESTIMATED_3, FAST_3, LIMIT_3, LIMIT_FAST_3], label_peak=True),
 ]
 
 
