@@ -23,19 +23,10 @@ double bisect(double inside, double outside, Condition holds) {
   return inside;
 }
 
-/// The first end of stability on the way up: what is above is never met by a contact that loads.
-double largestStiffnessRatio(const ContactLoop& loop) {
-  const auto stable = [&](double ratio) { return isStable(loop, ratio); };
-  double ratio = kSoftest;
-  while (!stable(ratio)) {  // second order at its soft end: slow, hardly damped, hard to judge
-    ratio *= kGrid;
-    if (ratio > kStiffest) return 0.0;
-  }
-  while (stable(ratio * kGrid)) {
-    ratio *= kGrid;
-    if (ratio > kStiffest) return std::numeric_limits<double>::infinity();
-  }
-  return bisect(ratio, ratio * kGrid, stable);
+/// A lag takes away stability once and for good, so its end tells about all smaller ones.
+bool hasPhaseMargin(const ContactLoop& loop, double stiffness_ratio, double margin_rad) {
+  return isStable(loop, stiffness_ratio) &&
+         (margin_rad == 0.0 || isStable(loop, stiffness_ratio, margin_rad));
 }
 
 double phaseMargin(const ContactLoop& loop, double stiffness_ratio) {
@@ -51,15 +42,30 @@ double phaseMargin(const ContactLoop& loop, double stiffness_ratio) {
 
 }  // namespace
 
+/// The first end of stability on the way up: what is above is never met by a contact that loads.
+double largestStiffnessRatio(const ContactLoop& loop, double phase_margin_rad) {
+  const auto stable = [&](double ratio) { return hasPhaseMargin(loop, ratio, phase_margin_rad); };
+  double ratio = kSoftest;
+  while (!stable(ratio)) {  // second order at its soft end: slow, hardly damped, hard to judge
+    ratio *= kGrid;
+    if (ratio > kStiffest) return 0.0;
+  }
+  while (stable(ratio * kGrid)) {
+    ratio *= kGrid;
+    if (ratio > kStiffest) return std::numeric_limits<double>::infinity();
+  }
+  return bisect(ratio, ratio * kGrid, stable);
+}
+
 StabilityMargins computeMargins(const ContactLoop& loop, double stiffness_ratio) {
-  const double largest = largestStiffnessRatio(loop);
+  const double largest = largestStiffnessRatio(loop, 0.0);
   return {largest, largest / stiffness_ratio, phaseMargin(loop, stiffness_ratio)};
 }
 
-double smallestTimeConstant(ContactLoop loop, double stiffness_ratio) {
+double smallestTimeConstant(ContactLoop loop, double stiffness_ratio, double phase_margin_rad) {
   const auto stable = [&](double T_s) {
     loop.time_constant_s = T_s;
-    return isStable(loop, stiffness_ratio);
+    return hasPhaseMargin(loop, stiffness_ratio, phase_margin_rad);
   };
   double T_s = loop.time_constant_s;
   while (!stable(T_s * kGrid)) {

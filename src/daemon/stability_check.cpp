@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tactus/analysis/variant_loops.h"
 #include "tactus/daemon/yaml_tree.h"
@@ -45,33 +46,61 @@ double stiffnessOfLaw(const ForceControlConfig& force, double stiffest_N_per_m) 
 }
 
 constexpr double kInside = 0.999;  ///< of a limit: what is printed shall be accepted
+constexpr double kMinPhaseMargin_rad = kMinPhaseMargin_deg * std::numbers::pi / 180.0;
 
-/// Where not even a contact as stiff as the law takes it would be stable, the gains are wrong, else
-/// the stiffness is.
+/// The c_e/c up to which all loops have this phase margin; 0: with none.
+double largestRatio(const std::vector<VariantLoop>& loops, double phase_margin_rad) {
+  double ratio = std::numeric_limits<double>::infinity();
+  for (const VariantLoop& loop : loops)
+    ratio = std::min(ratio, largestStiffnessRatio(loop.loop, phase_margin_rad));
+  return ratio;
+}
+
+/// The T from which on they have it, s; infinite: from none.
+double smallestT_s(const std::vector<VariantLoop>& loops, double ratio, double phase_margin_rad) {
+  double T_s = 0.0;
+  for (const VariantLoop& loop : loops)
+    T_s = std::max(T_s, smallestTimeConstant(loop.loop, ratio, phase_margin_rad));
+  return T_s;
+}
+
+std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, double ratio) {
+  const auto rounded = [](double T_s) { return std::ceil(1e4 * T_s) / 1e4; };
+  const std::string margin = fmt::format("a phase margin of {:g} degrees", kMinPhaseMargin_deg);
+  const double good_s = smallestT_s(loops, ratio, kMinPhaseMargin_rad);
+  if (std::isfinite(good_s))
+    return fmt::format("at least {:g} s for {} with this damping and these delays", rounded(good_s),
+                       margin);
+  const double stable_s = smallestT_s(loops, ratio, 0.0);
+  if (std::isfinite(stable_s))
+    return fmt::format("at least {:g} s, and more damping for {}", rounded(stable_s), margin);
+  return "more damping, or less delay in filter and drives";
+}
+
+/// Where not even a contact as stiff as the law takes it would be stable, or none has the phase
+/// margin, the gains are wrong, else the stiffness is.
 [[noreturn]] void failUnstable(const Scene& scene, const StabilityReport& report,
-                               const std::string& stiffest_key, const VariantLoop& unstable,
-                               double largest_ratio) {
+                               const std::string& stiffest_key,
+                               const std::vector<VariantLoop>& loops, const LoopReport& unstable) {
   const std::string contact =
       fmt::format("unstable ({}) in a contact of {:g} N/m", unstable.name, report.stiffest_N_per_m);
-  if (largest_ratio < 1.0) {
-    const double T_s = smallestTimeConstant(unstable.loop, std::min(1.0, report.ratio()));
+  const double ratio = largestRatio(loops, kMinPhaseMargin_rad);
+  if (unstable.margins.largest_stiffness_ratio < 1.0 || ratio == 0.0) {
     fail(scene, "controller.time_constant_s",
-         fmt::format("{} s is {}", unstable.loop.time_constant_s, contact),
-         std::isfinite(T_s) ? fmt::format("at least {:g} s with this damping and these delays",
-                                          std::ceil(1e4 * T_s) / 1e4)
-                            : "more damping, or less delay in filter and drives");
+         fmt::format("{} s is {}", scene.controller.force_control->time_constant_s, contact),
+         timeConstantExpectation(loops, report.ratio()));
   }
-  const std::string rule = fmt::format("c_e/c at most {:.3f}", largest_ratio);
+  const std::string rule = fmt::format("c_e/c at most {:.3f} for a phase margin of {:g} degrees",
+                                       ratio, kMinPhaseMargin_deg);
+  const double least_N_per_m = report.stiffest_N_per_m / (kInside * ratio);
   if (scene.controller.force_control->estimator) {
     fail(scene, "stiffness.estimate.max_N_per_m",
          fmt::format("{:g} N/m is {}", report.stiffness_N_per_m, contact),
-         fmt::format("at least {:g} N/m ({})", report.stiffest_N_per_m / (kInside * largest_ratio),
-                     rule));
+         fmt::format("at least {:g} N/m ({})", least_N_per_m, rule));
   }
   fail(scene, stiffest_key, contact + ", obstacle and arm in series",
-       fmt::format("at most {:g} N/m ({}, c = {:g} N/m)",
-                   kInside * largest_ratio * report.stiffness_N_per_m, rule,
-                   report.stiffness_N_per_m));
+       fmt::format("at most {:g} N/m, or stiffness.assumed_N_per_m of at least {:g} N/m ({})",
+                   kInside * ratio * report.stiffness_N_per_m, least_N_per_m, rule));
 }
 
 /// The module's electronics, but the daemon's filter where the daemon filters.
@@ -125,7 +154,7 @@ std::optional<StabilityReport> checkStability(const Scene& scene) {
   });
   const double largest_ratio = worst->margins.largest_stiffness_ratio;
   if (worst->margins.phase_margin_rad == 0.0) {
-    failUnstable(scene, report, stiffest.key, loops[worst - report.loops.begin()], largest_ratio);
+    failUnstable(scene, report, stiffest.key, loops, *worst);
   }
   report.warnings = warningsOf(scene, report, largest_ratio);
   return report;

@@ -229,13 +229,39 @@ TEST(LargestStiffnessRatio, IsZeroWhereTheTimeConstantIsShorterThanTheDelays) {
 TEST(SmallestTimeConstant, SeparatesStableFromUnstable) {
   ContactLoop loop = paperLoop(LoopLaw::kTwoSpaces);
   loop.time_constant_s = 0.02;
-  const double T_s = smallestTimeConstant(loop, 1.0);
+  const double T_s = smallestTimeConstant(loop, 1.0, 0.0);
   loop.time_constant_s = 1.0001 * T_s;
   EXPECT_GT(largestRatio(loop), 1.0);
   loop.time_constant_s = 0.9999 * T_s;
   EXPECT_LT(largestRatio(loop), 1.0);
   loop.damping = 1e-4;  // 2 d T stays below the delays
-  EXPECT_EQ(smallestTimeConstant(loop, 1.0), kNoLimit);
+  EXPECT_EQ(smallestTimeConstant(loop, 1.0, 0.0), kNoLimit);
+}
+
+/// The margin asked for is the one that is measured where the limit was found.
+TEST(PhaseMarginAskedFor, IsHadAtTheLimits) {
+  constexpr double kAsked_rad = std::numbers::pi / 6.0;
+  for (const LoopLaw law : {LoopLaw::kOneSpace, LoopLaw::kTwoSpaces}) {
+    ContactLoop loop = paperLoop(law);
+    const double ratio = largestStiffnessRatio(loop, kAsked_rad);
+    EXPECT_NEAR(computeMargins(loop, ratio).phase_margin_rad, kAsked_rad, 1e-6);
+    loop.time_constant_s = 0.02;
+    loop.time_constant_s = smallestTimeConstant(loop, 3.0, kAsked_rad);
+    EXPECT_NEAR(computeMargins(loop, 3.0).phase_margin_rad, kAsked_rad, 1e-6);
+  }
+}
+
+TEST(PhaseMarginAskedFor, IsNotToBeHadEverywhere) {
+  constexpr double kAsked_rad = std::numbers::pi / 6.0;
+  ContactLoop late = paperLoop(LoopLaw::kTwoSpaces);
+  late.drive_lag_s = 0.01;
+  late.sample_period_s = 0.005;
+  EXPECT_GT(largestStiffnessRatio(late, 0.0), 1.0);
+  EXPECT_EQ(largestStiffnessRatio(late, kAsked_rad), 0.0);
+  ContactLoop ringing = paperLoop();
+  ringing.damping = 0.1;  // 11 degrees as stiff as assumed, without any delay
+  EXPECT_LT(smallestTimeConstant(ringing, 1.0, 0.0), kNoLimit);
+  EXPECT_EQ(smallestTimeConstant(ringing, 1.0, kAsked_rad), kNoLimit);
 }
 
 TEST(Stability, IsNotFoundWhereNumbersOverflow) {

@@ -18,8 +18,12 @@ struct StabilityMargins {
 /// milliseconds.
 StabilityMargins computeMargins(const ContactLoop& loop, double stiffness_ratio);
 
-/// The T from which on an unstable loop would be stable at this ratio, s; infinite if there is none
-/// up to 100 s.
-double smallestTimeConstant(ContactLoop loop, double stiffness_ratio);
+/// The c_e / c up to which a loop is stable with this phase margin; 0: with none; infinite: no end
+/// was found up to 1e6.
+double largestStiffnessRatio(const ContactLoop& loop, double phase_margin_rad);
+
+/// The T from which on a loop that lacks this phase margin at this ratio would have it, s; infinite
+/// if there is none up to 100 s.
+double smallestTimeConstant(ContactLoop loop, double stiffness_ratio, double phase_margin_rad);
 
 }  // namespace tactus
