@@ -14,6 +14,7 @@
 
 #include "tactus/daemon/hardware_loop.h"
 #include "tactus/daemon/run_error.h"
+#include "tactus/daemon/run_folder.h"
 #include "tactus/daemon/telemetry.h"
 #include "tactus/rt/memory.h"
 #include "tactus/rt/periodic_thread.h"
@@ -112,6 +113,10 @@ std::unique_ptr<HardwareLoop> openHardware(const Scene& scene, double duration_s
   }
 }
 
+std::string runFolder(const Scene& scene, const DaemonOptions& options) {
+  return options.folder.empty() ? "" : prepareRunFolder(options.folder, scene.name).string();
+}
+
 void nameForbiddenCall(const SystemCallFilter& filter) {
   const ForbiddenCalls calls = filter.forbiddenCalls();
   if (calls.count == 0) return;
@@ -147,7 +152,6 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   LoopLink link;
   const auto loop = openHardware(scene, options.duration_s, filter, link);
   warnOfLongQueues(*scene.hardware);
-  Telemetry telemetry(scene, options.folder);
 
   std::vector<Refusal> refusals;
   if (auto refusal = lockMemory(kHeapBytes)) refusals.push_back(*refusal);
@@ -165,6 +169,7 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   });
   refusals.insert(refusals.end(), thread.refusals().begin(), thread.refusals().end());
   judgeRefusals(refusals, real_time.required);
+  Telemetry telemetry(scene, runFolder(scene, options));  // a run that is refused leaves no files
 
   const std::int64_t process_start_ns = processTime_ns();
   thread.start();

@@ -7,7 +7,6 @@
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/daemon_run.h"
 #include "tactus/daemon/input_error.h"
-#include "tactus/daemon/run_folder.h"
 #include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/stability_check.h"
 
@@ -31,8 +30,7 @@ int run(const Options& options) {
   tactus::checkStability(scene);
   tactus::DaemonOptions run;
   run.duration_s = options.duration_s;
-  if (!options.folder.empty())
-    run.folder = tactus::prepareRunFolder(options.folder, scene.name).string();
+  run.folder = options.folder;
   const tactus::Fault fault = tactus::runDaemon(scene, run);
   return fault == tactus::Fault::kNone ? tactus::kExitDone : tactus::kExitFault;
 }
@@ -47,8 +45,7 @@ int main(int argc, char** argv) {
                  "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files");
   app.add_option("--duration", options.duration_s, "End after so many seconds of motion")
       ->check(CLI::Range(1e-3, 1e9));
-  app.add_option("--set", options.settings, "Replace a value: controller.damping=0.7")
-      ->allow_extra_args(false);
+  app.add_option("--set", options.settings, tactus::kSetHelp)->allow_extra_args(false);
   try {
     app.parse(argc, argv);
     return run(options);
