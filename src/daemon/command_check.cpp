@@ -11,6 +11,7 @@
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/json.h"
 #include "tactus/daemon/key_table.h"
+#include "tactus/daemon/path_check.h"
 #include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/stability_check.h"
 
@@ -27,6 +28,13 @@ struct CheckOptions {
 struct StartPose {
   Vector3 p_BaseTool;              ///< m
   double smallest_singular_value;  ///< of the task's Jacobian; 0: the task cannot be controlled
+};
+
+/// What was found about a scene that is accepted.
+struct Findings {
+  StartPose start;
+  std::vector<std::string> path_warnings;
+  std::optional<StabilityReport> stability;
 };
 
 StartPose computeStart(const ControllerConfig& config) {
@@ -119,8 +127,7 @@ void writeStability(JsonWriter& json, const std::optional<StabilityReport>& stab
   json.endObject();
 }
 
-std::string checkJson(const Scene& scene, const StartPose& start,
-                      const std::optional<StabilityReport>& stability) {
+std::string checkJson(const Scene& scene, const Findings& findings) {
   JsonWriter json;
   json.beginObject();
   json.key("scene").value(scene.name);
@@ -134,10 +141,11 @@ std::string checkJson(const Scene& scene, const StartPose& start,
   for (int i = 0; i < scene.controller.chain.size(); ++i) writeJoint(json, scene, i);
   json.endArray();
   json.key("tool_start_m").beginArray();
-  for (const double x : start.p_BaseTool) json.value(x);
+  for (const double x : findings.start.p_BaseTool) json.value(x);
   json.endArray();
-  json.key("smallest_singular_value_at_start").value(start.smallest_singular_value);
-  writeStability(json, stability);
+  json.key("smallest_singular_value_at_start").value(findings.start.smallest_singular_value);
+  writeNames(json, "path_warnings", findings.path_warnings);
+  writeStability(json, findings.stability);
   writeHardware(json, scene);
   json.endObject();
   return json.text();
@@ -163,9 +171,9 @@ std::string stabilityText(const StabilityReport& stability) {
   return text;
 }
 
-std::string toText(const Scene& scene, const StartPose& start,
-                   const std::optional<StabilityReport>& stability) {
+std::string toText(const Scene& scene, const Findings& findings) {
   const TaskConfig& task = scene.controller.task;
+  const StartPose& start = findings.start;
   std::string text;
   const auto line = [&](const std::string& name, const std::string& value) {
     text += textLine(name, value);
@@ -180,7 +188,8 @@ std::string toText(const Scene& scene, const StartPose& start,
   line("start", fmt::format("tool at ({:.4f}, {:.4f}, {:.4f}) m, smallest singular value {:.3g}",
                             start.p_BaseTool.x(), start.p_BaseTool.y(), start.p_BaseTool.z(),
                             start.smallest_singular_value));
-  if (stability) text += stabilityText(*stability);
+  for (const std::string& warning : findings.path_warnings) line("warning", warning);
+  if (findings.stability) text += stabilityText(*findings.stability);
   if (!scene.hardware) return text;
   line("hardware", fmt::format("{}", fmt::join(hardwareStageNames(*scene.hardware), ", ")));
   const std::vector<BusLoad> loads = busLoads(*scene.hardware, scene.period_s);
@@ -194,10 +203,9 @@ void runCheck(const CheckOptions& options) {
   std::vector<Override> overrides;
   for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
   const Scene scene = loadScene(options.scene, overrides);
-  const StartPose start = computeStart(scene.controller);
-  const std::optional<StabilityReport> stability = checkStability(scene);
-  const std::string report =
-      options.json ? checkJson(scene, start, stability) : toText(scene, start, stability);
+  const Findings findings = {computeStart(scene.controller), checkPath(scene),
+                             checkStability(scene)};
+  const std::string report = options.json ? checkJson(scene, findings) : toText(scene, findings);
   std::fputs(report.c_str(), stdout);
 }
 
@@ -207,8 +215,7 @@ void addCheckCommand(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("check", "Validate a scene and show what it consists of");
   const auto options = std::make_shared<CheckOptions>();
   command->add_option("scene", options->scene, "Scene file")->required();
-  command->add_option("--set", options->settings, "section.key=value, instead of the scene's value")
-      ->allow_extra_args(false);
+  command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &exit_code] {
     runCheck(*options);

@@ -1,0 +1,81 @@
+#include "tactus/daemon/path_check.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/control/controller.h"
+#include "tactus/math/weighted_pseudoinverse.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kMaxLag = 1e-3;    ///< m or rad; discretisation alone stays far below
+constexpr double kMaxCycles = 3e5;  ///< so that check stays quick: the first minutes of a path
+
+/// The motion without a contact.
+ControllerConfig undisturbed(ControllerConfig config) {
+  config.tactile_module.reset();
+  config.force_control.reset();
+  return config;
+}
+
+std::string singularStart(const ControllerConfig& config) {
+  ChainPose pose;
+  config.chain.computePose(config.q_start, pose);
+  TaskJacobian J;
+  computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()),
+                     config.task.components.data(), config.task.size, J);
+  const Eigen::MatrixXd scaled = J * config.weights.cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled);
+  const double smallest = svd.singularValues()[config.task.size - 1];
+  if (smallest >= WeightedPseudoinverse::kDampingThreshold) return "";
+  return fmt::format(
+      "singular start: smallest singular value {:.3g}, damped below {:g}, so that the tool lags "
+      "behind; better another start, or fewer task.components",
+      smallest, WeightedPseudoinverse::kDampingThreshold);
+}
+
+/// Why the tool lags: the joint that is nearest to its largest speed, if it is there.
+std::string slowestJoint(const Scene& scene, const JointVector& velocity) {
+  Eigen::Index joint = 0;
+  const double share =
+      (velocity.cwiseAbs().array() / scene.controller.limits.max_velocity.array()).maxCoeff(&joint);
+  constexpr double kFull = 0.999;
+  if (share < kFull) return "limits of position or acceleration, or a singular pose, hold it back";
+  return fmt::format("joint {} is at its largest speed of {:g}", scene.joint_names[joint],
+                     scene.controller.limits.max_velocity[joint]);
+}
+
+/// Where the tool first lags behind its path.
+std::string laggingPath(const Scene& scene) {
+  const ControllerConfig config = undisturbed(scene.controller);
+  const double end_s = Trajectory(config.task.trajectory, Pose{}).end_s();
+  const auto cycles = std::llround(std::min(end_s / scene.period_s, kMaxCycles));
+  const Controller controller(config);
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  for (long long cycle = 0; cycle < cycles; ++cycle) {
+    const double t_s = static_cast<double>(cycle) * scene.period_s;
+    controller.update(RobotInput{}, t_s, scene.period_s, state, output);
+    const double lag = (output.w_d - output.w).norm();
+    if (lag > kMaxLag)
+      return fmt::format("path not followed: at {:.3f} s the tool lags by {:g} mm or mrad; {}", t_s,
+                         1e3 * kMaxLag, slowestJoint(scene, output.velocity));
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<std::string> checkPath(const Scene& scene) {
+  std::vector<std::string> warnings;
+  for (const std::string& warning : {singularStart(scene.controller), laggingPath(scene)}) {
+    if (!warning.empty()) warnings.push_back(warning);
+  }
+  return warnings;
+}
+
+}  // namespace tactus
