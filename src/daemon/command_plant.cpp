@@ -72,8 +72,7 @@ void addPlantCommand(CLI::App& app, int& exit_code) {
       "plant", "Play drives, tactile module and obstacles on the scene's CAN interfaces");
   const auto options = std::make_shared<PlantOptions>();
   command->add_option("SCENE", options->scene, "Scene file")->required();
-  command->add_option("--set", options->settings, "Replace a value: simulation.drive_lag_s=0")
-      ->allow_extra_args(false);
+  command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
   command->add_option("--e-stop-file", options->e_stop_file,
                       "File or FIFO that gets 1 and 0 as the scripted e-stop moves");
   command->add_flag("--json", options->json, "Print the counters as JSON, all else to stderr");

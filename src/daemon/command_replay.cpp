@@ -139,8 +139,7 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
       app.add_subcommand("replay", "Feed a log's inputs to the controller and compare its outputs");
   command->add_option("log", options->log, "Log of a run (run.ulg)")->required();
   command
-      ->add_option("--set", options->settings,
-                   "key=value: replay with another setting and show what it changes")
+      ->add_option("--set", options->settings, std::string(kSetHelp) + "; shows what that changes")
       ->allow_extra_args(false);
   command->add_option("-o,--output", options->output,
                       "Write recorded and replayed commands as CSV, - for standard output");

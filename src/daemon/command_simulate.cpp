@@ -132,8 +132,7 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
                    "Folder for <scene>/run.ulg and "
                    "<scene>/summary.json")
       ->required();
-  command->add_option("--set", options->settings, "Replace a value: controller.damping=0.7")
-      ->allow_extra_args(false);
+  command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
   command->add_flag("--json", options->json, "Print the summaries as one JSON list");
   command->callback([options, &exit_code] { exit_code = simulateScenes(*options); });
 }

@@ -118,8 +118,8 @@ std::string sceneName(const std::string& path) {
   return name;
 }
 
-Scene load(const std::string& path, const std::vector<Override>& overrides, SceneUse use,
-           FileProvider provider) {
+Scene loadNamed(const std::string& path, const std::vector<Override>& overrides, SceneUse use,
+                FileProvider provider) {
   SourceReader reader(std::move(provider));
   YamlNode root = readScene(path, reader, {});
   applyOverrides(root, overrides);
@@ -145,6 +145,19 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, Scen
                .hardware = hardware,
                .troubles = loadTroubles(root, draft, hardware),
                .tree = std::make_shared<const YamlNode>(root)};
+}
+
+/// An error in another file says which scene led there.
+Scene load(const std::string& path, const std::vector<Override>& overrides, SceneUse use,
+           FileProvider provider) {
+  try {
+    return loadNamed(path, overrides, use, std::move(provider));
+  } catch (const InputError& error) {
+    const std::string_view text = error.what();
+    const std::string scene = escaped(path);
+    if (text.starts_with(scene + ":") || text.starts_with("--set ")) throw;
+    throw InputError(fmt::format("{} (for the scene {})", text, scene));
+  }
 }
 
 }  // namespace

@@ -36,6 +36,7 @@ void requireRegularFile(const std::string& path) {
   if (!fs::exists(status)) {
     throw FileProblem(error ? error.message() : std::string("no such file"));
   }
+  if (fs::is_directory(status)) throw FileProblem("is a folder");
   // Opening a fifo would wait for its writer.
   if (!fs::is_regular_file(status)) throw FileProblem("is no regular file");
 }
@@ -71,7 +72,8 @@ SourceFile SourceReader::read(const std::string& path, std::string_view key) {
     return file;
   } catch (const FileProblem& problem) {
     failAt({std::make_shared<std::string>(path), 1, 1}, key, problem.what(),
-           "expected a readable file of at most 1 MiB");
+           key == "robot" ? "expected the path of a robot.yaml, readable, at most 1 MiB"
+                          : "expected a readable file of at most 1 MiB");
   }
 }
 

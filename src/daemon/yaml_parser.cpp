@@ -3,7 +3,11 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
+#include <cctype>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "tactus/daemon/yaml_tree.h"
 
@@ -151,6 +155,66 @@ class TreeBuilder : public YAML::EventHandler {
   int documents_ = 0;
 };
 
+/// The first `count` lines of a text, or all.
+std::vector<std::string_view> firstLines(std::string_view text, int count) {
+  std::vector<std::string_view> lines;
+  while (!text.empty() && count-- > 0) {
+    lines.push_back(text.substr(0, text.find('\n')));
+    text.remove_prefix(std::min(text.size(), lines.back().size() + 1));
+  }
+  return lines;
+}
+
+/// The parser stops behind these mistakes and calls them something else.
+void refuseTab(std::string_view line, SourcePosition at) {
+  const std::size_t tab = line.find('\t');
+  if (tab == std::string_view::npos || tab > line.find_first_not_of(" \t")) return;
+  at.column = static_cast<int>(tab) + 1;
+  failAt(at, "-", "a tab in the indentation", "expected spaces, as in valid YAML");
+}
+
+void refuseMissingColon(std::string_view line, SourcePosition at) {
+  line = line.substr(0, line.find(" #"));
+  line = line.substr(0, line.find_last_not_of(" \r") + 1);
+  const std::size_t start = line.find_first_not_of(' ');
+  if (start == std::string_view::npos || !std::isalpha(static_cast<unsigned char>(line[start])) ||
+      line.ends_with(':') || line.find(": ") != std::string_view::npos)
+    return;
+  at.column = static_cast<int>(start) + 1;
+  failAt(at, "-", inQuotes(line.substr(start)) + " has no colon and space behind its key",
+         "expected key: value, as in valid YAML");
+}
+
+bool isBlank(std::string_view line) {
+  const std::size_t start = line.find_first_not_of(" \t\r");
+  return start == std::string_view::npos || line[start] == '#';
+}
+
+const char* syntaxExpectation(const std::string& problem) {
+  if (problem == YAML::ErrorMsg::MAP_VALUE)
+    return "expected valid YAML: one key: value a line, keys of a section indented alike";
+  if (problem == YAML::ErrorMsg::END_OF_MAP)
+    return "expected valid YAML: keys of a section indented alike";
+  if (problem == YAML::ErrorMsg::END_OF_SEQ)
+    return "expected valid YAML: entries of a list indented alike";
+  if (problem == YAML::ErrorMsg::END_OF_SEQ_FLOW) return "expected valid YAML: a comma or ]";
+  if (problem == YAML::ErrorMsg::END_OF_MAP_FLOW) return "expected valid YAML: a comma or }";
+  return "expected valid YAML";
+}
+
+[[noreturn]] void failSyntax(std::string_view text, const SourcePosition& at,
+                             const std::string& problem) {
+  std::vector<std::string_view> lines = firstLines(text, at.line);
+  const auto here = [&] { return SourcePosition{at.file, static_cast<int>(lines.size()), 1}; };
+  if (!lines.empty()) refuseTab(lines.back(), here());
+  if (!lines.empty() && problem == YAML::ErrorMsg::MAP_VALUE) {  // met at the colon of the next key
+    do lines.pop_back();
+    while (!lines.empty() && isBlank(lines.back()));
+  }
+  if (!lines.empty()) refuseMissingColon(lines.back(), here());
+  failAt(at, "-", problem, syntaxExpectation(problem));
+}
+
 }  // namespace
 
 YamlNode parseYaml(const SourceFile& file) {
@@ -161,7 +225,7 @@ YamlNode parseYaml(const SourceFile& file) {
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& error) {
-    failAt(builder.position(error.mark), "-", error.msg, "expected valid YAML");
+    failSyntax(file.text, builder.position(error.mark), error.msg);
   }
   YamlNode root = builder.takeRoot();
   if (!root.at.file) root.at = builder.position(YAML::Mark::null_mark());

@@ -67,8 +67,8 @@ TEST(Extends, ThePathOfARobotIsMeantFromTheFileThatNamesIt) {
   EXPECT_EQ(loadOver("robot: robots/robot.yaml\n").robot_name, "three");
   EXPECT_EQ(
       test::loadError(withBase({{"run.yaml", "extends: base/base.yaml\nrobot: robot.yaml\n"}})),
-      "robot.yaml:1:1: robot: is not among the recorded files, expected a readable file of at "
-      "most 1 MiB");
+      "robot.yaml:1:1: robot: is not among the recorded files, expected the path of a "
+      "robot.yaml, readable, at most 1 MiB (for the scene run.yaml)");
 }
 
 TEST(Extends, AnErrorNamesTheFileItIsIn) {

@@ -64,7 +64,7 @@ TEST_F(FilesOnDisk, Missing) {
 
 TEST_F(FilesOnDisk, Directory) {
   fs::create_directories(path("scene.yaml"));
-  expectLoadError("scene.yaml", path("scene.yaml") + ":1:1: -: is no regular file" + kExpectation);
+  expectLoadError("scene.yaml", path("scene.yaml") + ":1:1: -: is a folder" + kExpectation);
 }
 
 TEST_F(FilesOnDisk, FifoDoesNotHang) {
@@ -103,10 +103,29 @@ TEST_F(FilesOnDisk, Binary) {
                                     "UTF-8");
 }
 
-TEST_F(FilesOnDisk, MissingRobotNamesItsKey) {
+TEST_F(FilesOnDisk, MissingRobotNamesItsKeyAndItsScene) {
   write("scene.yaml", test::kSceneText);
+  const std::string rest =
+      ", expected the path of a robot.yaml, readable, at most 1 MiB (for the scene " +
+      path("scene.yaml") + ")";
   expectLoadError("scene.yaml",
-                  path("robot.yaml") + ":1:1: robot: No such file or directory" + kExpectation);
+                  path("robot.yaml") + ":1:1: robot: No such file or directory" + rest);
+  fs::create_directories(path("robot.yaml"));
+  expectLoadError("scene.yaml", path("robot.yaml") + ":1:1: robot: is a folder" + rest);
+}
+
+TEST_F(FilesOnDisk, WrongValueOfTheRobotNamesTheScene) {
+  test::SceneFiles files;
+  files.robot = test::replaced(files.robot, "stiffness_N_per_m: 5000", "stiffness_N_per_m: 0");
+  for (const SourceFile& file : files.sources()) write(file.path, file.text);
+  try {
+    loadScene(path("scene.yaml"), {});
+    FAIL() << "loaded";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_TRUE(text.starts_with(path("robot.yaml") + ":")) << text;
+    EXPECT_TRUE(text.ends_with(" (for the scene " + path("scene.yaml") + ")")) << text;
+  }
 }
 
 /// Every scene that comes with the project.

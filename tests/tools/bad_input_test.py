@@ -126,6 +126,51 @@ class BadInput(unittest.TestCase):
     def test_broken_yaml(self):
         self.expect_refused(self.write("start: [1, 2\n"), "scene.yaml:")
 
+    def test_tab(self):
+        scene = self.write("task:\n\tdrift_gain_per_s: 5\n")
+        self.expect_refused(scene, "scene.yaml:3:1: -: a tab in the indentation, expected spaces")
+
+    def test_missing_colon(self):
+        scene = self.write("simulation\n  duration_s: 5\n")
+        self.expect_refused(scene, "scene.yaml:2:1: -: 'simulation' has no colon and space behind ")
+
+    def test_folder_as_robot(self):
+        (self.folder / "crops9").mkdir()
+        scene = self.write("robot: crops9\n")
+        self.expect_refused(scene, "crops9:1:1: robot: is a folder, expected the path of a robot.yaml")
+
+    def write_robot(self, change):
+        folder = CONFIG / "robots/crops9"
+        text = change((folder / "robot.yaml").read_text())
+        (self.folder / "robot.yaml").write_text(
+            text.replace("urdf: crops9.urdf", f"urdf: {folder}/crops9.urdf"))
+        return self.write("robot: robot.yaml\n")
+
+    def test_robot_is_wrong(self):
+        """The error is in the robot's file and names the scene, too."""
+        scene = self.write_robot(lambda text: text.replace("tip: tcp", "tip: tpc"))
+        self.expect_refused(scene, "robot.yaml:4:6: tip: ")
+        self.assertTrue(self.run_tactus("check", scene).stderr.endswith(" (for the scene scene.yaml)\n"))
+
+    def test_daemon_that_is_refused_leaves_no_files(self):
+        """No such buses here, whatever the machine has."""
+        scene = self.write_robot(lambda text: text.replace("interface: can", "interface: absent"))
+        before = sorted(self.folder.rglob("*"))
+        result = subprocess.run([TACTUS.with_name("tactusd"), scene, "-o", "out"], cwd=self.folder,
+                                capture_output=True, text=True, timeout=60)
+        self.assertEqual((result.returncode, result.stdout), (3, ""), result)
+        self.assertIn("absent0", result.stderr)
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+
+    def test_warnings_of_the_path(self):
+        line = "task.trajectory.line"
+        fast = ("--set", f"{line}.speed_m_per_s=10", "--set", f"{line}.ramp_s=0.05")
+        for scene, settings, warnings in ((GOOD, (), 0), (GOOD, fast, 1)):
+            report = json.loads(self.run_tactus("check", "--json", scene, *settings).stdout)
+            self.assertEqual(len(report["path_warnings"]), warnings)
+            text = self.run_tactus("check", scene, *settings).stdout
+            self.assertEqual(text.count("\nwarning  path not followed: at "), warnings)
+
     def test_setting(self):
         start = "--set controller.damping:1:1: controller.damping: "
         self.expect_refused(GOOD, start, "controller.damping=-1")

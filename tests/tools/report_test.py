@@ -179,6 +179,10 @@ class Incomplete(Report):
 
 class Malformed(Report):
     def test_no_folder(self):
+        self.refuse(f"{self.runs}: no such folder, expected what `tactus simulate -o` wrote")
+
+    def test_no_run(self):
+        self.runs.mkdir()
         self.refuse("no run found")
 
     def test_no_argument_is_a_usage_error(self):

@@ -35,6 +35,8 @@ def load_runs(folders, tactus):
     """All runs in the folders, by scene name. Raises InputError."""
     runs = {}
     for folder in folders:
+        if not pathlib.Path(folder).is_dir():
+            raise InputError(f"{folder}: no such folder, expected what `tactus simulate -o` wrote")
         for summary_path in sorted(pathlib.Path(folder).glob("*/summary.json")):
             run = load_run(summary_path.parent, tactus)
             if run.scene in runs:
