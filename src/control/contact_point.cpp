@@ -20,7 +20,7 @@ void locateContact(const TactileSample& sample, double link_length_m,
 }
 
 bool isValid(const TactileSample& sample, const TactileModuleConfig& config) noexcept {
-  const double force = std::hypot(sample.force_y_N, sample.force_z_N);
+  const double force = std::hypot(flushed(sample.force_y_N), flushed(sample.force_z_N));
   return force <= config.max_force_N && std::isfinite(sample.moment_y_Nm) &&
          std::isfinite(sample.moment_z_Nm);
 }

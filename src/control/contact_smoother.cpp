@@ -8,7 +8,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kSmoothing_s = 0.2;           ///< T_s           ///< T_s
+constexpr double kSmoothing_s = 0.2;           ///< T_s
 constexpr double kLearning = 0.01;             ///< a sample: settles within half a second at 4 ms
 constexpr double kMaxRebound = 0.2;            ///< of the peak; 0.115 after the shortest blow
 constexpr double kRinging_s = 0.05;            ///< the filter's, with a margin of two at 15 Hz
@@ -38,8 +38,8 @@ void ContactSmoother::learnNoise(const Vector3& force_N,
 
 bool ContactSmoother::isRebound(const ContactPointState& sensor,
                                 ContactSmootherState& state) const noexcept {
-  state.peak_N -= lagShare(sensor.interval_s, kRinging_s) * state.peak_N;
-  state.peak_N = std::max(state.peak_N, sensor.force_N);
+  state.peak_N *= 1.0 - lagShare(sensor.interval_s, kRinging_s);
+  state.peak_N = std::max(flushed(state.peak_N), sensor.force_N);
   return sensor.force_N < kMaxRebound * state.peak_N &&
          sensor.direction.dot(state.contact.direction) < 0.0;
 }
@@ -54,7 +54,7 @@ void ContactSmoother::update(const ContactPointState& sensor,
   const bool grows = sensor.force_N > kGrowth * state.force_before_N.norm();
   learnNoise(sensor.force_N * sensor.direction, state);
   const double weight = sensor.force_N * sensor.force_N;
-  state.weight *= 1.0 - lagShare(sensor.interval_s, kSmoothing_s);
+  state.weight = flushed(state.weight * (1.0 - lagShare(sensor.interval_s, kSmoothing_s)));
   if (is_rebound || sensor.force_N <= contact_threshold_N_ || weight == 0.0) return;
   state.weight = grows ? weight : state.weight + weight;
   const Vector3 turn = sensor.direction - contact.direction;

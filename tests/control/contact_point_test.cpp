@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <limits>
 
 #include "support/random.h"
@@ -67,6 +68,13 @@ TEST(LocateContact, MixesTwoContactsIntoTheOneThatExplainsThem) {
                 kLength_m, contact);
   EXPECT_NEAR(contact.force_N, 8.0, 1e-12);
   EXPECT_NEAR(contact.position_m, 0.25, 1e-12);
+}
+
+TEST(TactileSampleIsValid, DoesNotCalculateWithSubnormalNumbers) {
+  volatile double tiny = 5e-324;  // not folded at compile time
+  std::feclearexcept(FE_UNDERFLOW);
+  EXPECT_TRUE(isValid({tiny, -tiny, tiny, -tiny, 1}, {}));
+  EXPECT_EQ(std::fetestexcept(FE_UNDERFLOW), 0);
 }
 
 TEST(TactileSampleIsValid, RefusesWhatNoModuleCanMean) {

@@ -139,6 +139,17 @@ TEST_F(Smoother, DoesNotTakeAnImpactForNoise) {
   EXPECT_LT(state_.significant_N, 1.3 * kMin_N);
 }
 
+TEST_F(Smoother, ForgetsDownToZeroAndNotToSubnormalNumbers) {
+  feel(0.3, 5.0, 0.5);
+  for (int i = 0; i < 30000; ++i) {  // two minutes
+    feel(0.3, 0.0, 0.5);
+    ASSERT_NE(std::fpclassify(state_.weight), FP_SUBNORMAL) << i;
+    ASSERT_NE(std::fpclassify(state_.peak_N), FP_SUBNORMAL) << i;
+  }
+  EXPECT_EQ(state_.weight, 0.0);
+  EXPECT_EQ(state_.peak_N, 0.0);
+}
+
 TEST_F(Smoother, StaysAUnitVectorOnTheCoverWhateverComes) {
   for (int i = 0; i < 20000; ++i) {
     feel(random_.uniform(-1.0, 1.0), random_.chance(0.2) ? 0.0 : random_.logUniform(1e-6, 1e6),

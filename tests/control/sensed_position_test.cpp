@@ -66,6 +66,21 @@ TEST(SensedPosition, LagsASteadyMotionByDrivesAndFilter) {
   }
 }
 
+TEST(SensedPosition, ComesBackToZeroAndNotToSubnormalNumbers) {
+  const SensedPosition model(0.005, 15.0);
+  SensedPositionState state;
+  model.update(joints(1.0, -1.0), true, kPeriod_s, state);
+  for (int cycle = 0; cycle < 100; ++cycle) model.update(joints(1.5, -1.5), true, kPeriod_s, state);
+  for (int cycle = 0; cycle < 20000; ++cycle) {
+    model.update(joints(1.0, -1.0), true, kPeriod_s, state);
+    for (const ScaledVector* fading :
+         {&state.lagged, &state.s0, &state.s1, &state.s2, &state.sensed})
+      for (const double x : *fading) ASSERT_NE(std::fpclassify(x), FP_SUBNORMAL) << cycle;
+  }
+  EXPECT_EQ(state.sensed[0], 0.0);
+  EXPECT_EQ(state.lagged[0], 0.0);
+}
+
 TEST(SensedPosition, DoesNotDriftAtRest) {
   const SensedPosition model(0.005, 15.0);
   SensedPositionState state;
