@@ -12,6 +12,8 @@ ControlLaw::ControlLaw(const ForceControlConfig& config, const SerialChain& chai
     : config_(config),
       has_null_space_(config.variant != Variant::kJointSpace &&
                       config.variant != Variant::kTaskSpace),
+      has_second_space_(config.variant == Variant::kNullTask ||
+                        config.variant == Variant::kNullJoint),
       inv_max_null_speed_(ScaledVector::Zero()) {
   for (int i = 0; i < chain.size(); ++i) {
     const double limit = chain.type(i) == JointType::kPrismatic ? config.max_null_speed_m_per_s
@@ -79,6 +81,7 @@ void ControlLaw::update(const ControlLawInput& input, const ContactSpace& space,
   const double rate =
       period_s / (config_.time_constant_s * config_.time_constant_s * input.stiffness_N_per_m);
   if (!limited && !input.hold_integral) state.V_m_per_s += rate * input.F_p_N;
+  if (!has_second_space_) return;
   state.It_m_per_s =
       std::max(0.0, state.It_m_per_s + rate * (input.F_p_N - config_.activation_force_N));
 }

@@ -80,9 +80,17 @@ TEST(ControlLaw, MultiSpaceAddsTheSecondSpace) {
 }
 
 TEST(ControlLaw, IntegratesAfterUseWithTheStiffnessInside) {
-  const Result r = updateOnce(lawOf(Variant::kNullSpace), kTouch, kBefore);
+  const Result r = updateOnce(lawOf(Variant::kNullTask), kTouch, kBefore);
   EXPECT_NEAR(r.state.V_m_per_s, 0.003 + 0.001 * 4.0 / (0.01 * 1000.0), 1e-16);
   EXPECT_NEAR(r.state.It_m_per_s, 0.001 + 0.001 * 0.2 / (0.01 * 1000.0), 1e-16);
+}
+
+TEST(ControlLaw, IntegratesForASecondSpaceOnlyWhereThereIsOne) {
+  for (const Variant variant :
+       {Variant::kNullSpace, Variant::kJointSpace, Variant::kTaskSpace, Variant::kNullLimit})
+    EXPECT_EQ(updateOnce(lawOf(variant), kTouch).state.It_m_per_s, 0.0);
+  for (const Variant variant : {Variant::kNullTask, Variant::kNullJoint})
+    EXPECT_GT(updateOnce(lawOf(variant), kTouch).state.It_m_per_s, 0.0);
 }
 
 TEST(ControlLaw, AChangeOfStiffnessDoesNotMoveTheIntegralPart) {

@@ -7,7 +7,7 @@ namespace tactus {
 
 struct ControlLawState {
   double V_m_per_s = 0.0;   ///< integral of (5), stored as int F_p / (T^2 c) dt
-  double It_m_per_s = 0.0;  ///< windowed integral of (7), stored likewise
+  double It_m_per_s = 0.0;  ///< windowed integral of (7), stored likewise; 0 without a second space
 };
 
 struct ControlLawInput {
@@ -52,6 +52,7 @@ class ControlLaw {
 
   ForceControlConfig config_;
   bool has_null_space_;
+  bool has_second_space_;
   ScaledVector inv_max_null_speed_;  ///< 1 / (W^1/2 limit), for a_scaled u_n
 };
 
