@@ -38,9 +38,9 @@ ApproachLimitState ApproachLimit::initialState() const noexcept {
   return state;
 }
 
-void ApproachLimit::follow(const ContactPointState& sensor,
+void ApproachLimit::follow(const ContactPointState& sensor, const Pose& X_BaseModule,
                            ApproachLimitState& state) const noexcept {
-  smoother_.update(sensor, state.smoother);
+  smoother_.update(sensor, X_BaseModule, state.smoother);
 }
 
 void ApproachLimit::estimate(const JointVector& a, double F_p_N, double period_s,

@@ -43,7 +43,7 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
                                const CommandedMotion& commanded, double period_s,
                                ContactControllerState& state, ContactReport& report,
                                Motion& motion) const noexcept {
-  const ContactPointState& point = follow(sensor, period_s, state);
+  const ContactPointState& point = follow(sensor, kinematics, period_s, state);
   const Contact contact = locate(kinematics, point);
 
   ControlLawInput input;
@@ -90,15 +90,20 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
   report.u_t = u.u_t;
 }
 
-const ContactPointState& ContactController::follow(const ContactPointState& sensor, double period_s,
+const ContactPointState& ContactController::follow(const ContactPointState& sensor,
+                                                   const TaskKinematics& kinematics,
+                                                   double period_s,
                                                    ContactControllerState& state) const noexcept {
   if (joint_space_transition_) {
     joint_space_transition_->follow(sensor, period_s, state.joint_space_transition);
     return state.joint_space_transition.contact;
   }
   if (!approach_limit_) return sensor;
-  approach_limit_->follow(sensor, state.approach);
-  return state.approach.smoother.contact;
+  ContactPointState& contact = state.approach.smoother.contact;
+  contact.interval_s = 0.0;
+  if (sensor.isNew())
+    approach_limit_->follow(sensor, framePose(kinematics.pose, link_), state.approach);
+  return contact;
 }
 
 ContactController::Contact ContactController::locate(

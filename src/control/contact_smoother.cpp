@@ -8,13 +8,27 @@
 namespace tactus {
 namespace {
 
-constexpr double kSmoothing_s = 0.2;           ///< T_s
+constexpr double kSmoothing_s = 1.0;           ///< T_s
 constexpr double kLearning = 0.01;             ///< a sample: settles within half a second at 4 ms
 constexpr double kMaxRebound = 0.2;            ///< of the peak; 0.115 after the shortest blow
 constexpr double kRinging_s = 0.05;            ///< the filter's, with a margin of two at 15 Hz
 constexpr double kGrowth = 1.2;                ///< of force from sample to sample in an impact
 constexpr double kMedianOfNoise = 0.48;        ///< of |d2| / s: sqrt(2 ln 2) sqrt(6) / 6
 constexpr double kMaxSignificantRatio = 10.0;  ///< s / s_min; more would be no sensor
+
+void normalise(Vector3& direction) {
+  const double length = direction.norm();
+  if (length > 0.0) direction /= length;
+}
+
+/// What stands still in the base frame, seen from the link that has moved.
+void carry(const Pose& from, const Pose& to, ContactPointState& contact) {
+  const Vector3 p_Base = from.p_AB + contact.position_m * from.R_AB.col(0);
+  const Vector3 F_Base = from.R_AB.lazyProduct(contact.direction);
+  contact.position_m = to.R_AB.col(0).dot(p_Base - to.p_AB);
+  contact.direction = Vector3(0.0, to.R_AB.col(1).dot(F_Base), to.R_AB.col(2).dot(F_Base));
+  normalise(contact.direction);
+}
 
 }  // namespace
 
@@ -44,11 +58,12 @@ bool ContactSmoother::isRebound(const ContactPointState& sensor,
          sensor.direction.dot(state.contact.direction) < 0.0;
 }
 
-void ContactSmoother::update(const ContactPointState& sensor,
+void ContactSmoother::update(const ContactPointState& sensor, const Pose& X_BaseModule,
                              ContactSmootherState& state) const noexcept {
   ContactPointState& contact = state.contact;
   contact.interval_s = sensor.interval_s;
-  if (!sensor.isNew()) return;
+  carry(state.X_BaseModule, X_BaseModule, contact);
+  state.X_BaseModule = X_BaseModule;
   const bool is_rebound = isRebound(sensor, state);
   contact.force_N = is_rebound ? 0.0 : sensor.force_N;
   const bool grows = sensor.force_N > kGrowth * state.force_before_N.norm();
@@ -66,8 +81,7 @@ void ContactSmoother::update(const ContactPointState& sensor,
   const double share = 1.0 - (1.0 - slow) * std::min(1.0, ratio * ratio);
   contact.position_m += share * shift_m;
   contact.direction += share * turn;
-  const double length = contact.direction.norm();
-  if (length > 0.0) contact.direction /= length;
+  normalise(contact.direction);
 }
 
 }  // namespace tactus

@@ -115,22 +115,22 @@ struct TouchedRobot {
     config.task.trajectory = {0.05, {line}};
   }
 
-  /// Speed of the touched point of the cover towards what touches it, by differences.
-  double approach(const ControllerOutput& output) const {
+  /// Speed of the contact, as smoothed, towards what touches it, by differences.
+  double approach(const ContactPointState& contact, const ControllerOutput& output) const {
     const double h = 1e-6;
-    const Vector3 way = point(output.q_desired + h * output.velocity) -
-                        point(output.q_desired - h * output.velocity);
+    const Vector3 way = point(contact.position_m, output.q_desired + h * output.velocity) -
+                        point(contact.position_m, output.q_desired - h * output.velocity);
     ChainPose pose;
     config.chain.computePose(output.q_desired, pose);
     const Matrix3 R = framePose(pose, config.tactile_module->link).R_AB;
-    return -way.dot(R * Vector3(0.0, std::cos(angle_rad), std::sin(angle_rad))) / (2.0 * h);
+    return -way.dot(R * contact.direction) / (2.0 * h);
   }
 
-  Vector3 point(const JointVector& q) const {
+  Vector3 point(double along_m, const JointVector& q) const {
     ChainPose pose;
     config.chain.computePose(q, pose);
     const Pose X = framePose(pose, config.tactile_module->link);
-    return X.p_AB + x_m * X.R_AB.col(0);
+    return X.p_AB + along_m * X.R_AB.col(0);
   }
 
   int n;
@@ -161,7 +161,7 @@ TEST(ApproachLimit, IsNeverExceededByTheCommand) {
       if (m == 0.0) continue;
       const double F_N = std::max(0.0, contact.force_contact_N + m * approach.way_ahead_m);
       const double v_max = (kLimit_N - F_N) / (kT_s * m);
-      const double v = robot.approach(output);
+      const double v = robot.approach(approach.smoother.contact, output);
       const double tolerance = 1e-6 * (1.0 + output.velocity.norm());
       ASSERT_LE(v, v_max + tolerance) << "robot " << i << ", cycle " << cycle;
       if (contact.u_t < 0.0) {

@@ -26,7 +26,7 @@ class Smoother : public testing::Test {
     sample.moment_z_Nm += 0.15 * noise(sigma_N);
     locateContact(sample, kLength_m, sensor_);
     sensor_.interval_s = kSample_s;
-    smoother_.update(sensor_, state_);
+    smoother_.update(sensor_, X_BaseModule_, state_);
   }
 
   /// Twelve uniform numbers: near enough to a normal one.
@@ -44,6 +44,7 @@ class Smoother : public testing::Test {
   ContactSmoother smoother_{kMin_N, kThreshold_N, kLength_m};
   ContactSmootherState state_ = smoother_.initialState();
   ContactPointState sensor_;
+  Pose X_BaseModule_;
 };
 
 TEST_F(Smoother, TakesTheFirstTouchAsItIs) {
@@ -55,22 +56,25 @@ TEST_F(Smoother, TakesTheFirstTouchAsItIs) {
   EXPECT_NEAR(state_.contact.force_N, 1.5, 1e-12);
 }
 
-TEST_F(Smoother, KeepsEverythingBetweenSamples) {
-  feel(0.3, 1.5, 0.7);
-  const ContactSmootherState before = state_;
-  ContactPointState old = sensor_;
-  old.interval_s = 0.0;
-  old.position_m = 0.1;
-  smoother_.update(old, state_);
-  EXPECT_FALSE(state_.contact.isNew());
-  EXPECT_EQ(state_.contact.position_m, before.contact.position_m);
-  EXPECT_EQ(state_.significant_N, before.significant_N);
+TEST_F(Smoother, AContactThatStandsStillIsKeptWhileTheLinkMoves) {
+  // The link turns about what touches it, and slides along itself; where that is, is told with an
+  // error that shall be averaged out.
+  for (int i = 0; i < 200; ++i) feel(0.3, 4.0, 0.0);
+  for (int i = 1; i <= 100; ++i) {
+    const double turn = 0.002 * i;
+    X_BaseModule_.R_AB = Eigen::AngleAxisd(turn, Vector3::UnitZ()).toRotationMatrix();
+    const double x_m = 0.3 - 0.0005 * i;
+    X_BaseModule_.p_AB = Vector3(0.3, 0.0, 0.0) - x_m * X_BaseModule_.R_AB.col(0);
+    feel(x_m + (i % 2 == 0 ? 0.001 : -0.001), 4.0, 0.0);
+    ASSERT_NEAR(state_.contact.position_m, x_m, 1e-4) << i;
+    ASSERT_NEAR(angle(), 0.0, 1e-12) << "horizontal, and square to the link";
+  }
 }
 
 TEST_F(Smoother, WeighsSamplesByTheSquareOfTheirForce) {
   feel(0.300, 3.0, 0.0);
   feel(0.301, 3.3, 0.0);  // not significant: 3.3 N (0.001 / 0.19)
-  const double old = 9.0 * std::exp(-kSample_s / 0.2);
+  const double old = 9.0 * std::exp(-kSample_s / 1.0);
   EXPECT_NEAR(state_.contact.position_m, 0.3 + 0.001 * 10.89 / (10.89 + old), 1e-9);
 }
 
@@ -119,7 +123,7 @@ TEST_F(Smoother, QuietensPointAndDirection) {
       raw += std::pow(std::atan2(sensor_.direction.z(), sensor_.direction.y()) - 0.5, 2.0);
       smooth += std::pow(angle() - 0.5, 2.0);
     }
-    EXPECT_LT(smooth, 0.02 * raw) << sigma;
+    EXPECT_LT(smooth, 0.03 * raw) << sigma;
   }
 }
 
@@ -141,7 +145,7 @@ TEST_F(Smoother, DoesNotTakeAnImpactForNoise) {
 
 TEST_F(Smoother, ForgetsDownToZeroAndNotToSubnormalNumbers) {
   feel(0.3, 5.0, 0.5);
-  for (int i = 0; i < 30000; ++i) {  // two minutes
+  for (int i = 0; i < 80000; ++i) {  // five minutes
     feel(0.3, 0.0, 0.5);
     ASSERT_NE(std::fpclassify(state_.weight), FP_SUBNORMAL) << i;
     ASSERT_NE(std::fpclassify(state_.peak_N), FP_SUBNORMAL) << i;

@@ -46,12 +46,14 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
   visit("estimator.F_prev", 0, F_prev);
 
   const auto& [smoother, position, approach_estimator, memory, way_ahead, is_limiting] = approach;
-  const auto& [significant, before, two_before, peak, weight, smooth] = smoother;
+  const auto& [significant, before, two_before, peak, weight, X_BaseModule, smooth] = smoother;
   visit("smoother.significant", 0, significant);
   list("smoother.force_before", before);
   list("smoother.force_two_before", two_before);
   visit("smoother.peak", 0, peak);
   visit("smoother.weight", 0, weight);
+  list("smoother.R_BaseModule", X_BaseModule.R_AB.reshaped());
+  list("smoother.p_BaseModule", X_BaseModule.p_AB);
   point("smoother.force_N", "smoother.position_m", "smoother.direction", smooth);
   const auto& [has_started, origin, commanded, lagged, s0, s1, s2, sensed, sensed_before] =
       position;

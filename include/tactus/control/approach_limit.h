@@ -37,8 +37,9 @@ class ApproachLimit {
 
   ApproachLimitState initialState() const noexcept;
 
-  /// Takes over a sensor's reading; the contact to use is state.smoother.contact.
-  void follow(const ContactPointState& sensor, ApproachLimitState& state) const noexcept;
+  /// Takes over a new reading of the sensor; the contact to use is state.smoother.contact.
+  void follow(const ContactPointState& sensor, const Pose& X_BaseModule,
+              ApproachLimitState& state) const noexcept;
 
   /// a: J_p^T F^ of that contact; q_desired: at the start of the cycle.
   void observe(const JointVector& a, double F_p_N, const JointVector& q_desired, double period_s,

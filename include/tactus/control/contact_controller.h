@@ -59,8 +59,8 @@ class ContactController {
   struct Contact;
 
   /// The contact that the law uses: as read, or smoothed by a stage.
-  const ContactPointState& follow(const ContactPointState& sensor, double period_s,
-                                  ContactControllerState& state) const noexcept;
+  const ContactPointState& follow(const ContactPointState& sensor, const TaskKinematics& kinematics,
+                                  double period_s, ContactControllerState& state) const noexcept;
   Contact locate(const TaskKinematics& kinematics, const ContactPointState& point) const noexcept;
   void passTransition(const Contact& contact, double period_s, ContactControllerState& state,
                       ContactReport& report, ControlLawInput& input) const noexcept;

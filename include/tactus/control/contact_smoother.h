@@ -11,6 +11,7 @@ struct ContactSmootherState {
   Vector3 force_two_before_N = Vector3::Zero();  ///< and of the one before it
   double peak_N = 0.0;                           ///< of the last moments
   double weight = 0.0;                           ///< sum of the weights of all samples, N^2
+  Pose X_BaseModule;                             ///< at the newest sample
   ContactPointState contact;  ///< force as read, but for rebounds; point and direction smooth
 };
 
@@ -21,10 +22,11 @@ struct ContactSmootherState {
 /// Noise is told from signal by the second difference d2 of the force: the module's filter makes it
 /// small for every real force. Its median is 2.88 sigma for noise alone, tracked by
 ///   s = 6 sigma:  s rises by 1 % if |d2| > 0.48 s, and else falls by 1 %;  at least s_min
-/// x and F^ are means of the samples of the last T_s = 0.2 s, weighed by F^2 as their errors go
-/// with 1 / F. In an impact, where F grows by a fifth from one sample to the next, the newest is
-/// all that counts; and a difference d from the mean that is larger than s, measured as a force, is
-/// followed at once:
+/// x and F^ are means of the samples of the last T_s = 1 s, weighed by F^2 as their errors go with
+/// 1 / F, of a contact that stands still in the base frame: first the motion of the link since the
+/// sample before is taken out of them. In an impact, where F grows by a fifth from one sample to
+/// the next, the newest is all that counts; and a difference d from the mean that is larger than s,
+/// measured as a force, is followed at once:
 ///   W = W exp(-dt / T_s) + F^2,   g = 1 - (1 - F^2 / W) min(1, (s / d)^2),
 ///   d = F |(dF^, dx / (L / 2))|,   x += g dx,  F^ += g dF^
 /// A force up to F_th says nothing of either. After a blow the module's filter swings through and
@@ -40,8 +42,9 @@ class ContactSmoother {
 
   ContactSmootherState initialState() const noexcept;
 
-  /// Takes over a sensor's reading; the result is state.contact.
-  void update(const ContactPointState& sensor, ContactSmootherState& state) const noexcept;
+  /// Takes over a new reading of the sensor; the result is state.contact.
+  void update(const ContactPointState& sensor, const Pose& X_BaseModule,
+              ContactSmootherState& state) const noexcept;
 
  private:
   /// Keeps the peak, too.
