@@ -24,7 +24,8 @@ class ProfileProbe {
                    1.0,
                    {},
                    setup.plant.obstacles.back().appears_s,
-                   setup.plant.obstacles.back().vanishes_s},
+                   setup.plant.obstacles.back().vanishes_s,
+                   setup.plant.obstacles.back().swing},
                   kNoLimit) {}
 
   /// Way that the arm has gone into the obstacle, m.
@@ -59,6 +60,7 @@ JudgedRun judgeRun(const RunSetup& setup) {
   for (long cycle = 0; cycle < cycles; ++cycle) {
     const double t_s = static_cast<double>(cycle) * setup.period_s;
     robot.read(input);
+    if (setup.reading) setup.reading(input.tactile);
     controller.update(input, t_s, setup.period_s, state, output);
     const Vector3 goal = output.w_d.size() >= 3 ? Vector3(output.w_d.head<3>()) : Vector3::Zero();
     run.tcp_error_final_m = (goal - robot.toolPosition()).norm();

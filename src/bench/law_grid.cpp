@@ -12,8 +12,6 @@ constexpr std::array kProfiles = {3e3, 7e3, 17e3, 1e5, 1e6};          // N/m
 constexpr std::array kSpeedFactors = {0.5, 1.0, 2.4, 5.0};
 constexpr double kSettling_s = 4.5;  ///< after the motion's end
 
-constexpr std::array kLaws = {GridLaw::kAssumed, GridLaw::kEstimated, GridLaw::kLimited};
-
 }  // namespace
 
 const char* gridLawName(GridLaw law) {
@@ -60,10 +58,12 @@ RunSetup lawGridSetup(const RunSetup& base, const LawGridPoint& point, GridLaw l
   return setup;
 }
 
-LawGridRow runLawGridPoint(const RunSetup& base, const LawGridPoint& point) {
+LawGridRow runLawGridPoint(const RunSetup& base, const LawGridPoint& point,
+                           const std::function<void(RunSetup&)>& change) {
   LawGridRow row{point, {}, {}};
   for (int i = 0; i < kGridLaws; ++i) {
-    const RunSetup setup = lawGridSetup(base, point, kLaws[i]);
+    RunSetup setup = lawGridSetup(base, point, kAllGridLaws[i]);
+    change(setup);
     row.runs[i] = judgeRun(setup);
     row.scale_N[i] = naturalScale(setup, row.runs[i]);
   }
@@ -101,7 +101,7 @@ Table lawGridTable(const std::vector<LawGridRow>& rows) {
     for (int i = 0; i < kGridLaws; ++i) {
       const JudgedRun& run = row.runs[i];
       const bool has_fault = run.fault != Fault::kNone;
-      table.rows.push_back({std::string(gridLawName(kLaws[i])), row.point.band_N_per_m,
+      table.rows.push_back({std::string(gridLawName(kAllGridLaws[i])), row.point.band_N_per_m,
                             row.point.profile_N_per_m, row.point.robot_stiffness_N_per_m,
                             row.point.speed_factor, run.peak_force_N, run.final_force_N,
                             run.restlessness_N, row.scale_N[i], run.peak_force_N / row.scale_N[i],
@@ -114,19 +114,19 @@ Table lawGridTable(const std::vector<LawGridRow>& rows) {
   return table;
 }
 
-Table lawGridSummary(const std::vector<LawGridRow>& rows) {
-  Table table{"law_summary",
-              {"law", "points", "limit_cycles", "largest_peak_N", "final_min_N", "final_max_N",
-               "largest_peak_to_scale", "largest_peak_to_assumed"},
-              {}};
-  for (const GridLaw law : kLaws) {
-    const LawGridFigures figures = lawGridFigures(rows, law);
-    table.rows.push_back({std::string(gridLawName(law)), static_cast<double>(rows.size()),
-                          static_cast<double>(figures.restless), figures.peak_N,
-                          figures.final_min_N, figures.final_max_N, figures.peak_to_scale,
-                          figures.peak_to_assumed});
-  }
-  return table;
+Table emptyLawSummary(const std::string& name) {
+  return {name,
+          {"trial", "law", "points", "limit_cycles", "largest_peak_N", "final_min_N", "final_max_N",
+           "largest_peak_to_scale", "largest_peak_to_assumed"},
+          {}};
+}
+
+void addLawSummary(const std::string& trial, GridLaw law, const std::vector<LawGridRow>& rows,
+                   Table& table) {
+  const LawGridFigures figures = lawGridFigures(rows, law);
+  table.rows.push_back({trial, std::string(gridLawName(law)), static_cast<double>(rows.size()),
+                        static_cast<double>(figures.restless), figures.peak_N, figures.final_min_N,
+                        figures.final_max_N, figures.peak_to_scale, figures.peak_to_assumed});
 }
 
 }  // namespace tactus

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "tactus/bench/law_grid.h"
+#include "tactus/bench/law_trials.h"
 #include "tactus/bench/study.h"
 #include "tactus/daemon/scene_loader.h"
 
@@ -12,12 +13,13 @@ namespace {
 
 constexpr const char* kBase = "config/scenes/scenario2_estimated.yaml";
 
-std::vector<LawGridRow> runGrid(const RunSetup& base, const std::vector<LawGridPoint>& points) {
+std::vector<LawGridRow> runGrid(const RunSetup& base, const std::vector<LawGridPoint>& points,
+                                const LawTrial& trial) {
   std::vector<LawGridRow> rows(points.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < points.size(); i = next++)
-      rows[i] = runLawGridPoint(base, points[i]);
+      rows[i] = runLawGridPoint(base, points[i], trial.change);
   };
   std::vector<std::jthread> workers;
   for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) workers.emplace_back(work);
@@ -49,8 +51,18 @@ StudyResult studyLaw(const BenchOptions& options) {
     std::size_t i = 0;
     std::erase_if(points, [&](const LawGridPoint&) { return i++ % 20 > 0; });
   }
-  const std::vector<LawGridRow> rows = runGrid(base, points);
-  const LawGridFigures limited = lawGridFigures(rows, GridLaw::kLimited);
+  std::vector<LawGridRow> undisturbed;
+  Table robustness = emptyLawSummary("law_robustness");
+  for (const LawTrial& trial : lawDisturbances()) {
+    const std::vector<LawGridRow> rows = runGrid(base, points, trial);
+    for (const GridLaw law : kAllGridLaws) addLawSummary(trial.name, law, rows, robustness);
+    if (undisturbed.empty()) undisturbed = rows;
+  }
+  Table ablation = emptyLawSummary("law_ablation");
+  addLawSummary("complete", GridLaw::kLimited, undisturbed, ablation);
+  for (const LawTrial& trial : lawAblations())
+    addLawSummary(trial.name, GridLaw::kLimited, runGrid(base, points, trial), ablation);
+  const LawGridFigures limited = lawGridFigures(undisturbed, GridLaw::kLimited);
   StudyResult result;
   result.title = "The approach-speed limit beside the paper's law";
   result.text =
@@ -65,7 +77,7 @@ StudyResult studyLaw(const BenchOptions& options) {
                   {"null_limit: peak over the natural scale, largest", 1.15, limited.peak_to_scale},
                   {"null_limit: peak over the paper's with the assumed stiffness, largest", 1.05,
                    limited.peak_to_assumed}};
-  result.tables = {lawGridSummary(rows), lawGridTable(rows)};
+  result.tables = {robustness, ablation, lawGridTable(undisturbed)};
   result.plots = {peaks(result.tables.back())};
   return result;
 }

@@ -76,7 +76,7 @@ TEST(LawGrid, TheLimitPeaksNearTheNaturalScaleAndComesToRest) {
     const bool is_corner = (point.band_N_per_m == 0.0 || point.band_N_per_m == 30.0) &&
                            (point.profile_N_per_m == 3e3 || point.profile_N_per_m >= 1e5) &&
                            (point.speed_factor == 0.5 || point.speed_factor == 5.0);
-    if (is_corner) rows.push_back(runLawGridPoint(base(), point));
+    if (is_corner) rows.push_back(runLawGridPoint(base(), point, [](RunSetup&) {}));
   }
   ASSERT_EQ(rows.size(), 24u);
   const LawGridFigures limited = lawGridFigures(rows, GridLaw::kLimited);
@@ -94,7 +94,9 @@ TEST(LawGrid, TheLimitPeaksNearTheNaturalScaleAndComesToRest) {
       peak_N = std::max(peak_N, table.number(i, "peak_force_N"));
   }
   EXPECT_EQ(peak_N, limited.peak_N);
-  EXPECT_EQ(findNumber(lawGridSummary(rows), "largest_peak_N", {{"law", "limited"}}), peak_N);
+  Table summary = emptyLawSummary("summary");
+  addLawSummary("none", GridLaw::kLimited, rows, summary);
+  EXPECT_EQ(findNumber(summary, "largest_peak_N", {{"law", "limited"}}), peak_N);
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
+
 #include "tactus/control/controller_config.h"
 #include "tactus/control/fault.h"
+#include "tactus/control/robot.h"
 #include "tactus/sim/plant_config.h"
 
 namespace tactus {
@@ -12,6 +15,8 @@ struct RunSetup {
   PlantConfig plant;
   double period_s = 0.001;
   double duration_s = 13.0;
+  /// What the tactile module says instead of what it felt; empty: just that.
+  std::function<void(TactileSample& sample)> reading{};
 };
 
 /// How a run went with its last obstacle, the profile. Forces are the sensor's.

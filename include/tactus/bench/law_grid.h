@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "tactus/bench/judged_run.h"
@@ -22,7 +24,9 @@ std::vector<LawGridPoint> lawGridPoints(double robot_stiffness_N_per_m);
 
 /// null_task with the assumed stiffness; with Algorithm 1; null_limit with its estimator.
 enum class GridLaw { kAssumed, kEstimated, kLimited };
-inline constexpr int kGridLaws = 3;
+inline constexpr std::array kAllGridLaws = {GridLaw::kAssumed, GridLaw::kEstimated,
+                                            GridLaw::kLimited};
+inline constexpr int kGridLaws = kAllGridLaws.size();
 const char* gridLawName(GridLaw law);
 
 struct LawGridRow {
@@ -36,7 +40,9 @@ struct LawGridRow {
 /// and the sensor's range is not felt.
 RunSetup lawGridSetup(const RunSetup& base, const LawGridPoint& point, GridLaw law);
 
-LawGridRow runLawGridPoint(const RunSetup& base, const LawGridPoint& point);
+/// change: of each set-up before it runs.
+LawGridRow runLawGridPoint(const RunSetup& base, const LawGridPoint& point,
+                           const std::function<void(RunSetup&)>& change);
 
 /// Counts and extremes of a law over rows.
 struct LawGridFigures {
@@ -50,7 +56,10 @@ LawGridFigures lawGridFigures(const std::vector<LawGridRow>& rows, GridLaw law);
 
 /// A row for each point and law.
 Table lawGridTable(const std::vector<LawGridRow>& rows);
-/// A row for each law: its figures.
-Table lawGridSummary(const std::vector<LawGridRow>& rows);
+
+/// Figures over the grid, a row for each trial and law.
+Table emptyLawSummary(const std::string& name);
+void addLawSummary(const std::string& trial, GridLaw law, const std::vector<LawGridRow>& rows,
+                   Table& table);
 
 }  // namespace tactus
