@@ -15,6 +15,7 @@
 #include "tactus/daemon/hardware_loop.h"
 #include "tactus/daemon/run_error.h"
 #include "tactus/daemon/run_folder.h"
+#include "tactus/daemon/service_watchdog.h"
 #include "tactus/daemon/telemetry.h"
 #include "tactus/rt/memory.h"
 #include "tactus/rt/periodic_thread.h"
@@ -171,6 +172,8 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   judgeRefusals(refusals, real_time.required);
   Telemetry telemetry(scene, runFolder(scene, options));  // a run that is refused leaves no files
 
+  // While stop signals are blocked, so that its thread never gets one.
+  const ServiceWatchdog watchdog(link.pulse, real_time.max_late_cycles);
   const std::int64_t process_start_ns = processTime_ns();
   thread.start();
   const StopRequests stop_requests(link.stop_requested);

@@ -62,8 +62,11 @@ bool Telemetry::drain(LoopLink& link) {
     summary_.add(cycle);
   }
   ModeReport report;
-  while (link.reports.pop(report))
-    std::fputs(fmt::format("tactusd: {}\n", describeMode(report, scene_)).c_str(), stderr);
+  while (link.reports.pop(report)) {
+    const std::string text = describeMode(report, scene_);
+    service_.onMode(report.mode, text);
+    std::fputs(fmt::format("tactusd: {}\n", text).c_str(), stderr);
+  }
   return !error_;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 
 #include "tactus/daemon/control_cycle.h"
 #include "tactus/daemon/cycle_record.h"
@@ -14,6 +15,12 @@ struct LoopRecord {
   bool is_in_motion = false;  ///< false: before the arm first moved; only the times count
 };
 
+/// What the loop shows of itself each cycle to those who watch over it.
+struct LoopPulse {
+  std::atomic<std::int64_t> cycles{0};
+  std::atomic<std::int64_t> late_in_a_row{0};  ///< cycles up to the last one; 0: on time
+};
+
 /// All that passes between the loop and the telemetry: wait-free, and never waited for by the loop.
 struct LoopLink {
   static constexpr std::size_t kRecords = 4096;  ///< four seconds at 1 kHz
@@ -21,6 +28,7 @@ struct LoopLink {
 
   SpscQueue<LoopRecord> records{kRecords};
   SpscQueue<ModeReport> reports{kReports};  ///< one for each change of mode or fault
+  LoopPulse pulse;
   std::atomic<bool> stop_requested{false};
 };
 

@@ -8,12 +8,13 @@
 #include "tactus/daemon/loop_link.h"
 #include "tactus/daemon/run_summary.h"
 #include "tactus/daemon/scene.h"
+#include "tactus/daemon/service_notify.h"
 #include "tactus/daemon/ulog_writer.h"
 
 namespace tactus {
 
-/// What becomes of a run's cycles outside the loop: the log, the figures, and a line for each
-/// change of mode.
+/// What becomes of a run's cycles outside the loop: the log, the figures, and for each change of
+/// mode a line and a word to the service manager.
 class Telemetry {
  public:
   /// folder: of run.ulg and summary.json, which exists; empty: no files. Throws as UlogWriter.
@@ -33,6 +34,7 @@ class Telemetry {
 
   const Scene& scene_;
   std::string folder_;
+  ServiceNotify service_;
   std::optional<UlogWriter> log_;
   RunSummary summary_;
   LoopFigures loop_;

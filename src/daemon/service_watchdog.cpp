@@ -1,0 +1,36 @@
+#include "tactus/daemon/service_watchdog.h"
+
+#include <systemd/sd-daemon.h>
+
+namespace tactus {
+namespace {
+
+/// Looks in the time after which the manager gives up: a look or two may come late.
+constexpr int kLooks = 4;
+
+}  // namespace
+
+bool LoopHealth::look() noexcept {
+  const std::int64_t cycles = pulse_.cycles.load(std::memory_order_relaxed);
+  const bool has_moved_on = cycles != seen_cycles_;
+  seen_cycles_ = cycles;
+  return has_moved_on && pulse_.late_in_a_row.load(std::memory_order_relaxed) <= max_late_cycles_;
+}
+
+ServiceWatchdog::ServiceWatchdog(const LoopPulse& pulse, int max_late_cycles)
+    : health_(pulse, max_late_cycles) {
+  std::uint64_t timeout_us = 0;
+  if (sd_watchdog_enabled(0, &timeout_us) <= 0) return;
+  const std::chrono::microseconds period(timeout_us / kLooks);
+  thread_ = std::jthread([this, period](const std::stop_token& stop) { watch(stop, period); });
+}
+
+void ServiceWatchdog::watch(const std::stop_token& stop, std::chrono::microseconds period) {
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    wait_.wait_for(lock, stop, period, [] { return false; });
+    if (health_.look()) sd_notify(0, "WATCHDOG=1");
+  }
+}
+
+}  // namespace tactus
