@@ -54,7 +54,7 @@ JudgedRun judgeRun(const RunSetup& setup) {
   ControllerOutput output;
   JudgedRun run;
   Spread last_readings, last_forces;
-  std::optional<double> depth_m;  // of the first cycle in the profile
+  double depth_m = 0.0;  // in the profile, a cycle before
   const long cycles = std::lround(setup.duration_s / setup.period_s);
   const long rest_from = cycles - std::lround(JudgedRun::kRest_s / setup.period_s);
   for (long cycle = 0; cycle < cycles; ++cycle) {
@@ -72,12 +72,11 @@ JudgedRun judgeRun(const RunSetup& setup) {
     }
     if (run.touch_speed_m_per_s > 0.0) continue;
     const double way_m = probe.penetration_m(input.q_measured, t_s);
-    if (depth_m && way_m > *depth_m) {
-      run.touch_speed_m_per_s = (way_m - *depth_m) / setup.period_s;
+    if (depth_m > 0.0 && way_m > depth_m) {
+      run.touch_speed_m_per_s = (way_m - depth_m) / setup.period_s;
       run.touch_force_N = output.contact.force_contact_N;
     }
-    depth_m.reset();
-    if (way_m > 0.0) depth_m = way_m;
+    depth_m = way_m;
   }
   run.final_force_N = last_readings.mean;
   run.restlessness_N = last_forces.deviation();

@@ -15,7 +15,7 @@
 namespace tactus {
 namespace {
 
-struct Options {
+struct KeysOptions {
   std::string path, manual, schema;
   bool json = false;
 };
@@ -139,7 +139,7 @@ FileFormat formatOf(const std::string& name) {
   return formats[0].name == name ? formats[0] : formats[1];
 }
 
-std::string describe(const Options& options) {
+std::string describe(const KeysOptions& options) {
   if (!options.manual.empty()) return manualPage(formatOf(options.manual));
   if (!options.schema.empty()) return jsonSchema(formatOf(options.schema));
   const std::vector<Selection> selections = select(options.path);
@@ -151,7 +151,7 @@ std::string describe(const Options& options) {
 void addKeysCommand(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("keys", "Explain the keys of scenes and robots, all or some");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<KeysOptions>();
   command->add_option("PATH", options->path, "A key or section: damping, simulation.obstacles");
   command->add_flag("--json", options->json, "Print JSON");
   const CLI::IsMember formats({"scene", "robot"});
