@@ -91,7 +91,7 @@ void writeList(JsonWriter& json, const KeySpec& spec) {
   spec.type == ValueType::kNumberList ? writeNumbers(json, spec.range) : writeItems(json, spec);
 }
 
-const char* typeName(ValueType type) {
+const char* schemaType(ValueType type) {
   switch (type) {
     case ValueType::kNumber:
       return "number";
@@ -114,7 +114,7 @@ void writeKey(JsonWriter& json, const KeySpec& spec, Completeness completeness) 
       spec.presence != Presence::kRequired || completeness == Completeness::kPartial;
   json.beginObject();
   json.key("description").value(spec.doc + (spec.unit.empty() ? "" : " [" + spec.unit + "]"));
-  writeType(json, typeName(spec.type), or_null);
+  writeType(json, schemaType(spec.type), or_null);
   if (spec.type == ValueType::kNumber || spec.type == ValueType::kInteger) {
     writeRange(json, spec.range);
   } else if (spec.type == ValueType::kText) {

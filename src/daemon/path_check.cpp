@@ -12,8 +12,9 @@
 namespace tactus {
 namespace {
 
-constexpr double kMaxLag = 1e-3;    ///< m or rad; discretisation alone stays far below
-constexpr double kMaxCycles = 3e5;  ///< so that check stays quick: the first minutes of a path
+constexpr double kMaxLag = 1e-3;  ///< m or rad; discretisation alone stays far below
+/// So that check stays quick: the first minutes of a path.
+constexpr double kMaxCheckedCycles = 3e5;
 
 /// The motion without a contact.
 ControllerConfig undisturbed(ControllerConfig config) {
@@ -53,7 +54,7 @@ std::string slowestJoint(const Scene& scene, const JointVector& velocity) {
 std::string laggingPath(const Scene& scene) {
   const ControllerConfig config = undisturbed(scene.controller);
   const double end_s = Trajectory(config.task.trajectory, Pose{}).end_s();
-  const auto cycles = std::llround(std::min(end_s / scene.period_s, kMaxCycles));
+  const auto cycles = std::llround(std::min(end_s / scene.period_s, kMaxCheckedCycles));
   const Controller controller(config);
   ControllerState state = controller.initialState();
   ControllerOutput output;
