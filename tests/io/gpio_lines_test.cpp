@@ -9,6 +9,7 @@
 #include "io/fake_gpiod.h"
 #include "support/allocation_guard.h"
 #include "support/period.h"
+#include "tactus/io/gpio_survey.h"
 
 namespace tactus {
 namespace {
@@ -209,6 +210,28 @@ TEST(GpioLines, DrainsABoundedNumberOfEventsACycle) {
   for (int i = 0; i < 7; ++i) lines.read();
   EXPECT_TRUE(fake_chip.events.empty());
   EXPECT_FALSE(lines.read().emergency_stop);
+}
+
+TEST(GpioSurvey, NamesWhatIsMissingAndWhoHoldsLinesAndTakesNone) {
+  GpioConfig config = allLines();
+  resetFakeChip().is_present = false;
+  EXPECT_NE(surveyGpio(config).problem.find("gpiochip0: cannot open"), std::string::npos);
+  resetFakeChip();
+  EXPECT_EQ(surveyGpio(config).problem, "");
+  EXPECT_EQ(surveyGpio(config).users, "");
+  EXPECT_FALSE(fake_chip.is_open);
+  for (const test::FakeLine& line : fake_chip.lines)
+    EXPECT_EQ(line.requested, test::Requested::kNo);
+  {
+    GpioConfig of_others;
+    of_others.chip = config.chip;
+    of_others.enable = config.enable;
+    const GpioLines others(of_others, kPeriod_s);
+    fake_chip.lines[4].is_taken = true;
+    EXPECT_EQ(surveyGpio(config).users, "line 2: tactusd, line 4: the kernel");
+  }
+  config.brake->line = 8;
+  EXPECT_EQ(surveyGpio(config).problem, "gpiochip0: has no line 8, expected 0 to 7");
 }
 
 }  // namespace
