@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   tactus::addPlantCommand(app, exit_code);
   tactus::addBenchCommand(app, exit_code);
   tactus::addKeysCommand(app, exit_code);
+  tactus::addDoctorCommand(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::size_t kTextChunk = 32768;
 constexpr std::uint16_t kCycleId = 0;
+constexpr std::size_t kDataHeaderSize =
+    kMessageHeaderSize + sizeof(kCycleId) + sizeof(std::uint64_t);
 
 template <typename Number>
 void append(std::string& bytes, Number number) {
@@ -62,11 +64,15 @@ LogDescription describeLog(const Scene& scene) {
   return description;
 }
 
+std::size_t logBytesACycle(const RecordShape& shape) {
+  const CopyRun last = packedRuns(shape, kDataHeaderSize).back();
+  return last.message_offset + last.size;
+}
+
 UlogWriter::UlogWriter(const std::string& path, const LogDescription& description)
     : file_(path),
-      runs_(packedRuns(description.shape,
-                       kMessageHeaderSize + sizeof(kCycleId) + sizeof(std::uint64_t))),
-      data_size_(runs_.back().message_offset + runs_.back().size) {
+      runs_(packedRuns(description.shape, kDataHeaderSize)),
+      data_size_(logBytesACycle(description.shape)) {
   writeDefinitions(description);
 }
 

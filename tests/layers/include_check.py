@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Refuses an #include that runs against the arrows between the layers:
 
-    math -> control -> {io, sim} -> plant -> daemon -> bench    sim -> analysis -> daemon    rt -> daemon
+    math -> control -> {io, sim} -> plant -> daemon -> bench    sim -> analysis -> daemon    {io, rt} -> doctor -> daemon
 
 usage: include_check.py ROOT     checks ROOT/include/tactus/** and ROOT/src/**"""
 
@@ -18,7 +18,8 @@ LAYERS = {
     "analysis": ({"analysis", "sim", "control", "math"}, {"Eigen"}),
     "plant": ({"plant", "io", "sim", "control", "math"}, {"Eigen"}),
     "rt": ({"rt"}, {"seccomp.h", "malloc.h"}),
-    "daemon": ({"daemon", "analysis", "plant", "io", "sim", "rt", "control", "math"},
+    "doctor": ({"doctor", "io", "rt"}, {"fmt"}),
+    "daemon": ({"daemon", "doctor", "analysis", "plant", "io", "sim", "rt", "control", "math"},
                {"Eigen", "yaml-cpp", "pugixml.hpp", "CLI", "fmt", "systemd"}),
     "bench": ({"bench", "daemon", "analysis", "sim", "control", "math"},
               {"Eigen", "CLI", "fmt", "kdl", "valgrind"}),

@@ -91,5 +91,26 @@ TEST(Histogram, takesPercentsOutOfRangeAsTheNearest) {
   EXPECT_EQ(histogram.percentile_ns(1000.0), 9);
 }
 
+TEST(Histogram, bucketsHoldEveryValueOnceInOrder) {
+  Histogram histogram;
+  histogram.forEachBucket([](std::int64_t, std::uint64_t) { FAIL() << "empty"; });
+  for (const std::int64_t value : {5, 5, 31, 1'000, 1'001, 1'000'000}) histogram.add(value);
+  std::int64_t before_ns = -1;
+  std::uint64_t count = 0;
+  std::vector<std::int64_t> highest;
+  histogram.forEachBucket([&](std::int64_t highest_ns, std::uint64_t in_it) {
+    EXPECT_GT(highest_ns, before_ns);
+    EXPECT_GT(in_it, 0u);
+    before_ns = highest_ns;
+    count += in_it;
+    highest.push_back(highest_ns);
+  });
+  EXPECT_EQ(count, histogram.count());
+  ASSERT_EQ(highest.size(), 4u);
+  EXPECT_EQ(highest[0], 5);
+  EXPECT_EQ(highest[1], 31);
+  EXPECT_GE(highest[2], 1'001);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -20,5 +20,6 @@ void addReplayCommand(CLI::App& app, int& exit_code);
 void addPlantCommand(CLI::App& app, int& exit_code);
 void addBenchCommand(CLI::App& app, int& exit_code);
 void addKeysCommand(CLI::App& app, int& exit_code);
+void addDoctorCommand(CLI::App& app, int& exit_code);
 
 }  // namespace tactus

@@ -26,6 +26,9 @@ struct LogDescription {
 
 LogDescription describeLog(const Scene& scene);
 
+/// What a log grows by each cycle.
+std::size_t logBytesACycle(const RecordShape& shape);
+
 /// Writes cycles to a ULog file. A log cut off anywhere is readable up to the cut.
 class UlogWriter {
  public:

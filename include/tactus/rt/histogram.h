@@ -27,6 +27,13 @@ class Histogram {
   /// 1/16 more, never more than max_ns(). 0 if empty.
   std::int64_t percentile_ns(double percent) const noexcept;
 
+  /// Calls see(highest_ns, count) for each bucket that is not empty, the lowest first.
+  template <typename See>
+  void forEachBucket(See see) const {
+    for (int i = 0; i < kBuckets; ++i)
+      if (counts_[i] > 0) see(highestIn_ns(i), counts_[i]);
+  }
+
  private:
   static constexpr int kSubBits = 4;  ///< 16 buckets an octave
   static constexpr int kBuckets = (63 - kSubBits) * (1 << kSubBits) + (1 << kSubBits);

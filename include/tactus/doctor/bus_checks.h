@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tactus/doctor/finding.h"
+#include "tactus/doctor/machine_files.h"
+#include "tactus/io/can_link.h"
+#include "tactus/io/hardware_config.h"
+
+namespace tactus {
+
+/// A bus's interface: there and up, its adapter, bit rate, queue, and what it does after bus-off.
+/// `link`: what the kernel says of it.
+std::vector<Finding> checkBus(const MachineRoot& root, const BusConfig& bus,
+                              const std::optional<CanLink>& link);
+
+}  // namespace tactus

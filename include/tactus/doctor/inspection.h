@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "tactus/doctor/finding.h"
+#include "tactus/doctor/machine_files.h"
+#include "tactus/io/hardware_config.h"
+
+namespace tactus {
+
+/// What a run asks of the machine.
+struct MachineNeeds {
+  RealTimeConfig real_time;
+  std::vector<BusConfig> buses;
+  std::optional<GpioConfig> gpio;
+  double log_bytes_per_s = 0.0;
+  std::filesystem::path log_folder = ".";
+};
+
+/// All that can be said of a machine without running anything on it. Changes nothing. The file
+/// system is that under `root`; CAN controllers and GPIO chips are those of the kernel.
+std::vector<Finding> inspectMachine(const MachineRoot& root, const MachineNeeds& needs);
+
+}  // namespace tactus

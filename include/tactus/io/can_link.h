@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+namespace tactus {
+
+/// What the kernel knows of an interface's CAN controller.
+struct CanLink {
+  std::string kind;         ///< "can": a controller; "vcan", "vxcan": none; "slcan": a serial line
+  long bit_rate_per_s = 0;  ///< 0: not set, or no controller
+  long restart_ms = 0;      ///< after bus-off; 0: never by itself
+};
+
+/// From an RTM_NEWLINK message of rtnetlink, whole or not. nullopt: says nothing of that kind.
+std::optional<CanLink> parseCanLink(std::span<const char> message);
+
+/// Asks the kernel. nullopt: no such interface, or no link of a kind.
+std::optional<CanLink> canLink(const std::string& interface);
+
+}  // namespace tactus

@@ -1,0 +1,45 @@
+#include "tactus/doctor/inspection.h"
+
+#include "tactus/doctor/bus_checks.h"
+#include "tactus/doctor/disk_check.h"
+#include "tactus/doctor/interrupt_checks.h"
+#include "tactus/doctor/kernel_checks.h"
+#include "tactus/doctor/line_check.h"
+#include "tactus/doctor/processor_checks.h"
+#include "tactus/doctor/rights_checks.h"
+
+namespace tactus {
+namespace {
+
+void append(std::vector<Finding>& findings, const std::vector<Finding>& more) {
+  findings.insert(findings.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+std::vector<Finding> inspectMachine(const MachineRoot& root, const MachineNeeds& needs) {
+  const RealTimeConfig& real_time = needs.real_time;
+  std::vector<Finding> findings = {
+      checkPreemption(root),
+      checkThrottling(root),
+      checkControlGroup(root),
+      checkProcessRights(root, real_time.priority),
+      checkServiceRights(root, real_time.priority, hasRealTimeGroups(root)),
+      checkGovernor(root, real_time.cpu),
+      checkIsolation(root, real_time.cpu),
+      checkLoopPriority(real_time.priority),
+  };
+  for (const BusConfig& bus : needs.buses) {
+    append(findings, checkBus(root, bus, canLink(bus.interface)));
+    append(findings, checkInterrupts(root, bus.interface, real_time.priority));
+  }
+  if (needs.gpio) findings.push_back(checkLines(surveyGpio(*needs.gpio)));
+  std::error_code problem;
+  const auto space = std::filesystem::space(root / needs.log_folder, problem);
+  if (!problem)
+    findings.push_back(
+        checkDisk(needs.log_folder, static_cast<double>(space.available), needs.log_bytes_per_s));
+  return findings;
+}
+
+}  // namespace tactus
