@@ -34,7 +34,8 @@ std::string timesText(const char* name, const Histogram& times) {
 std::map<int, long long> octaves(const Histogram& times) {
   std::map<int, long long> counts;
   times.forEachBucket([&](std::int64_t highest_ns, std::uint64_t count) {
-    counts[std::bit_width(static_cast<std::uint64_t>(highest_ns))] += static_cast<long long>(count);
+    const auto exponent = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(highest_ns)));
+    counts[exponent] += static_cast<long long>(count);
   });
   return counts;
 }
