@@ -70,8 +70,13 @@ class Drives:
         """The last ones that drives have sent by themselves."""
         return [bus.status_words.get(node) for bus in self.buses for node in NODES]
 
+    def forget_emergencies(self):
+        for bus in self.buses:
+            bus.emergencies.clear()
+
     def emergencies(self):
-        return [entry for bus in self.buses for entry in bus.emergencies]
+        """Error codes that drives have told of since then, but for 0, which says that all is well."""
+        return [code for bus in self.buses for _, code in bus.emergencies if code != 0]
 
     def have_left_operation(self):
         """What CiA 301 asks of a node that misses its master's heartbeat."""
