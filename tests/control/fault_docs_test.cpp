@@ -22,7 +22,7 @@ std::string readme() { return documentText("README.md"); }
 
 /// From a heading of a manual page to the next.
 std::string manualSection(const std::string& heading) {
-  const std::string page = documentText("man/tactusd.8");
+  const std::string page = documentText("docs/man/tactusd.8");
   const std::size_t start = page.find(".SH " + heading + "\n");
   EXPECT_NE(start, std::string::npos) << heading;
   return page.substr(start, page.find("\n.SH ", start) - start);

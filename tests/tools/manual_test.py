@@ -23,11 +23,11 @@ def output(*command, **options):
 
 
 def page_text(name):
-    return (ROOT / "man" / name).read_text()
+    return (ROOT / "docs/man" / name).read_text()
 
 
 def pages():
-    texts = {path.name: path.read_text() for path in sorted((ROOT / "man").iterdir())}
+    texts = {path.name: path.read_text() for path in sorted((ROOT / "docs/man").iterdir())}
     for name in ("scene", "robot"):
         texts[f"tactus-{name}.5"] = output(TACTUS, "keys", "--man", name)
     return texts
