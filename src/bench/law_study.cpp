@@ -72,7 +72,9 @@ StudyResult studyLaw(const BenchOptions& options) {
       "null_limit. "
       "A limit cycle: over the last 2 s the contact's force has a standard deviation above 0.05 N. "
       "The natural scale is what no law could avoid: nothing is seen before the filtered force "
-      "passes the threshold, and by then the arm has gone on for the loop's delay.";
+      "passes the threshold, and by then the arm has gone on for the loop's delay. All of it once "
+      "more with each disturbance, and null_limit without each part that a value leaves out; what "
+      "the figures mean is in docs/approach_speed_limit.md.";
   result.goals = {{"null_limit: limit cycles", 0.0, static_cast<double>(limited.restless)},
                   {"null_limit: peak over the natural scale, largest", 1.15, limited.peak_to_scale},
                   {"null_limit: peak over the paper's with the assumed stiffness, largest", 1.05,
