@@ -33,7 +33,7 @@ FAST_3 = ("scenario3_estimated_fast", "estimated, fast", GREEN, DASH_DOT)
 LIMIT_1 = ("scenario1_tactus", "approach limit", BLUE, DASHED)
 LIMIT_2 = ("scenario2_tactus", "approach limit", BLUE, DASHED)
 LIMIT_3 = ("scenario3_tactus", "approach limit", BLUE, DASHED)
-LIMIT_FAST_3 = ("scenario3_tactus_fast", "approach limit, fast", RED, DOTTED)
+LIMIT_FAST_3 = ("scenario3_tactus_fast", "limit, fast", RED, DOTTED)
 
 FORCE = ("force_N", "sensor force in N", "N")
 STIFFNESS = ("stiffness_N_per_m", "stiffness in N/m", "N/m")
