@@ -37,7 +37,7 @@ void saturate(TactileSample& sample) {
 }
 
 /// The profile at a steady speed along y, against the arm if negative: the beginning of a swing so
-/// wide that its speed is the same within 0.1 % for two minutes.
+/// wide that its speed is the same within 0.2 % for two minutes.
 void move(double speed_m_per_s, RunSetup& setup) {
   ObstacleConfig& profile = setup.plant.obstacles.back();
   profile.y_m -= kMoved_s * speed_m_per_s;
