@@ -92,10 +92,11 @@ class Drives:
         """No drive can be in motion: asked twice, each stands where it stood, without being enabled."""
         before = self.ask(POSITION, 4)
         time.sleep(0.1)
-        enabled = [has_power(word) for word in self.ask(STATUS_WORD, 2)]
+        enabled = [is_enabled(word) for word in self.ask(STATUS_WORD, 2)]
         return not any(enabled) and self.ask(POSITION, 4) == before
 
 
-def has_power(status_word):
-    """CiA 402: switched on, operation enabled or quick stop active."""
-    return status_word & 0x02 != 0
+def is_enabled(status_word):
+    """CiA 402: operation enabled, quick stop active or fault reaction active. "Switched on" is not:
+    the drive takes no setpoint and its motor has no torque."""
+    return status_word & 0x04 != 0
