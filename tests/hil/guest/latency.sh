@@ -25,6 +25,7 @@ end_run() {
   stop_plant
 }
 
+never_halt
 start_buses
 permit_motion
 run_scene in_contact "$scene" $((cycles / 1000))

@@ -2,6 +2,8 @@
 . "$ROOT/guest/common.sh"
 . "$ROOT/guest/daemon.sh"
 
+never_halt
+
 start_buses
 permit_motion
 run_scene in_contact "$ROOT/tests/hil/scenes/in_contact.yaml" 1.5

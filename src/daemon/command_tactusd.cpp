@@ -1,0 +1,64 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "tactus/daemon/commands.h"
+#include "tactus/daemon/daemon_run.h"
+#include "tactus/daemon/input_error.h"
+#include "tactus/daemon/programs.h"
+#include "tactus/daemon/scene_loader.h"
+#include "tactus/daemon/stability_check.h"
+
+namespace tactus {
+namespace {
+
+struct DaemonArguments {
+  std::string scene, folder;
+  std::vector<std::string> settings;
+  double duration_s = 0.0;
+};
+
+int runScene(const DaemonArguments& options) {
+  std::vector<Override> overrides;
+  for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
+  const Scene scene = loadScene(options.scene, overrides);
+  if (!scene.hardware)
+    throw InputError(options.scene +
+                     ":1:1: robot: has no can section, expected buses and "
+                     "drives to run on");
+  checkStability(scene);
+  DaemonOptions run;
+  run.duration_s = options.duration_s;
+  run.folder = options.folder;
+  const Fault fault = runDaemon(scene, run);
+  return fault == Fault::kNone ? kExitDone : kExitFault;
+}
+
+}  // namespace
+
+int tactusdProgram(int argc, char** argv) {
+  DaemonArguments options;
+  CLI::App app{"Tactile feedback control of redundant robot arms: the daemon", "tactusd"};
+  app.add_option("SCENE", options.scene, "Scene file")->required();
+  app.add_option("-o,--output", options.folder,
+                 "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files");
+  app.add_option("--duration", options.duration_s, "End after so many seconds of motion")
+      ->check(CLI::Range(1e-3, 1e9));
+  app.add_option("--set", options.settings, kSetHelp)->allow_extra_args(false);
+  try {
+    app.parse(argc, argv);
+    return runScene(options);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitUsage;
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tactusd: %s\n", error.what());
+    return kExitFault;
+  }
+}
+
+}  // namespace tactus
