@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "tactus/bench/spread.h"
 #include "tactus/control/controller.h"
