@@ -13,19 +13,18 @@ namespace {
 
 template <typename Scalar>
 using Problem = MotionProblem<Scalar>;
+/// One type for all that is decomposed: each further one takes a compiler ten seconds.
 template <typename Scalar>
-using Gram = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxTaskSize,
-                           kMaxTaskSize>;
-template <typename Scalar>
-using Svd = Eigen::JacobiSVD<typename Problem<Scalar>::Jacobian>;
+using Decomposed =
+    Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxJoints, kMaxJoints>;
 
 /// x = J^T (J J^T + lambda^2 I)^-1 w; with lambda the projector leaks into the task.
 template <typename Scalar>
 void solveByGram(const Problem<Scalar>& problem, Scalar lambda, MotionParts<Scalar>& parts) {
   const auto& J = problem.J;
-  Gram<Scalar> gram = J.lazyProduct(J.transpose());
+  Decomposed<Scalar> gram = J.lazyProduct(J.transpose());
   gram.diagonal().array() += lambda * lambda;
-  const Eigen::LLT<Gram<Scalar>> cholesky(gram);
+  const Eigen::LLT<Decomposed<Scalar>> cholesky(gram);
   using Task = typename Problem<Scalar>::Task;
   const Task y = cholesky.solve(problem.w);
   const Task c = cholesky.solve(Task(J.lazyProduct(problem.v)));
@@ -46,10 +45,8 @@ void solveDampedNormalEquations(const Problem<Scalar>& problem, MotionParts<Scal
 /// J^T = Q R.
 template <typename Scalar>
 void solveHouseholder(const Problem<Scalar>& problem, MotionParts<Scalar>& parts) {
-  using Transposed = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
-                                   kMaxJoints, kMaxTaskSize>;
   const auto m = problem.J.rows();
-  const Eigen::HouseholderQR<Transposed> qr(problem.J.transpose());
+  const Eigen::HouseholderQR<Decomposed<Scalar>> qr(problem.J.transpose());
   const auto R = qr.matrixQR().topRows(m).template triangularView<Eigen::Upper>();
   parts.task.setZero(problem.J.cols());
   parts.task.head(m) = R.transpose().solve(problem.w);
@@ -62,8 +59,7 @@ void solveHouseholder(const Problem<Scalar>& problem, MotionParts<Scalar>& parts
 
 template <typename Scalar>
 void solveOrthogonal(const Problem<Scalar>& problem, MotionParts<Scalar>& parts) {
-  using Jacobian = typename Problem<Scalar>::Jacobian;
-  const Eigen::CompleteOrthogonalDecomposition<Jacobian> cod(problem.J);
+  const Eigen::CompleteOrthogonalDecomposition<Decomposed<Scalar>> cod(problem.J);
   parts.task = cod.solve(problem.w);
   parts.null = problem.v - cod.solve(problem.J.lazyProduct(problem.v).eval());
 }
@@ -71,7 +67,8 @@ void solveOrthogonal(const Problem<Scalar>& problem, MotionParts<Scalar>& parts)
 template <typename Scalar>
 void solveBySvd(const Problem<Scalar>& problem, Scalar lambda, MotionParts<Scalar>& parts) {
   using Task = typename Problem<Scalar>::Task;
-  const Svd<Scalar> svd(problem.J, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Decomposed<Scalar>> svd(problem.J,
+                                                 Eigen::ComputeThinU | Eigen::ComputeThinV);
   const auto& s = svd.singularValues().array();
   Task y = svd.matrixU().transpose().lazyProduct(problem.w);
   if (lambda > Scalar(0)) {

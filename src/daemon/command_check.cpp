@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/SVD>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "tactus/daemon/path_check.h"
 #include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/stability_check.h"
+#include "tactus/math/weighted_pseudoinverse.h"
 
 namespace tactus {
 namespace {
@@ -44,8 +44,7 @@ StartPose computeStart(const ControllerConfig& config) {
   TaskJacobian J;
   computeTipJacobian(config.chain, pose, p_BaseTool, config.task.components.data(),
                      config.task.size, J);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J);
-  return {p_BaseTool, svd.singularValues()[config.task.size - 1]};
+  return {p_BaseTool, smallestSingularValue(J, JointVector::Ones(config.chain.size()))};
 }
 
 std::vector<std::string> taskComponents(const TaskConfig& task) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -29,9 +28,7 @@ std::string singularStart(const ControllerConfig& config) {
   TaskJacobian J;
   computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()),
                      config.task.components.data(), config.task.size, J);
-  const Eigen::MatrixXd scaled = J * config.weights.cwiseSqrt().cwiseInverse().asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled);
-  const double smallest = svd.singularValues()[config.task.size - 1];
+  const double smallest = smallestSingularValue(J, config.weights);
   if (smallest >= WeightedPseudoinverse::kDampingThreshold) return "";
   return fmt::format(
       "singular start: smallest singular value {:.3g}, damped below {:g}, so that the tool lags "

@@ -10,6 +10,9 @@ namespace {
 /// it depends on them: what is left is rounding noise, and no direction.
 constexpr double kRankTolerance = 1e-14;
 
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                                  kMaxTaskSize, kMaxTaskSize>;
+
 }  // namespace
 
 /// Modified Gram-Schmidt, each column orthogonalised twice ("twice is enough"): Q is orthonormal to
@@ -58,8 +61,6 @@ void WeightedPseudoinverse::chooseDamping() noexcept {
   constexpr double kThresholdSquared = kDampingThreshold * kDampingThreshold;
   if (full_rank && inverse_norm_squared * kThresholdSquared <= 1.0) return;
 
-  using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
-                                    kMaxTaskSize, kMaxTaskSize>;
   SmallMatrix L = SmallMatrix::Zero(m_, m_);  // J W^-1/2 = L Q^T
   for (int row = 0; row < m_; ++row)
     for (int column = row; column < m_; ++column) L(column, row) = R_[row][column];
@@ -105,6 +106,13 @@ ScaledVector WeightedPseudoinverse::expand(const TaskVector& y) const noexcept {
   ScaledVector v_scaled = y[0] * Q_.col(0);
   for (int j = 1; j < m_; ++j) v_scaled += y[j] * Q_.col(j);
   return v_scaled;
+}
+
+double smallestSingularValue(const TaskJacobian& J, const JointVector& weights) {
+  const TaskJacobian scaled = J * weights.cwiseSqrt().cwiseInverse().asDiagonal();
+  const SmallMatrix gram = scaled.lazyProduct(scaled.transpose());
+  const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(gram, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
 }
 
 }  // namespace tactus

@@ -1,13 +1,19 @@
 #include "tactus/sim/simulated_module.h"
 
-#include <Eigen/QR>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 namespace tactus {
 namespace {
 constexpr double kMaxCounts = 8388607.0;  // signed 24 bits
+
+/// C^T (C C^T)^-1, for a calibration of full rank: the loader accepts no other.
+Eigen::Matrix<double, 8, 4> pseudoinverse(const Eigen::Matrix<double, 4, 8>& C) {
+  const Eigen::Matrix4d gram = C * C.transpose();
+  return C.transpose() * gram.inverse();
 }
+}  // namespace
 
 SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config)
     : config_(config),
@@ -15,7 +21,7 @@ SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config)
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz)},
-      channels_from_wrench_(config.calibration.completeOrthogonalDecomposition().pseudoInverse()),
+      channels_from_wrench_(pseudoinverse(config.calibration)),
       random_(config.seed),
       steps_a_sample_(
           static_cast<int>(std::lround(config.sample_period_s * config.filter_rate_hz))) {}

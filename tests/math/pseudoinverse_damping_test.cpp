@@ -74,5 +74,22 @@ TEST(Damping, BoundsTheGainOfEveryPose) {
   }
 }
 
+TEST(SmallestSingularValue, IsFoundWhateverTheWeights) {
+  test::Random random(66);
+  for (int i = 0; i < 200; ++i) {
+    const JointVector weights = test::randomWeights(random, 7);
+    const double s = random.logUniform(1e-6, 0.9);
+    const TaskJacobian J = test::randomJacobian(random, {1.0, s, 0.95}, weights);
+    EXPECT_NEAR(smallestSingularValue(J, weights), s, 2e-8 + 1e-12 / s);
+  }
+}
+
+TEST(SmallestSingularValue, IsNothingWhereRankIsLost) {
+  test::Random random(67);
+  const JointVector weights = JointVector::Ones(7);
+  const TaskJacobian J = test::randomJacobian(random, {1.0, 0.5, 0.0}, weights);
+  EXPECT_NEAR(smallestSingularValue(J, weights), 0.0, 1e-7);
+}
+
 }  // namespace
 }  // namespace tactus

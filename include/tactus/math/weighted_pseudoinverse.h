@@ -52,4 +52,7 @@ class WeightedPseudoinverse {
   Eigen::Matrix<double, kMaxTaskSize, kMaxTaskSize> eigenvectors_;
 };
 
+/// Of J W^-1/2, for reports: exact to about 1e-8 of the largest one. weights: positive.
+double smallestSingularValue(const TaskJacobian& J, const JointVector& weights);
+
 }  // namespace tactus
