@@ -36,8 +36,7 @@ class FaultCase:
             return self.marks["fault"]
         if self.name == "interface_down":
             # candump hears no more of this bus until it is up again.
-            from_us = self._enabled_us()
-            times = [f.t_us for f in self.frames if f.bus in self.lost and f.t_us > from_us]
+            times = [f.t_us for f in self.frames if f.bus in self.lost]
             return next(a for a, b in zip(times, times[1:]) if b - a > LONG_GAP_US)
         if self.name == "node_reset":
             return next(f.t_us for f in self.frames if f.id == 0 and f.data == RESET_NODE_2)

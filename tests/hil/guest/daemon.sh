@@ -35,6 +35,20 @@ permit_motion() {
   line $enable 1 >/dev/null
 }
 
+# start_candump FOLDER INTERFACE,FILTER...: to FOLDER/candump.log. To a file of candump's choice,
+# for what it prints it writes frame by frame.
+start_candump() {
+  candump_folder=$1
+  shift
+  (cd "$candump_folder" && exec candump -l -D -r 8000000 "$@" 2>candump.txt) & candump=$!
+}
+
+stop_candump() {
+  kill "$candump"
+  wait "$candump"
+  mv "$candump_folder"/candump-*.log "$candump_folder/candump.log"
+}
+
 # run_scene NAME SCENE DURATION_S: on the daemon, with the plant behind the buses.
 run_scene() {
   echo "$1"

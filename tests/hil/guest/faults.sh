@@ -21,20 +21,32 @@ scene() {
   echo "/tmp/$1.yaml"
 }
 
-# begin NAME SCENE [PROGRAM]: until the arm moves.
-begin() {
+# prepare NAME SCENE: all but the daemon.
+prepare() {
   echo "$1"
   out=$ROOT/out/$1
   start_plant "$1" "$2"
   permit_motion
-  candump -L -D -r 8000000 can0,0:0,#FFFFFFFF can1,0:0,#FFFFFFFF can2,0:0,#FFFFFFFF >"$out/candump.log" & candump=$!
-  "${3:-tactusd}" "$2" >"$out/stdout.txt" 2>"$out/tactusd.txt" & daemon=$!
+}
+
+record() {
+  start_candump "$out" can0,0:0,#FFFFFFFF can1,0:0,#FFFFFFFF can2,0:0,#FFFFFFFF
+}
+
+# begin SCENE [PROGRAM]: until the arm moves.
+begin() {
+  "${2:-tactusd}" "$1" >"$out/stdout.txt" 2>"$out/tactusd.txt" & daemon=$!
   wait_for running "$out/tactusd.txt"
 }
 
+# Recorded from just before the fault on: to write a frame down takes the machine as long as to send
+# it.
 begin_in_contact() {
-  begin "$@"
+  prepare "$1" "$2"
+  begin "$2"
   sleep $contact_s
+  record
+  sleep 0.05
 }
 
 # finish STATUS: the daemon is expected to end with it by itself.
@@ -42,7 +54,7 @@ finish() {
   wait "$daemon"
   equal "exit status of the daemon" $? "$1"
   sleep 0.05
-  kill "$candump"
+  stop_candump
   stop_plant
 }
 
@@ -63,7 +75,10 @@ restart() {
 
 # by_plant NAME FAULT TROUBLE: what the plant does by itself, as its script says.
 by_plant() {
-  begin "$1" "$(scene "$1" "$3")"
+  troubled=$(scene "$1" "$3")
+  prepare "$1" "$troubled"
+  record
+  begin "$troubled"
   wait_for "$2" "$out/tactusd.txt"
   sleep "${4:-0.2}"
   restart
@@ -143,6 +158,8 @@ by_plant power_cut 'fault:' "kind: power_cut, interface: can1, $from, until_s: 5
 # Nothing clears this one; a robot without enable line ends by itself.
 no_lines=$(scene forbidden_call)
 echo "robot: $robots/robot.yaml" >>"$no_lines"
-begin forbidden_call "$no_lines" forbidden_call_check
+prepare forbidden_call "$no_lines"
+begin "$no_lines" forbidden_call_check
+record
 finish 0
 mark fault "$(cat "$out/stdout.txt")"

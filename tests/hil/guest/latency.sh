@@ -4,7 +4,7 @@
 . "$ROOT/guest/measure.sh"
 
 scene=$ROOT/tests/hil/scenes/in_contact.yaml
-cycles=4000
+cycles=2000
 
 # latency FILE: of cyclictest with the loop's priority and period, as often as the loop.
 latency() {

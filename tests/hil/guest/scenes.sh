@@ -3,6 +3,6 @@
 . "$ROOT/guest/daemon.sh"
 
 start_buses
-for name in scenario1_null_space scenario1_multi_space scenario2_estimated scenario3_assumed; do
+for name in scenario1_multi_space scenario2_estimated scenario3_assumed; do
   run_scene "$name" "$ROOT/config/scenes/$name.yaml" 13
 done
