@@ -22,7 +22,7 @@ constexpr int kCausedBySeccomp = 1;  // si_code; the kernel's SYS_SECCOMP, which
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free);  // for the signal handler
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef TACTUS_SANITIZED
 // What a sanitizer does in any thread: its own memory and locks, its report, and the thread's end.
 constexpr int kSanitizerCalls[] = {SYS_mmap,        SYS_munmap,    SYS_mprotect, SYS_madvise,
                                    SYS_futex,       SYS_gettid,    SYS_write,    SYS_sigaltstack,

@@ -15,7 +15,7 @@ namespace {
 
 using test::holdsInChild;
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef TACTUS_SANITIZED
 // Sanitizers replace malloc, and turn mlockall() into nothing for the sake of their shadow memory.
 
 long lockedMemory_kB() {

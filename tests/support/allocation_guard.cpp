@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef TACTUS_SANITIZED
 // Sanitizers own malloc, but report each call of it.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*,
                                                                              std::size_t),
@@ -34,7 +34,7 @@ void refuseWhileArmed() {
   std::abort();
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef TACTUS_SANITIZED
 [[maybe_unused]] const int hooks_installed = __sanitizer_install_malloc_and_free_hooks(
     [](const volatile void*, std::size_t) { refuseWhileArmed(); },
     [](const volatile void*) { refuseWhileArmed(); });
@@ -47,7 +47,7 @@ AllocationGuard::~AllocationGuard() { armed = false; }
 
 }  // namespace tactus::test
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef TACTUS_SANITIZED
 using tactus::test::refuseWhileArmed;
 
 // operator new and new[] end here, too: libstdc++ calls malloc through the same symbol.
