@@ -7,11 +7,11 @@
 #include <memory>
 
 #include "tactus/daemon/bus_load_text.h"
+#include "tactus/daemon/command_scene.h"
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/json.h"
 #include "tactus/daemon/key_table.h"
 #include "tactus/daemon/path_check.h"
-#include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/stability_check.h"
 #include "tactus/math/weighted_pseudoinverse.h"
 
@@ -199,9 +199,7 @@ std::string toText(const Scene& scene, const Findings& findings) {
 }
 
 void runCheck(const CheckOptions& options) {
-  std::vector<Override> overrides;
-  for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
-  const Scene scene = loadScene(options.scene, overrides);
+  const Scene scene = loadScene(options.scene, parseOverrides(options.settings));
   const Findings findings = {computeStart(scene.controller), checkPath(scene),
                              checkStability(scene)};
   const std::string report = options.json ? checkJson(scene, findings) : toText(scene, findings);

@@ -7,12 +7,11 @@
 #include <system_error>
 #include <vector>
 
+#include "tactus/daemon/command_scene.h"
 #include "tactus/daemon/commands.h"
-#include "tactus/daemon/input_error.h"
 #include "tactus/daemon/json.h"
 #include "tactus/daemon/plant_run.h"
 #include "tactus/daemon/run_error.h"
-#include "tactus/daemon/scene_loader.h"
 
 namespace tactus {
 namespace {
@@ -46,12 +45,7 @@ void printCounters(const PlantRunResult& result) {
 }
 
 void play(const PlantOptions& options) {
-  std::vector<Override> overrides;
-  for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
-  const Scene scene = loadScene(options.scene, overrides);
-  if (!scene.hardware)
-    throw InputError(options.scene +
-                     ":1:1: robot: has no can section, expected buses and drives to play");
+  const Scene scene = loadHardwareScene(options.scene, options.settings, "to play");
   try {
     const PlantRunResult result =
         runPlant(scene, options.e_stop_file, options.json ? stderr : stdout);

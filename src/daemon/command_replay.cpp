@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "tactus/daemon/command_scene.h"
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/json.h"
 #include "tactus/daemon/located_error.h"
 #include "tactus/daemon/replay.h"
-#include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/ulog_reader.h"
 
 namespace tactus {
@@ -34,7 +34,7 @@ void checkSize(const std::string& log, const char* field, const char* what, int 
 /// The scene of the log with its own overrides and then those of the command line.
 Scene loadLoggedScene(const ReplayOptions& options, const LogDescription& description) {
   std::vector<Override> overrides = description.overrides;
-  for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
+  for (const Override& setting : parseOverrides(options.settings)) overrides.push_back(setting);
   if (description.sources.empty()) {
     failAt({std::make_shared<std::string>(options.log), 1, 1}, "source_path",
            "the log holds no scene", "expected the files of the run");

@@ -11,11 +11,11 @@
 #include <system_error>
 #include <vector>
 
+#include "tactus/daemon/command_scene.h"
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/located_error.h"
 #include "tactus/daemon/run_folder.h"
 #include "tactus/daemon/run_summary.h"
-#include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/simulation.h"
 
 namespace tactus {
@@ -32,8 +32,7 @@ struct SimulateOptions {
 
 /// All scenes are loaded before the first one runs, so that bad input writes nothing.
 std::vector<Scene> loadScenes(const SimulateOptions& options) {
-  std::vector<Override> overrides;
-  for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
+  const std::vector<Override> overrides = parseOverrides(options.settings);
   std::vector<Scene> scenes;
   std::set<std::string> names;
   for (const std::string& path : options.scenes) {

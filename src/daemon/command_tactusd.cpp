@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "tactus/daemon/command_scene.h"
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/daemon_run.h"
 #include "tactus/daemon/input_error.h"
 #include "tactus/daemon/programs.h"
-#include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/stability_check.h"
 
 namespace tactus {
@@ -21,13 +21,7 @@ struct DaemonArguments {
 };
 
 int runScene(const DaemonArguments& options) {
-  std::vector<Override> overrides;
-  for (const std::string& setting : options.settings) overrides.push_back(parseOverride(setting));
-  const Scene scene = loadScene(options.scene, overrides);
-  if (!scene.hardware)
-    throw InputError(options.scene +
-                     ":1:1: robot: has no can section, expected buses and "
-                     "drives to run on");
+  const Scene scene = loadHardwareScene(options.scene, options.settings, "to run on");
   checkStability(scene);
   DaemonOptions run;
   run.duration_s = options.duration_s;
