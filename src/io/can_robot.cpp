@@ -8,12 +8,15 @@
 namespace tactus {
 namespace {
 
+bool hasPower(DriveState state) noexcept {
+  return state == DriveState::kSwitchedOn || state == DriveState::kOperationEnabled ||
+         state == DriveState::kQuickStopActive || state == DriveState::kFaultReactionActive;
+}
+
 /// A drive that has gone silent cannot be seen to be off: its own heartbeat watch stops it.
 bool isOff(const DriveReport& report) noexcept {
   if (!report.is_configured || report.is_silent) return true;
-  return report.has_state && report.state != DriveState::kOperationEnabled &&
-         report.state != DriveState::kQuickStopActive &&
-         report.state != DriveState::kFaultReactionActive;
+  return report.has_state && !hasPower(report.state);
 }
 
 }  // namespace

@@ -81,8 +81,8 @@ class VirtualRobotCell {
   bool areDrivesOff() const {
     for (int joint = 0; joint < joints_; ++joint) {
       const PowerState state = plant.drive(joint).powerState();
-      if (state == PowerState::kOperationEnabled || state == PowerState::kQuickStopActive ||
-          state == PowerState::kFaultReactionActive)
+      if (state == PowerState::kSwitchedOn || state == PowerState::kOperationEnabled ||
+          state == PowerState::kQuickStopActive || state == PowerState::kFaultReactionActive)
         return false;
     }
     return true;
