@@ -139,6 +139,9 @@ LoopFigures loopFigures(const Scene& scene, const HardwareLoop& loop, const Loop
   figures.process_cpu_ns_per_cycle = static_cast<double>(process_ns) / cycles;
   for (std::size_t i = 0; i < loop.buses(); ++i)
     figures.buses.push_back({scene.hardware->buses[i].interface, loop.counters(i)});
+  const CanRobot& robot = loop.robot();
+  figures.malformed_drive_frames = robot.malformedFrames();
+  if (robot.tactile()) figures.tactile = robot.tactile()->counters();
   return figures;
 }
 

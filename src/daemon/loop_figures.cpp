@@ -5,18 +5,28 @@
 namespace tactus {
 namespace {
 
+void writeCount(const char* name, std::uint32_t count, JsonWriter& json) {
+  json.key(name).value(static_cast<long long>(count));
+}
+
 void writeBus(const LoopFigures::Bus& bus, JsonWriter& json) {
-  const auto count = [&json](const char* name, std::uint32_t value) {
-    json.key(name).value(static_cast<long long>(value));
-  };
   json.beginObject();
   json.key("interface").value(bus.interface);
-  count("received", bus.counters.received);
-  count("sent", bus.counters.sent);
-  count("refused", bus.counters.refused);
-  count("held_back", bus.counters.held_back);
-  count("error_frames", bus.counters.error_frames);
-  count("foreign", bus.counters.foreign);
+  writeCount("received", bus.counters.received, json);
+  writeCount("sent", bus.counters.sent, json);
+  writeCount("refused", bus.counters.refused, json);
+  writeCount("held_back", bus.counters.held_back, json);
+  writeCount("error_frames", bus.counters.error_frames, json);
+  writeCount("foreign", bus.counters.foreign, json);
+  json.endObject();
+}
+
+void writeTactile(const TactileCounters& counters, JsonWriter& json) {
+  json.key("tactile").beginObject();
+  writeCount("samples", counters.samples, json);
+  writeCount("incomplete", counters.incomplete, json);
+  writeCount("malformed", counters.malformed, json);
+  writeCount("repeated", counters.repeated, json);
   json.endObject();
 }
 
@@ -37,6 +47,8 @@ void writeLoopFigures(const LoopFigures& figures, JsonWriter& json) {
   json.key("buses").beginArray();
   for (const LoopFigures::Bus& bus : figures.buses) writeBus(bus, json);
   json.endArray();
+  json.key("malformed_drive_frames").value(figures.malformed_drive_frames);
+  if (figures.tactile) writeTactile(*figures.tactile, json);
   json.endObject();
 }
 

@@ -103,4 +103,10 @@ bool CanRobot::hasPositions() const noexcept {
                      [](const Drive& drive) { return drive.report().has_position; });
 }
 
+long long CanRobot::malformedFrames() const noexcept {
+  long long frames = 0;
+  for (const Drive& drive : drives_) frames += drive.malformedFrames();
+  return frames;
+}
+
 }  // namespace tactus

@@ -30,6 +30,9 @@ class Fuzz(unittest.TestCase):
 
     def test_frames_were_heard(self):
         self.assertGreaterEqual(len({fault for _, fault in self.modes if fault}), 3)
+        loop = summary(self.folder)["loop"]
+        self.assertGreater(loop["malformed_drive_frames"], 100)
+        self.assertGreater(loop["tactile"]["malformed"], 10)
 
     def test_every_line_is_a_mode_with_a_fault_of_the_table(self):
         names = fault_names()

@@ -49,6 +49,7 @@ class ControlCycle {
   const CanFrame& probe() const noexcept { return robot_.probe(); }
   GpioOutputs lines() const noexcept;
 
+  const CanRobot& robot() const noexcept { return robot_; }
   const ModeReport& report() const noexcept { return report_; }
   bool isFinished() const noexcept { return mode_.mode == Mode::kOff; }
   /// From the first cycle of motion on, every cycle is recorded.

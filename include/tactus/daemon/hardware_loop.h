@@ -34,6 +34,7 @@ class HardwareLoop {
   long long missedCycles() const noexcept { return missed_cycles_; }
   std::int64_t cpuTime_ns() const noexcept { return cpu_end_ns_ - cpu_start_ns_; }
   const ModeReport& report() const noexcept { return cycle_.report(); }
+  const CanRobot& robot() const noexcept { return cycle_.robot(); }
 
  private:
   struct Bus {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tactus/daemon/json.h"
 #include "tactus/io/bus_monitor.h"
+#include "tactus/io/tactile_receiver.h"
 #include "tactus/rt/histogram.h"
 
 namespace tactus {
@@ -25,6 +27,8 @@ struct LoopFigures {
   double cpu_ns_per_cycle = 0.0;          ///< of the loop's thread
   double process_cpu_ns_per_cycle = 0.0;  ///< of the whole daemon, log included
   std::vector<Bus> buses;
+  long long malformed_drive_frames = 0;    ///< of wrong size or kind, which were ignored
+  std::optional<TactileCounters> tactile;  ///< of a robot with a tactile module on a bus
 };
 
 /// The member "loop" of summary.json.

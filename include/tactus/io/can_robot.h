@@ -50,7 +50,10 @@ class CanRobot final : public Robot {
   DrivesReport drives() const noexcept;
   const DriveReport& drive(int joint) const noexcept { return drives_[joint].report(); }
   bool hasPositions() const noexcept;
+  /// Of all drives: frames of wrong size or kind, which were ignored.
+  long long malformedFrames() const noexcept;
   /// nullptr on a robot without tactile module.
+  const TactileReceiver* tactile() const noexcept { return tactile_ ? &*tactile_ : nullptr; }
   TactileReceiver* tactile() noexcept { return tactile_ ? &*tactile_ : nullptr; }
 
  private:
