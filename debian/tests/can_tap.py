@@ -96,6 +96,11 @@ class Drives:
         return not any(enabled) and self.ask(POSITION, 4) == before
 
 
+def has_power(status_word):
+    """CiA 402: bit 1 is set in switched on, operation enabled, quick stop and fault reaction active."""
+    return status_word & 0x02 != 0
+
+
 def is_enabled(status_word):
     """CiA 402: operation enabled, quick stop active or fault reaction active. "Switched on" is not:
     the drive takes no setpoint and its motor has no torque."""

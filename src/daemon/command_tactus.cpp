@@ -31,6 +31,7 @@ int tactusProgram(int argc, char** argv) {
   addBenchCommand(app, exit_code);
   addKeysCommand(app, exit_code);
   addDoctorCommand(app, exit_code);
+  addStatusCommand(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -94,6 +94,7 @@ void HardwareLoop::publish(const Wake& wake, std::int64_t read_ns, std::int64_t 
   record_.is_in_motion = cycle_.isRecorded();
   link_.records.push(record_);
   link_.pulse.late_in_a_row.store(wake.late_in_a_row, std::memory_order_relaxed);
+  link_.pulse.missed_cycles.store(missed_cycles_, std::memory_order_relaxed);
   link_.pulse.cycles.store(cycles_, std::memory_order_relaxed);
   const ModeReport& report = cycle_.report();
   const bool is_new = report.mode != reported_.mode || report.fault != reported_.fault;

@@ -56,18 +56,27 @@ bool Telemetry::drain(LoopLink& link) {
     loop_.read.add(cycle.read_ns);
     loop_.control.add(cycle.step_ns);
     loop_.write.add(cycle.write_ns);
-    if (!record_.is_in_motion || !log_) continue;
+    if (!record_.is_in_motion) continue;
     fillToolError(scene_.controller, cycle);
     log(cycle);
     summary_.add(cycle);
   }
-  ModeReport report;
-  while (link.reports.pop(report)) {
-    const std::string text = describeMode(report, scene_);
-    service_.onMode(report.mode, text);
-    std::fputs(fmt::format("tactusd: {}\n", text).c_str(), stderr);
+  while (link.reports.pop(report_)) {
+    description_ = describeMode(report_, scene_);
+    service_.onMode(report_.mode, description_);
+    std::fputs(fmt::format("tactusd: {}\n", description_).c_str(), stderr);
   }
+  if (status_file_.isDue()) showStatus(link);
   return !error_;
+}
+
+void Telemetry::showStatus(const LoopLink& link) {
+  loop_.cycles = link.pulse.cycles.load(std::memory_order_relaxed);
+  loop_.missed_cycles = link.pulse.missed_cycles.load(std::memory_order_relaxed);
+  loop_.dropped_records = static_cast<long long>(link.records.dropped());
+  const RunFigures& figures = summary_.soFar();
+  status_file_.write({scene_, report_.mode, report_.fault, description_, loop_,
+                      figures.cycles > 0 ? &figures : nullptr});
 }
 
 void Telemetry::log(const CycleRecord& cycle) {

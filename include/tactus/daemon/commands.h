@@ -21,5 +21,6 @@ void addPlantCommand(CLI::App& app, int& exit_code);
 void addBenchCommand(CLI::App& app, int& exit_code);
 void addKeysCommand(CLI::App& app, int& exit_code);
 void addDoctorCommand(CLI::App& app, int& exit_code);
+void addStatusCommand(CLI::App& app, int& exit_code);
 
 }  // namespace tactus

@@ -18,6 +18,7 @@ struct LoopRecord {
 /// What the loop shows of itself each cycle to those who watch over it.
 struct LoopPulse {
   std::atomic<std::int64_t> cycles{0};
+  std::atomic<std::int64_t> missed_cycles{0};
   std::atomic<std::int64_t> late_in_a_row{0};  ///< cycles up to the last one; 0: on time
 };
 

@@ -41,6 +41,8 @@ class RunSummary {
   void add(const CycleRecord& record);
 
   RunFigures figures() const;
+  /// At any time, at no cost: without contacts, times and tcp_error_rms_m.
+  const RunFigures& soFar() const noexcept { return figures_; }
 
  private:
   void addJoints(const CycleRecord& record) noexcept;

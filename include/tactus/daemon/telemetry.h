@@ -6,6 +6,7 @@
 
 #include "tactus/daemon/loop_figures.h"
 #include "tactus/daemon/loop_link.h"
+#include "tactus/daemon/run_status.h"
 #include "tactus/daemon/run_summary.h"
 #include "tactus/daemon/scene.h"
 #include "tactus/daemon/service_notify.h"
@@ -13,8 +14,8 @@
 
 namespace tactus {
 
-/// What becomes of a run's cycles outside the loop: the log, the figures, and for each change of
-/// mode a line and a word to the service manager.
+/// What becomes of a run's cycles outside the loop: the log, the figures, the status file, and for
+/// each change of mode a line and a word to the service manager.
 class Telemetry {
  public:
   /// folder: of run.ulg and summary.json, which exists; empty: no files. Throws as UlogWriter.
@@ -31,10 +32,14 @@ class Telemetry {
 
  private:
   void log(const CycleRecord& cycle);
+  void showStatus(const LoopLink& link);
 
   const Scene& scene_;
   std::string folder_;
   ServiceNotify service_;
+  StatusFile status_file_;
+  ModeReport report_;
+  std::string description_;
   std::optional<UlogWriter> log_;
   RunSummary summary_;
   LoopFigures loop_;

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+
+#include "tactus/control/mode.h"
+#include "tactus/daemon/loop_figures.h"
+#include "tactus/daemon/run_summary.h"
+
+namespace tactus {
+
+/// Where a daemon is, for people and scripts outside of it.
+struct RunStatus {
+  const Scene& scene;
+  Mode mode;
+  Fault fault;
+  const std::string& description;  ///< of both, as describeMode()
+  const LoopFigures& loop;         ///< cycles, missed and dropped ones, and times
+  const RunFigures* figures;       ///< RunSummary::soFar(); nullptr before the arm first moves
+};
+
+/// With the daemon's process and the machine's monotonic clock, by which a reader sees its age.
+std::string statusJson(const RunStatus& status, double monotonic_s);
+
+/// The file that `tactus status` reads, replaced as a whole and removed at the end. It is in the
+/// folder that the service manager makes (RuntimeDirectory=) and names in RUNTIME_DIRECTORY;
+/// without that there is none.
+class StatusFile {
+ public:
+  StatusFile();
+  ~StatusFile();
+  StatusFile(const StatusFile&) = delete;
+  StatusFile& operator=(const StatusFile&) = delete;
+
+  /// Whether it is time for another one.
+  bool isDue() const noexcept;
+  /// A file that cannot be written ends no run: said once, and not tried again.
+  void write(const RunStatus& status);
+
+ private:
+  std::string path_;  ///< empty: none
+  double written_s_ = -1e9;
+};
+
+/// Name of the file in that folder.
+inline constexpr const char* kStatusName = "status.json";
+
+/// CLOCK_MONOTONIC, s.
+double monotonicTime_s() noexcept;
+
+}  // namespace tactus

@@ -1,0 +1,153 @@
+#include "tactus/daemon/run_status.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <yaml-cpp/yaml.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "support/shipped_scene.h"
+#include "support/telemetry.h"
+#include "tactus/daemon/commands.h"
+#include "tactus/daemon/run_error.h"
+#include "tactus/daemon/telemetry.h"
+
+namespace tactus {
+namespace {
+
+/// A daemon's telemetry with a folder for its status, and `tactus status` that looks there.
+class RunStatusFile : public ::testing::Test {
+ protected:
+  RunStatusFile() : folder_(::testing::TempDir() + "tactus_status.XXXXXX") {
+    EXPECT_NE(mkdtemp(folder_.data()), nullptr);
+    setenv("RUNTIME_DIRECTORY", folder_.c_str(), 1);
+  }
+  ~RunStatusFile() override {
+    unsetenv("RUNTIME_DIRECTORY");
+    std::filesystem::remove_all(folder_);
+  }
+
+  std::string path() const { return folder_ + "/" + kStatusName; }
+
+  int run(const std::vector<std::string>& options = {}) {
+    CLI::App app;
+    int exit_code = -1;
+    addStatusCommand(app, exit_code);
+    std::vector<std::string> arguments(options.rbegin(), options.rend());
+    arguments.push_back("status");
+    ::testing::internal::CaptureStdout();
+    try {
+      app.parse(arguments);
+    } catch (...) {
+      output_ = ::testing::internal::GetCapturedStdout();
+      throw;
+    }
+    output_ = ::testing::internal::GetCapturedStdout();
+    return exit_code;
+  }
+
+  std::string errorOfRun() {
+    try {
+      run();
+    } catch (const RunError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  void cycle(bool is_in_motion, double force_N) {
+    LoopRecord record;
+    record.is_in_motion = is_in_motion;
+    record.cycle.force_sensor_N = force_N;
+    record.cycle.stiffness_N_per_m = 7000.0;
+    record.cycle.wake_latency_ns = 4000;
+    record.cycle.step_ns = 9000;
+    link_->records.push(record);
+    link_->pulse.cycles.fetch_add(1);
+  }
+
+  void reportMode(Mode mode, Fault fault) const {
+    ModeReport report;
+    report.mode = mode;
+    report.fault = fault;
+    link_->reports.push(report);
+  }
+
+  const Scene scene_ = test::shippedScene("scenario1_multi_space");
+  std::string folder_;
+  const std::unique_ptr<LoopLink> link_ = std::make_unique<LoopLink>();
+  std::string output_;
+};
+
+TEST_F(RunStatusFile, ShowsTheRunningDaemonUntilItEnds) {
+  {
+    Telemetry telemetry(scene_, "");
+    reportMode(Mode::kRunning, Fault::kNone);
+    cycle(true, 6.0);
+    cycle(true, 4.5);
+    link_->pulse.missed_cycles = 3;
+    telemetry.drain(*link_);
+    EXPECT_EQ(run(), kExitDone);
+    for (const char* expected :
+         {"scenario1_multi_space (null_task)", "\nrunning\n", "force    4.50 N, at most 6.00 N",
+          "stiffness 7000 N/m", "cycles   2, 3 missed, 0 not logged", "wakes    4.0 us"})
+      EXPECT_NE(output_.find(expected), std::string::npos) << expected << " in\n" << output_;
+    EXPECT_EQ(run({"--json"}), kExitDone);
+    const YAML::Node json = YAML::Load(output_);
+    EXPECT_EQ(json["mode"].as<std::string>(), "running");
+    EXPECT_EQ(json["motion"]["peak_force_N"].as<double>(), 6.0);
+    EXPECT_EQ(json["pid"].as<int>(), getpid());
+  }
+  EXPECT_FALSE(std::filesystem::exists(path()));
+  EXPECT_EQ(errorOfRun(), path() + ": no daemon is running");
+}
+
+TEST_F(RunStatusFile, NamesAFaultAndEndsSo) {
+  Telemetry telemetry(scene_, "");
+  reportMode(Mode::kFault, Fault::kEmergencyStop);
+  cycle(false, 0.0);
+  telemetry.drain(*link_);
+  EXPECT_EQ(run(), kExitFault);
+  EXPECT_NE(output_.find("fault: emergency_stop"), std::string::npos) << output_;
+  EXPECT_EQ(output_.find("force"), std::string::npos) << "it has not moved:\n" << output_;
+}
+
+TEST_F(RunStatusFile, AStatusThatIsOldIsNone) {
+  const std::string description = "running";
+  std::ofstream(path()) << statusJson(
+      {scene_, Mode::kRunning, Fault::kNone, description, {}, nullptr}, monotonicTime_s() - 60.0);
+  EXPECT_EQ(errorOfRun(), path() + ": no word from the daemon for 60 s");
+  EXPECT_NE(output_.find("running"), std::string::npos) << "the last word is worth knowing";
+}
+
+TEST_F(RunStatusFile, OtherFilesAreRefused) {
+  for (const char* text :
+       {"", "{", "[1, 2]", "{\"monotonic_s\": 1e300}", "\xff\xfe{}", "a: &a [*a]"}) {
+    std::ofstream(path()) << text;
+    EXPECT_EQ(errorOfRun(), path() + ": not the status of a daemon") << text;
+  }
+}
+
+TEST_F(RunStatusFile, AFolderThatCannotBeWrittenEndsNothing) {
+  std::filesystem::remove_all(folder_);
+  Telemetry telemetry(scene_, "");
+  cycle(true, 1.0);
+  ::testing::internal::CaptureStderr();
+  EXPECT_TRUE(telemetry.drain(*link_));
+  EXPECT_TRUE(telemetry.drain(*link_));
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("tactusd: no status: "), std::string::npos) << said;
+  EXPECT_EQ(said.find("no status", said.find("no status") + 1), std::string::npos) << said;
+}
+
+TEST_F(RunStatusFile, NoneWithoutAFolder) {
+  unsetenv("RUNTIME_DIRECTORY");
+  Telemetry telemetry(scene_, "");
+  cycle(true, 1.0);
+  telemetry.drain(*link_);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+}  // namespace
+}  // namespace tactus
