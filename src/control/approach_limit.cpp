@@ -22,7 +22,7 @@ double approach(const JointVector& a, const ScaledVector& from, const ScaledVect
 ApproachLimit::ApproachLimit(const ControllerConfig& config)
     : config_(*config.force_control),
       smoother_(config_.estimator.value_or(StiffnessEstimatorConfig{}).min_force_change_N,
-                config_.contact_threshold_N, config.tactile_module->length_m),
+                config_.contact_threshold_N, *config.tactile_module),
       position_(config.drive_lag_s, config.tactile_module->filter_cutoff_hz) {
   if (config_.estimator) {
     estimator_.emplace(*config_.estimator, config_.assumed_stiffness_N_per_m,

@@ -8,10 +8,13 @@
 namespace tactus {
 namespace {
 
-constexpr double kSmoothing_s = 1.0;           ///< T_s
-constexpr double kLearning = 0.01;             ///< a sample: settles within half a second at 4 ms
-constexpr double kMaxRebound = 0.2;            ///< of the peak; 0.115 after the shortest blow
-constexpr double kRinging_s = 0.05;            ///< the filter's, with a margin of two at 15 Hz
+constexpr double kSmoothing_s = 1.0;  ///< T_s
+constexpr double kLearning = 0.01;    ///< a sample: settles within half a second at 4 ms
+/// The peak is remembered for kRinging / f_c; of what is left of it the filter shows 0.175 from the
+/// other side after the shortest blow, less after others. Samples rarer than the filter is fast
+/// miss some of the peak, hence twice that.
+constexpr double kMaxRebound = 0.35;
+constexpr double kRinging = 1.5;
 constexpr double kGrowth = 1.2;                ///< of force from sample to sample in an impact
 constexpr double kMedianOfNoise = 0.48;        ///< of |d2| / s: sqrt(2 ln 2) sqrt(6) / 6
 constexpr double kMaxSignificantRatio = 10.0;  ///< s / s_min; more would be no sensor
@@ -31,6 +34,13 @@ void carry(const Pose& from, const Pose& to, ContactPointState& contact) {
 }
 
 }  // namespace
+
+ContactSmoother::ContactSmoother(double min_significant_N, double contact_threshold_N,
+                                 const TactileModuleConfig& module)
+    : min_significant_N_(min_significant_N),
+      contact_threshold_N_(contact_threshold_N),
+      half_length_m_(0.5 * module.length_m),
+      ringing_s_(kRinging / module.filter_cutoff_hz) {}
 
 ContactSmootherState ContactSmoother::initialState() const noexcept {
   ContactSmootherState state;
@@ -52,7 +62,7 @@ void ContactSmoother::learnNoise(const Vector3& force_N,
 
 bool ContactSmoother::isRebound(const ContactPointState& sensor,
                                 ContactSmootherState& state) const noexcept {
-  state.peak_N *= 1.0 - lagShare(sensor.interval_s, kRinging_s);
+  state.peak_N *= 1.0 - lagShare(sensor.interval_s, ringing_s_);
   state.peak_N = std::max(flushed(state.peak_N), sensor.force_N);
   return sensor.force_N < kMaxRebound * state.peak_N &&
          sensor.direction.dot(state.contact.direction) < 0.0;

@@ -6,6 +6,7 @@
 
 #include "support/random.h"
 #include "support/tactile_samples.h"
+#include "tactus/math/filter.h"
 
 namespace tactus {
 namespace {
@@ -14,6 +15,13 @@ constexpr double kLength_m = 0.38;
 constexpr double kSample_s = 0.004;
 constexpr double kMin_N = 0.2;
 constexpr double kThreshold_N = 1.2;
+
+TactileModuleConfig coverOf(double filter_cutoff_hz) {
+  TactileModuleConfig module;
+  module.length_m = kLength_m;
+  module.filter_cutoff_hz = filter_cutoff_hz;
+  return module;
+}
 
 class Smoother : public testing::Test {
  protected:
@@ -41,7 +49,7 @@ class Smoother : public testing::Test {
   }
 
   test::Random random_{311};
-  ContactSmoother smoother_{kMin_N, kThreshold_N, kLength_m};
+  ContactSmoother smoother_{kMin_N, kThreshold_N, coverOf(15.0)};
   ContactSmootherState state_ = smoother_.initialState();
   ContactPointState sensor_;
   Pose X_BaseModule_;
@@ -105,12 +113,36 @@ TEST_F(Smoother, TheFiltersReboundIsNoContact) {
   EXPECT_EQ(state_.contact.force_N, 0.0);
   EXPECT_NEAR(angle(), 0.5, 1e-12);
   EXPECT_NEAR(state_.contact.position_m, 0.3, 1e-12);
-  feel(0.1, 15.0, 0.5 + M_PI);
-  EXPECT_NEAR(state_.contact.force_N, 15.0, 1e-12) << "too much for a rebound";
+  feel(0.1, 16.0, 0.5 + M_PI);
+  EXPECT_NEAR(state_.contact.force_N, 16.0, 1e-12) << "too much for a rebound";
   feel(0.3, 40.0, 0.5);
   for (int i = 0; i < 50; ++i) feel(0.3, 0.0, 0.5);
   feel(0.1, 2.0, 0.5 + M_PI);
   EXPECT_NEAR(state_.contact.force_N, 2.0, 1e-12) << "the blow is long over";
+}
+
+/// Whatever the filter makes of a blow, samples of it never show a contact on the other side.
+TEST_F(Smoother, NoBlowTurnsTheContactAround) {
+  for (int trial = 0; trial < 3000; ++trial) {
+    const double cutoff_hz = random_.uniform(5.0, 40.0);
+    const double blow_s = random_.uniform(0.001, 4.0 / cutoff_hz);
+    const int stride = static_cast<int>(random_.uniform(1.0, 0.3e3 / cutoff_hz));  // cycles of 1 ms
+    const int phase = static_cast<int>(random_.uniform(0.0, stride));
+    const ContactSmoother smoother(kMin_N, kThreshold_N, coverOf(cutoff_hz));
+    ContactSmootherState state = smoother.initialState();
+    ButterworthLowPass filter(cutoff_hz, 1e3);
+    for (int i = 0; i < 1000; ++i) {
+      const double force_N = filter.update(1e-3 * i < blow_s ? 1000.0 : 0.0);
+      if (i % stride != phase) continue;
+      locateContact(test::touchAt(0.2, force_N, 0.5, 1), kLength_m, sensor_);
+      sensor_.interval_s = 1e-3 * stride;
+      smoother.update(sensor_, X_BaseModule_, state);
+      const bool is_turned =
+          state.contact.direction.dot(Vector3(0.0, std::cos(0.5), std::sin(0.5))) < 0.0;
+      ASSERT_FALSE(is_turned) << cutoff_hz << " Hz, " << blow_s << " s, every " << stride
+                              << " ms, at " << i;
+    }
+  }
 }
 
 TEST_F(Smoother, QuietensPointAndDirection) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tactus/control/contact_point.h"
+#include "tactus/control/controller_config.h"
 
 namespace tactus {
 
@@ -34,11 +35,9 @@ struct ContactSmootherState {
 // clang-format on
 class ContactSmoother {
  public:
-  /// min_significant_N: s_min; contact_threshold_N: F_th; link_length_m: L, of the cover.
-  ContactSmoother(double min_significant_N, double contact_threshold_N, double link_length_m)
-      : min_significant_N_(min_significant_N),
-        contact_threshold_N_(contact_threshold_N),
-        half_length_m_(0.5 * link_length_m) {}
+  /// min_significant_N: s_min; contact_threshold_N: F_th.
+  ContactSmoother(double min_significant_N, double contact_threshold_N,
+                  const TactileModuleConfig& module);
 
   ContactSmootherState initialState() const noexcept;
 
@@ -54,6 +53,7 @@ class ContactSmoother {
   double min_significant_N_;
   double contact_threshold_N_;
   double half_length_m_;
+  double ringing_s_;
 };
 
 }  // namespace tactus
