@@ -65,11 +65,17 @@ class LiftedLoop {
   void control() {
     const double T_s = loop_.time_constant_s;
     const double P_per_s = (loop_.order == 2 ? 2.0 * loop_.damping : 1.0) / T_s;
-    const Form answer = P_per_s * sample_ + integral_;
+    const Form answer =
+        P_per_s * (loop_.law == LoopLaw::kApproachLimit ? predicted() : sample_) + integral_;
     const Form pull = -loop_.drift_gain_per_s * (isToolApart() ? tool_ : commanded_);
     velocity_ = (loop_.law == LoopLaw::kTwoSpaces ? 2.0 : 1.0) * answer + pull;
     if (loop_.order == 2) integral_ += loop_.period_s / (T_s * T_s) * sample_;
     if (isToolApart()) tool_ += loop_.period_s * (answer + pull);
+  }
+
+  Form predicted() const {
+    const Form sensed = -sample_ / (stiffness_ratio_ * turn_);
+    return sample_ + sensed - commanded_;
   }
 
   /// In one space the tool leaves its path by as much as the contact moves.

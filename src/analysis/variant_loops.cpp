@@ -41,7 +41,8 @@ std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const Plan
       return {{"both spaces", both}, {"both spaces, with beta", pulled(both)}, {"one space", one}};
     case Variant::kNullLimit: {
       ContactLoop limit = one;
-      limit.order = 1;  // without its prediction, which bears stiffer contacts still
+      limit.law = LoopLaw::kApproachLimit;
+      limit.order = 1;
       return {{"one space", one}, {"approach limit", limit}};
     }
   }

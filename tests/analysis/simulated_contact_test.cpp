@@ -45,6 +45,7 @@ ForceControlConfig forceControl(const LoopCase& c) {
   force.contact_threshold_N = 0.0;
   force.max_null_speed_m_per_s = 1e6;
   force.assumed_stiffness_N_per_m = kC_N_per_m;
+  if (c.variant == Variant::kNullLimit) force.max_null_speed_m_per_s = 1e-12;  // the task alone
   if (!c.is_fed_forward) force.transition.engage_force_N = 1e12;  // gamma stays at zero
   return force;
 }
@@ -108,6 +109,7 @@ Rest restOf(const LoopCase& c) {
   const double beta = c.loop.drift_gain_per_s;
   // Both integrals move, but their sum rests at half the activation force.
   if (c.is_fed_forward) return {.It_m_per_s = 0.5, .V_m_per_s = -0.5, .activation_N = 2 * kRest_N};
+  if (c.variant == Variant::kNullLimit) return {.speed_m_per_s = 0.02, .activation_N = kRest_N};
   if (c.loop.order == 1) return {.speed_m_per_s = (c.isTwoSpaces() ? 2 : 1) * c.P() * kRest_N};
   Rest rest;
   if (c.variant == Variant::kTaskSpace && beta > 0.0) {
@@ -145,6 +147,8 @@ bool calmsDownOnRail(const LoopCase& c, double stiffness_ratio) {
   config.force_control = forceControl(c);
   config.force_control->activation_force_N = rest.activation_N;
   config.tactile_module->max_sample_age_s = 1.0;
+  config.tactile_module->filter_cutoff_hz = c.loop.filter_cutoff_hz;
+  config.drive_lag_s = c.loop.drive_lag_s;
   config.task.drift_gain_per_s = c.is_fed_forward ? 20.0 : c.loop.drift_gain_per_s;
   config.task.trajectory = trajectoryOf(rest);
   const Controller controller(config);
@@ -220,6 +224,7 @@ constexpr auto kTwo = LoopLaw::kTwoSpaces;
 constexpr auto kTask = Variant::kTaskSpace;
 constexpr auto kNullTask = Variant::kNullTask;
 constexpr auto kNullJoint = Variant::kNullJoint;
+constexpr auto kNullLimit = Variant::kNullLimit;
 const auto kName = [](const auto& test) { return test.param.name; };
 
 INSTANTIATE_TEST_SUITE_P(OneSpace, SimulatedContact,
@@ -243,6 +248,24 @@ INSTANTIATE_TEST_SUITE_P(
                     LoopCase{"beta_5", {.law = kTwo, .drift_gain_per_s = 5.0}, kNullTask},
                     LoopCase{"beta_20", {.law = kTwo, .drift_gain_per_s = 20.0}, kNullTask},
                     LoopCase{"beta_20_fed_forward", {.law = kTwo}, kNullTask, true}),
+    kName);
+
+constexpr ContactLoop limitLoop(double T_s = 0.1, double sample_s = 0.004, double lag_s = 0.005) {
+  return {.law = LoopLaw::kApproachLimit,
+          .order = 1,
+          .time_constant_s = T_s,
+          .drive_lag_s = lag_s,
+          .sample_period_s = sample_s};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ApproachLimit, SimulatedContact,
+    testing::Values(LoopCase{"T_100_ms", limitLoop(), kNullLimit},
+                    LoopCase{"T_50_ms", limitLoop(0.05), kNullLimit},
+                    LoopCase{"T_200_ms", limitLoop(0.2), kNullLimit},
+                    LoopCase{"slow_samples", limitLoop(0.1, 0.02), kNullLimit},
+                    LoopCase{"ideal_drives", limitLoop(0.1, 0.004, 0.0), kNullLimit},
+                    LoopCase{"slow_drives", limitLoop(0.1, 0.004, 0.01), kNullLimit}),
     kName);
 
 INSTANTIATE_TEST_SUITE_P(Rates, SimulatedContact,

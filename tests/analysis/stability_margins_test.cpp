@@ -28,6 +28,42 @@ double largestRatio(const ContactLoop& loop) {
   return computeMargins(loop, 1.0).largest_stiffness_ratio;
 }
 
+// The table of docs/approach_speed_limit.md.
+TEST(LargestStiffnessRatio, OfTheApproachLimitIsThatOfItsDerivation) {
+  ContactLoop paper = paperLoop(LoopLaw::kApproachLimit);
+  paper.order = 1;
+  EXPECT_NEAR(largestRatio(paper), 7.42, 0.005);
+  for (const auto& [sample_s, ratio] : {std::pair{0.008, 7.05}, {0.02, 6.29}}) {
+    ContactLoop loop = paper;
+    loop.sample_period_s = sample_s;
+    EXPECT_NEAR(largestRatio(loop), ratio, 0.005);
+  }
+  for (const auto& [lag_s, ratio] : {std::pair{0.0, 8.20}, {0.01, 7.14}}) {
+    ContactLoop loop = paper;
+    loop.drive_lag_s = lag_s;
+    EXPECT_NEAR(largestRatio(loop), ratio, 0.005);
+  }
+  for (const auto& [T_s, ratio] : {std::pair{0.05, 4.61}, {0.2, 13.10}}) {
+    ContactLoop loop = paper;
+    loop.time_constant_s = T_s;
+    EXPECT_NEAR(largestRatio(loop), ratio, 0.005);
+  }
+}
+
+/// For c_e = c nothing of the delay is left, and a softer contact is stable with every delay.
+TEST(LargestStiffnessRatio, OfTheApproachLimitIsAboveOneWithEveryDelay) {
+  test::Random random(91);
+  for (int trial = 0; trial < 100; ++trial) {
+    ContactLoop loop = paperLoop(LoopLaw::kApproachLimit);
+    loop.order = 1;
+    loop.time_constant_s = random.uniform(0.02, 0.5);
+    loop.drive_lag_s = random.uniform(0.0, 0.2);
+    loop.filter_cutoff_hz = random.uniform(2.0, 60.0);
+    loop.sample_period_s = 0.001 * std::floor(random.uniform(1.0, 20.0));
+    for (const double ratio : {0.01, 0.1, 0.5, 1.0}) EXPECT_TRUE(isStable(loop, ratio)) << ratio;
+  }
+}
+
 TEST(LargestStiffnessRatio, AgreesWithAnIndependentImplementation) {
   ContactLoop loop = paperLoop();
   EXPECT_NEAR(largestRatio(loop), 4.83, 0.005);

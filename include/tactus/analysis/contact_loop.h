@@ -7,8 +7,9 @@ namespace tactus {
 
 /// What answers the contact force.
 enum class LoopLaw {
-  kOneSpace,   ///< (5): one space takes all of the contact's motion
-  kTwoSpaces,  ///< (5) and (7) at once, both not at their limits: the gain of one, twice
+  kOneSpace,       ///< (5): one space takes all of the contact's motion
+  kTwoSpaces,      ///< (5) and (7) at once, both not at their limits: the gain of one, twice
+  kApproachLimit,  ///< docs/approach_speed_limit.md, while something presses on; first order
 };
 
 /// The contact of one point with a spring as a linear loop, in the order of Controller and
@@ -37,10 +38,12 @@ struct ContactLoop {
 /// with n = 1 or 2 spaces. The offsets F_th and F_act move the point of rest and nothing else. In
 /// two spaces V and I of the two laws grow by the same, W; their difference never comes back into
 /// the loop (above F_act it drifts: the paper's "not asymptotically stable", IV-B).
-/// z is how far the law has taken the tool from its path; beta pulls it back, and the contact with
-/// it. In the one-space loop the law is then that of the task space. Where the feedforward of (5)
-/// takes this motion out of the contact, as it does while the pull is towards the obstacle, beta is
-/// 0 here.
+/// The approach-speed limit predicts with c what the sample does not show yet, from x_f, what
+/// drives and filter made of x by the time of the sample: f_held + x_f - x takes the place of
+/// f_held. z is how far the law has taken the tool from its path; beta pulls it back, and the
+/// contact with it. In the one-space loop the law is then that of the task space. Where the
+/// feedforward of (5) takes this motion out of the contact, as it does while the pull is towards
+/// the obstacle, beta is 0 here.
 ///
 /// The loop runs at several rates, so it is lifted: what one common period of cycle and sample
 /// makes of the state is a constant matrix, and the loop is stable where its eigenvalues are inside
