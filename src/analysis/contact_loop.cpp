@@ -1,8 +1,10 @@
 #include "tactus/analysis/contact_loop.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "tactus/math/filter.h"
@@ -26,6 +28,12 @@ Rates ratesOf(const ContactLoop& loop) {
           steps(filter_period_s) * std::lround(loop.sample_period_s / filter_period_s)};
 }
 
+/// The controller's model of the filter is not prewarped; what stands in for it here is.
+double modelCutoff_hz(const ContactLoop& loop) {
+  const double K = std::numbers::pi * loop.model_filter_cutoff_hz * loop.period_s;
+  return std::atan(std::min(1.0, K)) / (std::numbers::pi * loop.period_s);
+}
+
 /// A number of the loop as a linear form of the state at the start of the common period.
 using Form = LoopState;
 
@@ -37,16 +45,23 @@ class LiftedLoop {
         rates_(ratesOf(loop)),
         filter_(loop.filter_cutoff_hz,
                 loop.filters_at_samples ? 1.0 / loop.sample_period_s : loop.filter_rate_hz),
+        model_filter_(modelCutoff_hz(loop), 1.0 / loop.period_s),
         drive_share_(lagShare(rates_.step_s, loop.drive_lag_s)),
+        model_share_(lagShare(loop.period_s, loop.model_drive_lag_s)),
         stiffness_ratio_(stiffness_ratio),
-        turn_(std::polar(1.0, -phase_lag_rad)) {
+        turn_(std::polar(1.0, -phase_lag_rad)),
+        is_sample_new_(rates_.sample <= rates_.cycle) {
     int i = 0;
-    for (Form* form : {&commanded_, &position_, &delays_[0], &delays_[1], &delays_[2], &sample_,
-                       &integral_, &tool_})
+    for (Form* form :
+         {&commanded_, &position_, &delays_[0], &delays_[1], &delays_[2], &sample_, &integral_,
+          &tool_, &lagged_, &model_delays_[0], &model_delays_[1], &model_delays_[2], &sensed_})
       *form = Form::Unit(i++);
     // What is not there, or there twice, must not appear as an eigenvalue 1.
     if (loop.order == 1) integral_.setZero();
     if (!isToolApart()) tool_.setZero();
+    if (loop.law == LoopLaw::kApproachLimit) return;
+    for (Form* form : {&lagged_, &model_delays_[0], &model_delays_[1], &model_delays_[2], &sensed_})
+      form->setZero();
   }
 
   void step(long n) {
@@ -57,7 +72,8 @@ class LiftedLoop {
 
   LoopMatrix state() const {
     LoopMatrix matrix;
-    matrix << commanded_, position_, delays_[0], delays_[1], delays_[2], sample_, integral_, tool_;
+    matrix << commanded_, position_, delays_[0], delays_[1], delays_[2], sample_, integral_, tool_,
+        lagged_, model_delays_[0], model_delays_[1], model_delays_[2], sensed_;
     return matrix;
   }
 
@@ -65,17 +81,21 @@ class LiftedLoop {
   void control() {
     const double T_s = loop_.time_constant_s;
     const double P_per_s = (loop_.order == 2 ? 2.0 * loop_.damping : 1.0) / T_s;
-    const Form answer =
-        P_per_s * (loop_.law == LoopLaw::kApproachLimit ? predicted() : sample_) + integral_;
+    const bool predicts = loop_.law == LoopLaw::kApproachLimit;
+    if (predicts) followModel();
+    const Form seen = predicts ? Form(sample_ + sensed_ - commanded_) : sample_;
+    const Form answer = P_per_s * seen + integral_;
     const Form pull = -loop_.drift_gain_per_s * (isToolApart() ? tool_ : commanded_);
     velocity_ = (loop_.law == LoopLaw::kTwoSpaces ? 2.0 : 1.0) * answer + pull;
     if (loop_.order == 2) integral_ += loop_.period_s / (T_s * T_s) * sample_;
     if (isToolApart()) tool_ += loop_.period_s * (answer + pull);
   }
 
-  Form predicted() const {
-    const Form sensed = -sample_ / (stiffness_ratio_ * turn_);
-    return sample_ + sensed - commanded_;
+  void followModel() {
+    lagged_ += model_share_ * (commanded_ - lagged_);
+    const Form filtered = filter(model_filter_, lagged_, model_delays_);
+    if (is_sample_new_) sensed_ = filtered;
+    is_sample_new_ = false;
   }
 
   /// In one space the tool leaves its path by as much as the contact moves.
@@ -90,25 +110,37 @@ class LiftedLoop {
 
   void sense(bool is_sample) {
     if (loop_.filters_at_samples && !is_sample) return;
-    const std::array<double, 4>& b = filter_.numerator();
-    const std::array<double, 4>& a = filter_.denominator();
-    const Form force = -stiffness_ratio_ * position_;
-    const Form filtered = b[0] * force + delays_[0];
-    delays_[0] = b[1] * force - a[1] * filtered + delays_[1];
-    delays_[1] = b[2] * force - a[2] * filtered + delays_[2];
-    delays_[2] = b[3] * force - a[3] * filtered;
-    if (is_sample) sample_ = turn_ * filtered;
+    const Form filtered = filter(filter_, -stiffness_ratio_ * position_, delays_);
+    if (!is_sample) return;
+    sample_ = turn_ * filtered;
+    is_sample_new_ = true;
+  }
+
+  static Form filter(const ButterworthLowPass& filter, const Form& input,
+                     std::array<Form, 3>& delays) {
+    const std::array<double, 4>& b = filter.numerator();
+    const std::array<double, 4>& a = filter.denominator();
+    const Form output = b[0] * input + delays[0];
+    delays[0] = b[1] * input - a[1] * output + delays[1];
+    delays[1] = b[2] * input - a[2] * output + delays[2];
+    delays[2] = b[3] * input - a[3] * output;
+    return output;
   }
 
   const ContactLoop& loop_;
   Rates rates_;
-  ButterworthLowPass filter_;
-  double drive_share_;
+  ButterworthLowPass filter_, model_filter_;
+  double drive_share_, model_share_;
   double stiffness_ratio_;
   std::complex<double> turn_;
+  bool is_sample_new_;  ///< since the last cycle
   Form commanded_, position_;
   std::array<Form, 3> delays_;  ///< of the filter
   Form sample_, integral_, tool_;
+  // Of the model:
+  Form lagged_;
+  std::array<Form, 3> model_delays_;
+  Form sensed_;
   Form velocity_ = Form::Zero();  ///< no state: a common period starts with a cycle
 };
 

@@ -43,6 +43,8 @@ std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const Plan
       ContactLoop limit = one;
       limit.law = LoopLaw::kApproachLimit;
       limit.order = 1;
+      limit.model_drive_lag_s = config.drive_lag_s;
+      limit.model_filter_cutoff_hz = config.tactile_module->filter_cutoff_hz;
       return {{"one space", one}, {"approach limit", limit}};
     }
   }

@@ -74,11 +74,6 @@ std::vector<LawTrial> lawAblations() {
          if (s.controller.force_control->variant == Variant::kNullLimit)
            s.controller.force_control->estimator.reset();
        }},
-      {"without the model of drives and filter",
-       [](RunSetup& s) {
-         s.controller.drive_lag_s = 0.0;
-         s.controller.tactile_module->filter_cutoff_hz = 1e6;
-       }},
       {"without c_floor",
        [](RunSetup& s) { s.controller.force_control->min_approach_stiffness_N_per_m = 0.0; }},
   };

@@ -11,8 +11,8 @@ namespace {
 constexpr double kSmoothing_s = 1.0;  ///< T_s
 constexpr double kLearning = 0.01;    ///< a sample: settles within half a second at 4 ms
 /// The peak is remembered for kRinging / f_c; of what is left of it the filter shows 0.175 from the
-/// other side after the shortest blow, less after others. Samples rarer than the filter is fast
-/// miss some of the peak, hence twice that.
+/// other side after the shortest blow, less after others. Samples miss some of the peak, the more
+/// the rarer they are: hence twice that, which does for periods up to 0.3 / f_c.
 constexpr double kMaxRebound = 0.35;
 constexpr double kRinging = 1.5;
 constexpr double kGrowth = 1.2;                ///< of force from sample to sample in an impact

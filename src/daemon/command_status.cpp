@@ -5,11 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
@@ -44,22 +47,31 @@ std::string readStatus(const std::string& path) {
     const char* reason = errno == ENOENT ? "no daemon is running" : std::strerror(errno);
     throw RunError(fmt::format("{}: {}", escaped(path), reason));
   }
+  if (!std::filesystem::is_regular_file(path))
+    throw RunError(fmt::format("{}: not a file", escaped(path)));
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// null stands for what JSON has no number for.
+double number(const YAML::Node& parent, const char* name) {
+  const YAML::Node node = parent[name];
+  return node.IsDefined() && node.IsNull() ? std::numeric_limits<double>::quiet_NaN()
+                                           : node.as<double>();
+}
+
 std::string timesLine(const char* name, const YAML::Node& times) {
-  const auto microseconds = [&](const char* figure) { return 1e-3 * times[figure].as<double>(); };
+  const auto microseconds = [&](const char* figure) { return 1e-3 * number(times, figure); };
   return fmt::format("{:<8} {:.1f} us, 99 % below {:.1f} us, at worst {:.1f} us\n", name,
                      microseconds("median"), microseconds("p99"), microseconds("max"));
 }
 
 std::string motionText(const YAML::Node& motion) {
-  const auto number = [&](const char* name) { return motion[name].as<double>(); };
+  const auto of = [&](const char* name) { return number(motion, name); };
   return fmt::format(
       "force    {:.2f} N, at most {:.2f} N so far; stiffness {:.0f} N/m\n"
       "tool     {:.1f} mm off its path, at most {:.1f} mm\n",
-      number("force_N"), number("peak_force_N"), number("stiffness_N_per_m"),
-      1e3 * number("tcp_error_m"), 1e3 * number("tcp_error_max_m"));
+      of("force_N"), of("peak_force_N"), of("stiffness_N_per_m"), 1e3 * of("tcp_error_m"),
+      1e3 * of("tcp_error_max_m"));
 }
 
 std::string statusText(const YAML::Node& status) {
@@ -73,29 +85,44 @@ std::string statusText(const YAML::Node& status) {
          timesLine("step", status["control_ns"]);
 }
 
-/// True: the daemon lives, and has no fault.
-bool showStatus(const StatusOptions& options) {
-  const std::string path = statusPath();
+struct Shown {
+  std::string text;
+  bool is_well = false;  ///< the daemon has no fault
+  double age_s = 0.0;
+};
+
+Shown readShown(const std::string& path, bool as_json) {
   const std::string json = readStatus(path);
   try {
     const YAML::Node status = YAML::Load(json);  // JSON is YAML, too
-    const double age_s = monotonicTime_s() - status["monotonic_s"].as<double>();
-    const std::string shown = options.json ? json : statusText(status);
-    std::fputs(shown.c_str(), stdout);
-    std::fflush(stdout);
-    if (age_s <= kMaxAge_s) return status["fault"].as<std::string>() == "none";
-    throw RunError(fmt::format("{}: no word from the daemon for {:.0f} s", escaped(path), age_s));
+    Shown shown;
+    shown.age_s = monotonicTime_s() - number(status, "monotonic_s");
+    shown.is_well = status["fault"].as<std::string>() == faultName(Fault::kNone);
+    shown.text = statusText(status);  // also to see that all is there
+    if (as_json) shown.text = json;
+    return shown;
   } catch (const YAML::Exception&) {
     throw RunError(fmt::format("{}: not the status of a daemon", escaped(path)));
   }
 }
 
+/// True: the daemon lives, and has no fault.
+bool showStatus(const StatusOptions& options) {
+  const bool clears = options.watch && !options.json && ::isatty(STDOUT_FILENO) == 1;
+  const std::string path = statusPath();
+  const Shown shown = readShown(path, options.json);
+  if (clears) std::fputs("\033[H\033[J", stdout);
+  std::fputs(shown.text.c_str(), stdout);
+  if (std::fflush(stdout) != 0) throw RunError("standard output: cannot be written");
+  // A clock that starts anew may be behind: the file is of before.
+  if (shown.age_s >= 0.0 && shown.age_s <= kMaxAge_s) return shown.is_well;
+  throw RunError(fmt::format("{}: no word from the daemon for {:.0f} s", escaped(path),
+                             std::abs(shown.age_s)));
+}
+
 [[noreturn]] void watchStatus(const StatusOptions& options) {
-  const bool clears = !options.json && ::isatty(STDOUT_FILENO) == 1;
   for (;;) {
-    if (clears) std::fputs("\033[H\033[J", stdout);
     showStatus(options);
-    if (!clears) std::fputs("\n", stdout);
     std::this_thread::sleep_for(kWatchPeriod);
   }
 }

@@ -188,7 +188,7 @@ void ControlCycle::rememberPlace() noexcept {
       mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding || mode_.mode == Mode::kStopping;
   if (!is_started_) return;
   if (is_commanding) q_commanded_ = output_.q_desired;
-  if (mode_.mode != Mode::kBoot && !robot_.drives().are_disabled) q_released_ = input_.q_measured;
+  if (mode_.mode != Mode::kBoot && robot_.drives().is_any_holding) q_released_ = input_.q_measured;
 }
 
 ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept {
@@ -257,7 +257,7 @@ bool ControlCycle::mayMove() const noexcept {
     case Mode::kStopping:
       return rest_cycles_ == 0;
     case Mode::kFault:
-      return is_brake_open_ && !robot_.drives().are_disabled;
+      return is_brake_open_ && robot_.drives().is_any_holding;
     default:
       return false;
   }

@@ -61,15 +61,15 @@ StatusFile::StatusFile() {
 }
 
 StatusFile::~StatusFile() {
-  if (!path_.empty()) std::remove(path_.c_str());
+  if (isWanted()) std::remove(path_.c_str());
 }
 
 bool StatusFile::isDue() const noexcept {
-  return !path_.empty() && monotonicTime_s() - written_s_ >= kStatusPeriod_s;
+  return isWanted() && monotonicTime_s() - written_s_ >= kStatusPeriod_s;
 }
 
 void StatusFile::write(const RunStatus& status) {
-  if (path_.empty()) return;
+  if (!isWanted()) return;
   written_s_ = monotonicTime_s();
   try {
     const std::string next = path_ + ".next";
@@ -78,8 +78,9 @@ void StatusFile::write(const RunStatus& status) {
     file.close();
     std::filesystem::rename(next, path_);
   } catch (const std::exception& error) {
+    if (has_complained_) return;
+    has_complained_ = true;
     std::fputs(fmt::format("tactusd: no status: {}\n", error.what()).c_str(), stderr);
-    path_.clear();
   }
 }
 

@@ -48,6 +48,11 @@ RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycl
     : limits_(config.limits), contacts_(config.force_control.has_value(), expected_cycles) {}
 
 void RunSummary::add(const CycleRecord& record) {
+  addFigures(record);
+  contacts_.add(record);
+}
+
+void RunSummary::addFigures(const CycleRecord& record) noexcept {
   ++figures_.cycles;
   if (record.force_sensor_N > figures_.peak_force_N) {
     figures_.peak_force_N = record.force_sensor_N;
@@ -61,7 +66,6 @@ void RunSummary::add(const CycleRecord& record) {
   figures_.tcp_error_final_m = error_m;
   squared_error_sum_m2_ += error_m * error_m;
   addJoints(record);
-  contacts_.add(record);
   step_times_.add(record.step_ns);
 }
 

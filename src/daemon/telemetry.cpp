@@ -56,10 +56,10 @@ bool Telemetry::drain(LoopLink& link) {
     loop_.read.add(cycle.read_ns);
     loop_.control.add(cycle.step_ns);
     loop_.write.add(cycle.write_ns);
-    if (!record_.is_in_motion) continue;
+    if (!record_.is_in_motion || !(log_ || status_file_.isWanted())) continue;
     fillToolError(scene_.controller, cycle);
     log(cycle);
-    summary_.add(cycle);
+    log_ ? summary_.add(cycle) : summary_.addFigures(cycle);
   }
   while (link.reports.pop(report_)) {
     description_ = describeMode(report_, scene_);

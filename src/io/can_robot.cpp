@@ -8,15 +8,15 @@
 namespace tactus {
 namespace {
 
-bool hasPower(DriveState state) noexcept {
-  return state == DriveState::kSwitchedOn || state == DriveState::kOperationEnabled ||
-         state == DriveState::kQuickStopActive || state == DriveState::kFaultReactionActive;
+/// A drive that has gone silent cannot be seen to be off: its own heartbeat watch stops it.
+bool isReachable(const DriveReport& report) noexcept {
+  return report.is_configured && !report.is_silent;
 }
 
-/// A drive that has gone silent cannot be seen to be off: its own heartbeat watch stops it.
-bool isOff(const DriveReport& report) noexcept {
-  if (!report.is_configured || report.is_silent) return true;
-  return report.has_state && !hasPower(report.state);
+bool mayHold(const DriveReport& report) noexcept {
+  return !report.has_state || report.state == DriveState::kOperationEnabled ||
+         report.state == DriveState::kQuickStopActive ||
+         report.state == DriveState::kFaultReactionActive;
 }
 
 }  // namespace
@@ -85,12 +85,16 @@ void CanRobot::release() noexcept {
 }
 
 DrivesReport CanRobot::drives() const noexcept {
-  DrivesReport all{true, true, true, Fault::kNone, -1};
+  DrivesReport all{true, true, true, false, Fault::kNone, -1};
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveReport& report = drives_[i].report();
     all.are_configured = all.are_configured && report.is_configured;
     all.are_enabled = all.are_enabled && report.state == DriveState::kOperationEnabled;
-    all.are_disabled = all.are_disabled && isOff(report);
+    const bool may_hold = isReachable(report) && mayHold(report);
+    const bool has_power =
+        may_hold || (isReachable(report) && report.state == DriveState::kSwitchedOn);
+    all.is_any_holding = all.is_any_holding || may_hold;
+    all.are_disabled = all.are_disabled && !has_power;
     if (report.fault == Fault::kNone || all.fault != Fault::kNone) continue;
     all.fault = report.fault;
     all.joint = static_cast<int>(i);

@@ -103,6 +103,25 @@ TEST(ControlCycleSafety, AnUnknownStatusWordIsNoDriveThatIsOff) {
   }
 }
 
+/// Switched on is power without torque: not off, and nothing that a brake should wait for.
+TEST(ControlCycleSafety, DrivesThatStaySwitchedOnAreNotOffAndHoldNoBrakeOpen) {
+  VirtualRobotCell cell(withBrakeAndEnable());
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  for (int i = 0; i < 100; ++i) cell.step();
+  cell.on_frame = [](int bus, CanFrame& frame) {
+    const bool is_feedback = bus < 3 && frame.id > 0x180 && frame.id < 0x190;
+    if (is_feedback) frame.data[0] = 0x33;
+  };
+  for (int i = 0; i < 10; ++i) cell.step();
+  ASSERT_EQ(cell.cycle.report().mode, Mode::kFault);
+  EXPECT_FALSE(cell.cycle.lines().release_brake);
+  cell.input.stop_requested = true;
+  for (int i = 0; i < 1000; ++i) {
+    cell.step();
+    ASSERT_EQ(cell.cycle.report().mode, Mode::kFault) << i;
+  }
+}
+
 /// As if somebody had pushed joint 4 on bus 1, while drives were off: 1e7 counts a rad.
 void pushAway(VirtualRobotCell& cell, int counts) {
   cell.on_frame = [counts](int bus, CanFrame& frame) {

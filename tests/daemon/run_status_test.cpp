@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 
 #include "support/shipped_scene.h"
@@ -47,9 +48,9 @@ class RunStatusFile : public ::testing::Test {
     return exit_code;
   }
 
-  std::string errorOfRun() {
+  std::string errorOfRun(const std::vector<std::string>& options = {}) {
     try {
-      run();
+      run(options);
     } catch (const RunError& error) {
       return error.what();
     }
@@ -121,32 +122,58 @@ TEST_F(RunStatusFile, AStatusThatIsOldIsNone) {
   EXPECT_NE(output_.find("running"), std::string::npos) << "the last word is worth knowing";
 }
 
+TEST_F(RunStatusFile, AStatusOfTheTimeToComeIsNone) {
+  const std::string description = "running";
+  std::ofstream(path()) << statusJson(
+      {scene_, Mode::kRunning, Fault::kNone, description, {}, nullptr}, monotonicTime_s() + 60.0);
+  EXPECT_EQ(errorOfRun(), path() + ": no word from the daemon for 60 s") << "before a reboot";
+}
+
 TEST_F(RunStatusFile, OtherFilesAreRefused) {
   for (const char* text :
        {"", "{", "[1, 2]", "{\"monotonic_s\": 1e300}", "\xff\xfe{}", "a: &a [*a]"}) {
     std::ofstream(path()) << text;
-    EXPECT_EQ(errorOfRun(), path() + ": not the status of a daemon") << text;
+    for (const std::vector<std::string>& options : {std::vector<std::string>{}, {"--json"}}) {
+      EXPECT_EQ(errorOfRun(options), path() + ": not the status of a daemon") << text;
+      EXPECT_EQ(output_, "") << text;
+    }
   }
+  std::filesystem::remove(path());
+  std::filesystem::create_directory(path());
+  EXPECT_EQ(errorOfRun(), path() + ": not a file");
+}
+
+TEST_F(RunStatusFile, ANumberThatIsNoneIsShownAsSuch) {
+  Telemetry telemetry(scene_, "");
+  cycle(true, std::nan(""));
+  telemetry.drain(*link_);
+  EXPECT_EQ(run(), kExitDone);
+  EXPECT_NE(output_.find("force    nan N"), std::string::npos) << output_;
 }
 
 TEST_F(RunStatusFile, AFolderThatCannotBeWrittenEndsNothing) {
-  std::filesystem::remove_all(folder_);
-  Telemetry telemetry(scene_, "");
-  cycle(true, 1.0);
+  const std::string elsewhere = folder_ + ".away";
+  std::filesystem::rename(folder_, elsewhere);
+  StatusFile file;
+  EXPECT_TRUE(file.isDue());
+  const std::string description = "running";
+  const LoopFigures loop;
+  const RunStatus status{scene_, Mode::kRunning, Fault::kNone, description, loop, nullptr};
   ::testing::internal::CaptureStderr();
-  EXPECT_TRUE(telemetry.drain(*link_));
-  EXPECT_TRUE(telemetry.drain(*link_));
+  file.write(status);
+  file.write(status);
   const std::string said = ::testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("tactusd: no status: "), std::string::npos) << said;
   EXPECT_EQ(said.find("no status", said.find("no status") + 1), std::string::npos) << said;
+  std::filesystem::rename(elsewhere, folder_);
+  file.write(status);
+  EXPECT_EQ(run(), kExitDone) << "what hindered it has gone";
 }
 
 TEST_F(RunStatusFile, NoneWithoutAFolder) {
+  EXPECT_TRUE(StatusFile().isDue());
   unsetenv("RUNTIME_DIRECTORY");
-  Telemetry telemetry(scene_, "");
-  cycle(true, 1.0);
-  telemetry.drain(*link_);
-  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+  EXPECT_FALSE(StatusFile().isDue());
 }
 
 }  // namespace

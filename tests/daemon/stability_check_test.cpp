@@ -80,6 +80,20 @@ TEST(StabilityCheck, LooksAtTheLoopsOfTheVariant) {
   EXPECT_EQ(loops("task_space"), 2u);
   EXPECT_EQ(loops("null_task"), 3u);
   EXPECT_EQ(loops("null_joint"), 3u);
+  EXPECT_EQ(loops("null_limit"), 2u);
+}
+
+TEST(StabilityCheck, TakesTheApproachLimitWithTheModelThatItHas) {
+  const StabilityReport report = check(
+      assumed().load({{"controller.variant", "null_limit"}, {"simulation.drive_lag_s", "0.02"}}));
+  ContactLoop expected;
+  expected.law = LoopLaw::kApproachLimit;
+  expected.order = 1;
+  expected.drive_lag_s = 0.02;
+  expected.model_drive_lag_s = 0.01;
+  expected.sample_period_s = 0.005;
+  EXPECT_EQ(report.loops.at(1).margins.largest_stiffness_ratio,
+            computeMargins(expected, 1.0).largest_stiffness_ratio);
 }
 
 TEST(StabilityCheck, TakesTheContactForAsStiffAsAssumed) {

@@ -42,7 +42,7 @@ def _download(folder):
     words = _apt(["apt-cache", "depends", "linux-image-rt-amd64"]).split()
     package = next((word for word in words if word.startswith("linux-image-6")), None)
     if package is None:
-        raise KernelMissing("linux-image-rt-amd64 depends on no kernel; is this Debian 12 on amd64?")
+        raise KernelMissing("linux-image-rt-amd64 depends on no kernel; is this Debian on amd64?")
     # Else apt warns that its own user may not write here.
     _apt(["apt-get", "-q", "-o", "APT::Sandbox::User=root", "download", package], cwd=folder)
     return next(Path(folder).glob(f"{package}_*.deb"))

@@ -77,16 +77,22 @@ class VirtualRobotCell {
     input.lines.enable = true;
   }
 
-  /// No drive of the plant has power.
-  bool areDrivesOff() const {
+  bool isAnyDrive(std::initializer_list<PowerState> states) const {
     for (int joint = 0; joint < joints_; ++joint) {
       const PowerState state = plant.drive(joint).powerState();
-      if (state == PowerState::kSwitchedOn || state == PowerState::kOperationEnabled ||
-          state == PowerState::kQuickStopActive || state == PowerState::kFaultReactionActive)
-        return false;
+      if (std::find(states.begin(), states.end(), state) != states.end()) return true;
     }
-    return true;
+    return false;
   }
+
+  /// No drive of the plant has a torque.
+  bool areDrivesLimp() const {
+    return !isAnyDrive({PowerState::kOperationEnabled, PowerState::kQuickStopActive,
+                        PowerState::kFaultReactionActive});
+  }
+
+  /// No drive of the plant has power.
+  bool areDrivesOff() const { return areDrivesLimp() && !isAnyDrive({PowerState::kSwitchedOn}); }
 
   ControlCycle cycle;
   Plant plant;

@@ -28,6 +28,10 @@ struct ContactLoop {
   double filter_rate_hz = 1000.0;   ///< its period is a multiple or a whole part of the cycle's
   double sample_period_s = 0.004;   ///< a multiple of the filter's period
   bool filters_at_samples = false;  ///< the filter runs once a sample, behind the sampler
+
+  // What the approach-speed limit takes drives and filter for.
+  double model_drive_lag_s = 0.005;
+  double model_filter_cutoff_hz = 15.0;
 };
 
 // clang-format off: equations
@@ -38,19 +42,21 @@ struct ContactLoop {
 /// with n = 1 or 2 spaces. The offsets F_th and F_act move the point of rest and nothing else. In
 /// two spaces V and I of the two laws grow by the same, W; their difference never comes back into
 /// the loop (above F_act it drifts: the paper's "not asymptotically stable", IV-B).
-/// The approach-speed limit predicts with c what the sample does not show yet, from x_f, what
-/// drives and filter made of x by the time of the sample: f_held + x_f - x takes the place of
-/// f_held. z is how far the law has taken the tool from its path; beta pulls it back, and the
-/// contact with it. In the one-space loop the law is then that of the task space. Where the
-/// feedforward of (5) takes this motion out of the contact, as it does while the pull is towards
-/// the obstacle, beta is 0 here.
+/// z is how far the law has taken the tool from its path; beta pulls it back, and the contact with
+/// it. In the one-space loop the law is then that of the task space. Where the feedforward of (5)
+/// takes this motion out of the contact, as it does while the pull is towards the obstacle, beta is
+/// 0 here.
+///
+/// The approach-speed limit predicts with c what the sample does not show yet, from x_f, what its
+/// model of drives and filter made of x by the time of the sample: f_held + x_f - x takes the place
+/// of f_held.
 ///
 /// The loop runs at several rates, so it is lifted: what one common period of cycle and sample
 /// makes of the state is a constant matrix, and the loop is stable where its eigenvalues are inside
 /// the unit circle. Nothing is approximated.
 // clang-format on
-using LoopState = Eigen::Matrix<std::complex<double>, 1, 8>;
-using LoopMatrix = Eigen::Matrix<std::complex<double>, 8, 8>;
+using LoopState = Eigen::Matrix<std::complex<double>, 1, 13>;
+using LoopMatrix = Eigen::Matrix<std::complex<double>, 13, 13>;
 
 /// Steps of the plant in a common period; 0 if there are too many (more than 10000) to be lifted,
 /// or if the rates do not fit each other.

@@ -31,7 +31,8 @@ struct ContactSmootherState {
 ///   W = W exp(-dt / T_s) + F^2,   g = 1 - (1 - F^2 / W) min(1, (s / d)^2),
 ///   d = F |(dF^, dx / (L / 2))|,   x += g dx,  F^ += g dF^
 /// A force up to F_th says nothing of either. After a blow the module's filter swings through and
-/// shows up to 12 % of it from the other side: such a reading counts as no force.
+/// shows up to 12 % of it from the other side: such a reading counts as no force. So does all from
+/// the other side that is below 0.35 of the highest force, which is forgotten with 1.5 / f_c.
 // clang-format on
 class ContactSmoother {
  public:

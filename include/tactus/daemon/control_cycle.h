@@ -86,7 +86,7 @@ class ControlCycle {
   Controller controller_;
   CanRobot robot_;
   JointVector q_commanded_;  ///< at last, in a mode that commands; at first where the scene starts
-  JointVector q_released_;   ///< measured when a drive had power at last; likewise
+  JointVector q_released_;   ///< measured when a drive may have held at last; likewise
   double start_tolerance_;
   double period_s_;
   int max_late_cycles_;

@@ -33,12 +33,14 @@ class StatusFile {
 
   /// Whether it is time for another one.
   bool isDue() const noexcept;
-  /// A file that cannot be written ends no run: said once, and not tried again.
+  bool isWanted() const noexcept { return !path_.empty(); }
+  /// A file that cannot be written ends no run: said once, and tried again when due.
   void write(const RunStatus& status);
 
  private:
   std::string path_;  ///< empty: none
   double written_s_ = -1e9;
+  bool has_complained_ = false;
 };
 
 /// Name of the file in that folder.

@@ -39,6 +39,8 @@ class RunSummary {
   RunSummary(const ControllerConfig& config, std::size_t expected_cycles);
 
   void add(const CycleRecord& record);
+  /// All but contacts, so that memory does not grow.
+  void addFigures(const CycleRecord& record) noexcept;
 
   RunFigures figures() const;
   /// At any time, at no cost: without contacts, times and tcp_error_rms_m.

@@ -16,7 +16,8 @@ namespace tactus {
 struct DrivesReport {
   bool are_configured = false;
   bool are_enabled = false;
-  bool are_disabled = true;  ///< none that can be reached has power
+  bool are_disabled = true;     ///< none that can be reached has power
+  bool is_any_holding = false;  ///< one may yet hold its joint: power alone has no torque
   Fault fault = Fault::kNone;
   int joint = -1;  ///< of that fault
 };
@@ -50,7 +51,7 @@ class CanRobot final : public Robot {
   DrivesReport drives() const noexcept;
   const DriveReport& drive(int joint) const noexcept { return drives_[joint].report(); }
   bool hasPositions() const noexcept;
-  /// Of all drives: frames of wrong size or kind, which were ignored.
+  /// Of all drives: frames of wrong size.
   long long malformedFrames() const noexcept;
   /// nullptr on a robot without tactile module.
   const TactileReceiver* tactile() const noexcept { return tactile_ ? &*tactile_ : nullptr; }
