@@ -14,6 +14,7 @@ class Repeated(unittest.TestCase):
     def test_all_files_are_equal(self):
         names = [sorted(path.relative_to(run) for path in run.rglob("*.*")) for run in runs]
         self.assertEqual(*names)
+        self.assertTrue(names[0])
         for name in names[0]:
             self.assertEqual((runs[0] / name).read_bytes(), (runs[1] / name).read_bytes(), name)
 
