@@ -47,9 +47,9 @@ EXPECTED = {
     # The kernel empties the queue first and lets some cycles pass until it says that it is down.
     "interface_down": Expected("fault", "bus_stalled", "quick stop", 6, 6, QUICK_STOP_LASTS, ("can1",)),
     # Feedback is missing for more than five cycles.
-    "node_reset": Expected("fault", "drive_silent", "quick stop", 10, 10, QUICK_STOP_LASTS,
+    "node_reset": Expected("fault", "drive_silent", "quick stop", 10, 10, 10 + QUICK_STOP_LASTS,
                            (("can0", 2),)),
-    "drive_silent": Expected("fault", "drive_silent", "quick stop", 8, 8, QUICK_STOP_LASTS),
+    "drive_silent": Expected("fault", "drive_silent", "quick stop", 8, 8, 8 + QUICK_STOP_LASTS),
     "overrun": Expected("stopping", "overrun", "ramp", 6, None, RAMP_LASTS),
     "bus_off": Expected("fault", "bus_off", "quick stop", 3, 3, QUICK_STOP_LASTS, ("can2",)),
     "drive_fault": Expected("fault", "drive_fault", "quick stop", 3, 3, QUICK_STOP_LASTS,

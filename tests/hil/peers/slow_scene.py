@@ -34,7 +34,7 @@ class SlowScene:
         robot["urdf"] = str(ROBOT.parent / robot["urdf"])
         robot["can"] |= SLOW_BUS
         robot["real_time"] |= {"priority": 40, "max_late_cycles": 1000}  # see run_peers
-        robot["tactile_module"]["max_sample_age_s"] = 1
+        robot["tactile_module"] |= {"sample_period_s": 0.02, "max_sample_age_s": 1}  # see tactile.py
         self.home = robot["home"]
         self.drives = robot["drives"]["joints"]  # in the order of the joints
         scene = {

@@ -3,7 +3,7 @@
 
 usage: tactile.py BUS
 
-A sample each 4 ms: frames 0x100 + k, k = 0..3, with sequence number, status 0 and two channels of
+A sample each 20 ms: frames 0x100 + k, k = 0..3, with sequence number, status 0 and two channels of
 24 bits. The channels carry a few counts of noise, as strain gauges do; 100 000 counts are 1 N.
 """
 import random
@@ -14,7 +14,7 @@ import sys
 import time
 
 FIRST_ID = 0x100
-PERIOD_S = 0.004
+PERIOD_S = 0.02
 NOISE_COUNTS = 50
 FRAME = struct.Struct("<IB3x8s")  # struct can_frame
 
