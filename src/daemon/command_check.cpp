@@ -11,6 +11,7 @@
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/json.h"
 #include "tactus/daemon/key_table.h"
+#include "tactus/daemon/located_error.h"
 #include "tactus/daemon/path_check.h"
 #include "tactus/daemon/stability_check.h"
 #include "tactus/math/weighted_pseudoinverse.h"
@@ -126,11 +127,19 @@ void writeStability(JsonWriter& json, const std::optional<StabilityReport>& stab
   json.endObject();
 }
 
+/// The scene first, then what it extends, the robot, the URDF.
+std::vector<std::string> filesOf(const Scene& scene) {
+  std::vector<std::string> paths;
+  for (const SourceFile& file : scene.sources) paths.push_back(escaped(file.path));
+  return paths;
+}
+
 std::string checkJson(const Scene& scene, const Findings& findings) {
   JsonWriter json;
   json.beginObject();
   json.key("scene").value(scene.name);
   json.key("robot").value(scene.robot_name);
+  writeNames(json, "files", filesOf(scene));
   json.key("variant").value(scene.variant);
   writeNames(json, "stages", stageNames(scene.controller));
   json.key("period_s").value(scene.period_s);
@@ -180,6 +189,7 @@ std::string toText(const Scene& scene, const Findings& findings) {
   line("scene", scene.name);
   line("robot", fmt::format("{}, {} joints: {}", scene.robot_name, scene.joint_names.size(),
                             fmt::join(scene.joint_names, " ")));
+  line("files", fmt::format("{}", fmt::join(filesOf(scene), ", ")));
   line("variant", scene.variant);
   line("stages", fmt::format("{}", fmt::join(stageNames(scene.controller), ", ")));
   line("run", fmt::format("{} s, a cycle every {} s", scene.duration_s, scene.period_s));

@@ -45,7 +45,8 @@ std::string readStatus(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     const char* reason = errno == ENOENT ? "no daemon is running" : std::strerror(errno);
-    throw RunError(fmt::format("{}: {}", escaped(path), reason));
+    const char* help = errno == EACCES ? "; it is for root and the group tactus" : "";
+    throw RunError(fmt::format("{}: {}{}", escaped(path), reason, help));
   }
   if (!std::filesystem::is_regular_file(path))
     throw RunError(fmt::format("{}: not a file", escaped(path)));

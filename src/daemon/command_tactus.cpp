@@ -21,6 +21,7 @@ int exitCodeAfterFlush(int exit_code) {
 
 int tactusProgram(int argc, char** argv) {
   CLI::App app{"Tactile feedback control of redundant robot arms: the engineer's tool", "tactus"};
+  app.set_version_flag("--version", TACTUS_VERSION);
   app.require_subcommand(1);
   int exit_code = kExitDone;
   addCheckCommand(app, exit_code);

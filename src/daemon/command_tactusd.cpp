@@ -35,6 +35,7 @@ int runScene(const DaemonArguments& options) {
 int tactusdProgram(int argc, char** argv) {
   DaemonArguments options;
   CLI::App app{"Tactile feedback control of redundant robot arms: the daemon", "tactusd"};
+  app.set_version_flag("--version", TACTUS_VERSION);
   app.add_option("SCENE", options.scene, "Scene file")->required();
   app.add_option("-o,--output", options.folder,
                  "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files");

@@ -15,6 +15,14 @@ void append(std::vector<Finding>& findings, const std::vector<Finding>& more) {
   findings.insert(findings.end(), more.begin(), more.end());
 }
 
+/// The folder, or the nearest one above it that is there: it will be made on the same disk.
+std::filesystem::path existingFolder(std::filesystem::path folder) {
+  std::error_code ignored;
+  while (folder.has_relative_path() && !std::filesystem::exists(folder, ignored))
+    folder = folder.has_parent_path() ? folder.parent_path() : ".";
+  return folder;
+}
+
 }  // namespace
 
 std::vector<Finding> inspectMachine(const MachineRoot& root, const MachineNeeds& needs) {
@@ -34,8 +42,9 @@ std::vector<Finding> inspectMachine(const MachineRoot& root, const MachineNeeds&
     append(findings, checkInterrupts(root, bus.interface, real_time.priority));
   }
   if (needs.gpio) findings.push_back(checkLines(surveyGpio(*needs.gpio)));
+  const std::filesystem::path folder = existingFolder(root / needs.log_folder);
   std::error_code problem;
-  const auto space = std::filesystem::space(root / needs.log_folder, problem);
+  const auto space = std::filesystem::space(folder, problem);
   if (!problem)
     findings.push_back(
         checkDisk(needs.log_folder, static_cast<double>(space.available), needs.log_bytes_per_s));

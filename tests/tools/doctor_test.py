@@ -7,6 +7,7 @@ import json
 import pathlib
 import subprocess
 import sys
+import tempfile
 import unittest
 
 TACTUS = pathlib.Path(sys.argv.pop(1)).resolve()
@@ -46,6 +47,13 @@ class Doctor(unittest.TestCase):
         report = self.check(SCENES / "scenario1_null_space.yaml")
         buses = [f for f in report["findings"] if f["name"] == "can_interface"]
         self.assertEqual(len(buses), 4)
+
+    def test_a_folder_that_will_be_made_is_on_a_disk_already(self):
+        with tempfile.TemporaryDirectory() as folder:
+            wanted = f"{folder}/logs/of/runs"
+            disks = [f for f in self.check("-o", wanted)["findings"] if f["name"] == "disk"]
+            self.assertEqual(len(disks), 1)
+            self.assertTrue(disks[0]["what"].startswith(wanted), disks)
 
     def test_bad_input(self):
         result = doctor("gone.yaml")
