@@ -12,7 +12,7 @@ examine in_order 2
 
 ip link set can3 down
 ip link set can2 txqueuelen 1000
-gpiomon gpiochip0 4 & monitor=$!
+gpio_edges gpiochip0 4 & monitor=$!
 sleep 0.1
 examine not_in_order 0.1
 kill $monitor
