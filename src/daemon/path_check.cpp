@@ -66,11 +66,23 @@ std::string laggingPath(const Scene& scene) {
   return "";
 }
 
+std::string shortRun(const Scene& scene) {
+  const double end_s = Trajectory(scene.controller.task.trajectory, Pose{}).end_s();
+  if (!(scene.duration_s < end_s)) return "";
+  return fmt::format("the simulation ends at {:g} s, its path at {:g} s", scene.duration_s, end_s);
+}
+
+std::string unfeltObstacles(const Scene& scene) {
+  if (scene.controller.tactile_module || scene.plant.obstacles.empty()) return "";
+  return "nothing feels the obstacles: there is no controller";
+}
+
 }  // namespace
 
 std::vector<std::string> checkPath(const Scene& scene) {
   std::vector<std::string> warnings;
-  for (const std::string& warning : {singularStart(scene.controller), laggingPath(scene)}) {
+  for (const std::string& warning : {singularStart(scene.controller), laggingPath(scene),
+                                     shortRun(scene), unfeltObstacles(scene)}) {
     if (!warning.empty()) warnings.push_back(warning);
   }
   return warnings;

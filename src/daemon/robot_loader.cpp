@@ -69,10 +69,11 @@ void checkWithinLimits(const JointVector& q, const YamlNode& root, const std::st
   }
 }
 
-LoadedRobot loadRobot(const std::string& path, SourceReader& reader, ConfigDraft& draft) {
-  YamlNode root = parseYaml(reader.read(path, "robot"));
+LoadedRobot loadRobot(const SourceFile& file, SourceReader& reader, ConfigDraft& draft) {
+  YamlNode root = parseYaml(file);
   readSection(root, robotKeys(), "", draft);
-  const SourceFile urdf = reader.read(resolvePath(path, draft.urdf), "urdf");
+  const SourceFile urdf =
+      reader.read(resolvePath(file.path, draft.urdf), "urdf", locate(root, "urdf"));
 
   const NamedFrame tip{draft.tip, "tip", locate(root, "tip")};
   std::optional<NamedFrame> module_link;

@@ -18,16 +18,16 @@ namespace {
 constexpr std::size_t kMaxExtends = 8;
 
 /// Reads a scene file and lays it over the one it extends. `above` are the files that led here.
-YamlNode readScene(const std::string& path, SourceReader& reader, std::vector<std::string> above) {
-  YamlNode scene = parseYaml(reader.read(path, above.empty() ? "-" : "extends"));
+YamlNode readScene(const SourceFile& file, SourceReader& reader, std::vector<std::string> above) {
+  YamlNode scene = parseYaml(file);
   const auto extends = std::ranges::find(scene.entries, "extends", &YamlEntry::key);
   if (extends == scene.entries.end() || extends->value.kind == YamlNode::Kind::kNull) return scene;
   const YamlNode& base = extends->value;
   if (base.kind != YamlNode::Kind::kScalar || base.text.empty()) {
     failAt(base.at, "extends", describe(base), "expected the path of a scene");
   }
-  above.push_back(path);
-  const std::string base_path = resolvePath(path, base.text);
+  above.push_back(file.path);
+  const std::string base_path = resolvePath(file.path, base.text);
   if (std::ranges::count(above, base_path) > 0) {
     failAt(base.at, "extends", inQuotes(base.text) + " leads back to a file on the way here",
            "expected no circle");
@@ -36,8 +36,9 @@ YamlNode readScene(const std::string& path, SourceReader& reader, std::vector<st
     failAt(base.at, "extends", "too many files in a row",
            fmt::format("expected at most {}", kMaxExtends));
   }
+  const SourceFile base_file = reader.read(base_path, "extends", base.at);
   scene.entries.erase(extends);
-  YamlNode merged = readScene(base_path, reader, above);
+  YamlNode merged = readScene(base_file, reader, above);
   mergeYaml(merged, std::move(scene));
   return merged;
 }
@@ -121,11 +122,13 @@ std::string sceneName(const std::string& path) {
 Scene loadNamed(const std::string& path, const std::vector<Override>& overrides, SceneUse use,
                 FileProvider provider) {
   SourceReader reader(std::move(provider));
-  YamlNode root = readScene(path, reader, {});
+  YamlNode root = readScene(reader.readFirst(path), reader, {});
   applyOverrides(root, overrides);
   ConfigDraft draft;
   readSection(root, sceneKeys(), "", draft);
-  const LoadedRobot robot = loadRobot(robotPath(root, path, draft.robot, overrides), reader, draft);
+  const std::string robot_path = robotPath(root, path, draft.robot, overrides);
+  const LoadedRobot robot =
+      loadRobot(reader.read(robot_path, "robot", locate(root, "robot")), reader, draft);
   const JointVector q_start = readStart(root, draft, robot);
   checkScene(root, draft, robot, q_start);
   const std::optional<HardwareConfig> hardware = chooseHardware(root, robot);

@@ -64,14 +64,20 @@ FileProvider provideFrom(const std::vector<SourceFile>& files) {
   };
 }
 
-SourceFile SourceReader::read(const std::string& path, std::string_view key) {
+SourceFile SourceReader::readFirst(const std::string& path) {
+  return read(path, "-", {std::make_shared<std::string>(path), 1, 1});
+}
+
+SourceFile SourceReader::read(const std::string& path, std::string_view key,
+                              const SourcePosition& named_at) {
   try {
     SourceFile file{path, provider_(path)};
     checkIsText(file, key);
     files_.push_back(file);
     return file;
   } catch (const FileProblem& problem) {
-    failAt({std::make_shared<std::string>(path), 1, 1}, key, problem.what(),
+    const bool is_named = *named_at.file != path;
+    failAt(named_at, key, (is_named ? escaped(path) + ": " : "") + problem.what(),
            key == "robot" ? "expected the path of a robot.yaml, readable, at most 1 MiB"
                           : "expected a readable file of at most 1 MiB");
   }

@@ -67,8 +67,8 @@ TEST(Extends, ThePathOfARobotIsMeantFromTheFileThatNamesIt) {
   EXPECT_EQ(loadOver("robot: robots/robot.yaml\n").robot_name, "three");
   EXPECT_EQ(
       test::loadError(withBase({{"run.yaml", "extends: base/base.yaml\nrobot: robot.yaml\n"}})),
-      "robot.yaml:1:1: robot: is not among the recorded files, expected the path of a "
-      "robot.yaml, readable, at most 1 MiB (for the scene run.yaml)");
+      "run.yaml:2:8: robot: robot.yaml: is not among the recorded files, expected the path of a "
+      "robot.yaml, readable, at most 1 MiB");
 }
 
 TEST(Extends, AnErrorNamesTheFileItIsIn) {
@@ -118,7 +118,7 @@ TEST(Extends, HasToNameAFile) {
   test::expectError(test::loadError({{"run.yaml", "extends: [a, b]\n"}}),
                     {"", "", "run.yaml:1:10: extends: ", "a list of 2", "the path of a scene"});
   test::expectError(test::loadError({{"run.yaml", "extends: gone.yaml\n"}}),
-                    {"", "", "gone.yaml:1:1: extends: ", "not among", "a readable file"});
+                    {"", "", "run.yaml:1:10: extends: ", "gone.yaml: is not among", "a readable file"});
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "tactus/daemon/path_check.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "tactus/daemon/scene_loader.h"
+#include "tactus/math/trajectory.h"
 
 namespace tactus {
 namespace {
@@ -15,6 +17,12 @@ using Warnings = std::vector<std::string>;
 Warnings warningsOf(const std::vector<Override>& settings) {
   return checkPath(
       loadScene(TACTUS_SOURCE_DIR "/config/scenes/robots/planar2_free.yaml", settings));
+}
+
+/// As a warning writes it.
+std::string pathEnd() {
+  const Scene scene = loadScene(TACTUS_SOURCE_DIR "/config/scenes/robots/planar2_free.yaml", {});
+  return fmt::format("{:g}", Trajectory(scene.controller.task.trajectory, Pose{}).end_s());
 }
 
 TEST(PathCheck, HasNothingAgainstTheScenesThatComeAlong) {
@@ -53,6 +61,20 @@ TEST(PathCheck, WarnsOfAStretchedArm) {
   ASSERT_EQ(stretched.size(), 1u);
   EXPECT_NE(stretched[0].find("singular start: smallest singular value "), std::string::npos)
       << stretched[0];
+}
+
+TEST(PathCheck, WarnsOfARunThatEndsBeforeItsPath) {
+  EXPECT_EQ(warningsOf({{"simulation.duration_s", "2"}}),
+            Warnings{"the simulation ends at 2 s, its path at " + pathEnd() + " s"});
+}
+
+TEST(PathCheck, WarnsOfObstaclesThatNothingFeels) {
+  const std::string free = TACTUS_SOURCE_DIR "/config/scenes/free_motion.yaml";
+  const std::vector<Override> obstacle = {
+      {"simulation.obstacles", "[{x_m: 0.6, y_m: 0.0, stiffness_N_per_m: 300}]"}};
+  EXPECT_EQ(checkPath(loadScene(free, {})), Warnings{});
+  EXPECT_EQ(checkPath(loadScene(free, obstacle)),
+            Warnings{"nothing feels the obstacles: there is no controller"});
 }
 
 }  // namespace

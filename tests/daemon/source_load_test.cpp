@@ -103,15 +103,13 @@ TEST_F(FilesOnDisk, Binary) {
                                     "UTF-8");
 }
 
-TEST_F(FilesOnDisk, MissingRobotNamesItsKeyAndItsScene) {
+TEST_F(FilesOnDisk, MissingRobotIsAnErrorOfTheLineThatNamesIt) {
   write("scene.yaml", test::kSceneText);
-  const std::string rest =
-      ", expected the path of a robot.yaml, readable, at most 1 MiB (for the scene " +
-      path("scene.yaml") + ")";
-  expectLoadError("scene.yaml",
-                  path("robot.yaml") + ":1:1: robot: No such file or directory" + rest);
+  const std::string place = path("scene.yaml") + ":1:8: robot: " + path("robot.yaml");
+  const std::string rest = ", expected the path of a robot.yaml, readable, at most 1 MiB";
+  expectLoadError("scene.yaml", place + ": No such file or directory" + rest);
   fs::create_directories(path("robot.yaml"));
-  expectLoadError("scene.yaml", path("robot.yaml") + ":1:1: robot: is a folder" + rest);
+  expectLoadError("scene.yaml", place + ": is a folder" + rest);
 }
 
 TEST_F(FilesOnDisk, WrongValueOfTheRobotNamesTheScene) {

@@ -137,7 +137,8 @@ class BadInput(unittest.TestCase):
     def test_folder_as_robot(self):
         (self.folder / "crops9").mkdir()
         scene = self.write("robot: crops9\n")
-        self.expect_refused(scene, "crops9:1:1: robot: is a folder, expected the path of a robot.yaml")
+        self.expect_refused(
+            scene, "scene.yaml:2:8: robot: crops9: is a folder, expected the path of a robot.yaml")
 
     def write_robot(self, change):
         folder = CONFIG / "robots/crops9"

@@ -7,8 +7,9 @@
 
 namespace tactus {
 
-/// What is doubtful about the motion of a scene that meets nothing: a start near a singularity, a
-/// path that the joints cannot follow. For people, to be printed as warnings.
+/// What is doubtful about the motion of a scene: a start near a singularity, a path that the joints
+/// cannot follow or the simulation does not reach the end of, obstacles that nothing feels. For
+/// people, to be printed as warnings.
 std::vector<std::string> checkPath(const Scene& scene);
 
 }  // namespace tactus

@@ -14,8 +14,8 @@ struct LoadedRobot {
   std::optional<HardwareConfig> hardware;  ///< absent without `can`
 };
 
-/// Reads a robot.yaml and its URDF and checks their values against each other. Throws InputError.
-LoadedRobot loadRobot(const std::string& path, SourceReader& reader, ConfigDraft& draft);
+/// Reads the URDF of a robot.yaml and checks their values against each other. Throws InputError.
+LoadedRobot loadRobot(const SourceFile& file, SourceReader& reader, ConfigDraft& draft);
 
 /// One value a moving joint as a vector. Throws InputError if the count is wrong.
 JointVector toJointVector(const std::vector<double>& values, const YamlNode& root,

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tactus/daemon/located_error.h"
 #include "tactus/daemon/scene.h"
 
 namespace tactus {
@@ -36,9 +37,13 @@ class SourceReader {
  public:
   explicit SourceReader(FileProvider provider) : provider_(std::move(provider)) {}
 
-  /// Throws InputError at the file's first line, or at the first byte that is no UTF-8 text. `key`
-  /// is the key that names the file.
-  SourceFile read(const std::string& path, std::string_view key);
+  /// The scene, which only the command line names. Throws InputError at its first line, or at the
+  /// first byte that is no UTF-8 text.
+  SourceFile readFirst(const std::string& path);
+
+  /// A file that another one names, by the value of `key` at `named_at`. Throws InputError there,
+  /// or at the first byte that is no UTF-8 text.
+  SourceFile read(const std::string& path, std::string_view key, const SourcePosition& named_at);
 
   const std::vector<SourceFile>& files() const { return files_; }
 
