@@ -1,7 +1,6 @@
 #include "tactus/daemon/run_status.h"
 
 #include <fmt/format.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -10,6 +9,7 @@
 
 #include "tactus/daemon/output_file.h"
 #include "tactus/daemon/time_figures.h"
+#include "tactus/rt/periodic_timer.h"
 
 namespace tactus {
 namespace {
@@ -29,11 +29,7 @@ void writeMotion(const RunFigures& figures, JsonWriter& json) {
 
 }  // namespace
 
-double monotonicTime_s() noexcept {
-  timespec time{};
-  clock_gettime(CLOCK_MONOTONIC, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
+double monotonicTime_s() noexcept { return 1e-9 * static_cast<double>(now_ns()); }
 
 std::string statusJson(const RunStatus& status, double monotonic_s) {
   JsonWriter json;

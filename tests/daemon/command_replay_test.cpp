@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "support/command_run.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/control/controller.h"
@@ -45,19 +45,7 @@ class CommandReplay : public ::testing::Test {
   /// Runs `tactus replay LOG arguments...` and returns its exit code.
   int run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"replay", log_.path()});
-    CLI::App app;
-    int exit_code = -1;
-    addReplayCommand(app, exit_code);
-    std::reverse(arguments.begin(), arguments.end());
-    ::testing::internal::CaptureStdout();
-    try {
-      app.parse(arguments);
-    } catch (...) {
-      output_ = ::testing::internal::GetCapturedStdout();
-      throw;
-    }
-    output_ = ::testing::internal::GetCapturedStdout();
-    return exit_code;
+    return test::runCommand(addReplayCommand, std::move(arguments), output_);
   }
 
   test::TemporaryFile log_{".ulg"}, csv_{".csv"};

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <yaml-cpp/yaml.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 
+#include "support/command_run.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/daemon/commands.h"
@@ -31,21 +31,9 @@ class RunStatusFile : public ::testing::Test {
 
   std::string path() const { return folder_ + "/" + kStatusName; }
 
-  int run(const std::vector<std::string>& options = {}) {
-    CLI::App app;
-    int exit_code = -1;
-    addStatusCommand(app, exit_code);
-    std::vector<std::string> arguments(options.rbegin(), options.rend());
-    arguments.push_back("status");
-    ::testing::internal::CaptureStdout();
-    try {
-      app.parse(arguments);
-    } catch (...) {
-      output_ = ::testing::internal::GetCapturedStdout();
-      throw;
-    }
-    output_ = ::testing::internal::GetCapturedStdout();
-    return exit_code;
+  int run(std::vector<std::string> options = {}) {
+    options.insert(options.begin(), "status");
+    return test::runCommand(addStatusCommand, std::move(options), output_);
   }
 
   std::string errorOfRun(const std::vector<std::string>& options = {}) {

@@ -241,7 +241,7 @@ class Schema(Case):
                 parent[key] = int(value) if row["type"] == "integer" else value
                 tree[next_file[row["file"]]] = "gone.xml"
                 self.assertTrue(is_valid(row["file"], tree), row)
-                self.assertIn("gone.xml: ", self.refusal(row["file"], tree), row)
+                self.assertIn(f": {next_file[row['file']]}: gone.xml: ", self.refusal(row["file"], tree), row)
 
     def test_unknown_keys(self):
         sections = [row for row in KEYS if row["type"].startswith("section")]
