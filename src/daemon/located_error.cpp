@@ -26,8 +26,9 @@ bool isHarmless(std::uint32_t code) noexcept {
   return !is_control && !is_separator_or_mark;
 }
 
-/// A key as part of a line whose parts end at colons.
+/// A key as part of a line whose parts end at colons and are not empty.
 std::string escapedKey(std::string_view key) {
+  if (key.empty()) return "-";
   std::string result = escaped(key);
   for (std::size_t at = 0; (at = result.find(':', at)) != std::string::npos;) {
     result.replace(at, 1, "\\x3a");
