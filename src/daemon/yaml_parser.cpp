@@ -21,6 +21,22 @@ bool isNullWord(std::string_view text) {
   return text == "~" || text == "null" || text == "Null" || text == "NULL";
 }
 
+/// Does a quoted text go on in the next line? As good as always somebody forgot to close it, and it
+/// has swallowed the keys below.
+bool isOpen(std::string_view quoted) {
+  const std::string_view line = quoted.substr(0, quoted.find('\n'));
+  if (!line.starts_with('"') && !line.starts_with('\'')) return false;  // text after | or >
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const bool is_doubled = line[0] == '\'' && line.substr(i, 2) == "''";
+    if (is_doubled || (line[0] == '"' && line[i] == '\\')) {
+      ++i;
+    } else if (line[i] == line[0]) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Builds the tree out of the parser's events; maps and lists still open are on a stack.
 class TreeBuilder : public YAML::EventHandler {
  public:
@@ -42,9 +58,8 @@ class TreeBuilder : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     rejectExtras(mark, "", anchor);
     // The parser reports a missing value and a written `~` alike; the former at the next token.
-    const std::size_t offset = mark.is_null() ? text_.size() : static_cast<std::size_t>(mark.pos);
-    const std::string_view rest = std::string_view(text_).substr(std::min(offset, text_.size()));
-    const bool is_written = isNullWord(rest.substr(0, rest.find_first_of(" \t\r\n,]}#")));
+    const std::string_view next = rest(mark);
+    const bool is_written = isNullWord(next.substr(0, next.find_first_of(" \t\r\n,]}#")));
     YamlNode node{is_written ? YamlNode::Kind::kNull : YamlNode::Kind::kEmpty, position(mark)};
     if (!is_written && !open_.empty() && open_.back().key) node.at = open_.back().key->at;
     attach(std::move(node));
@@ -59,6 +74,10 @@ class TreeBuilder : public YAML::EventHandler {
     rejectExtras(mark, tag, anchor);
     YamlNode node{YamlNode::Kind::kScalar, position(mark), value};
     node.quoted = tag == "!";
+    if (node.quoted && isOpen(rest(mark))) {
+      failAt(node.at, path(), "a quote that is not closed in its line",
+             "expected the same quote at the value's end");
+    }
     attach(std::move(node));
   }
 
@@ -75,6 +94,11 @@ class TreeBuilder : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
+  std::string_view rest(const YAML::Mark& mark) const {
+    const std::size_t offset = mark.is_null() ? text_.size() : static_cast<std::size_t>(mark.pos);
+    return std::string_view(text_).substr(std::min(offset, text_.size()));
+  }
+
   struct OpenNode {
     YamlNode node;
     std::optional<YamlNode> key;  ///< of a map: the key whose value comes next
