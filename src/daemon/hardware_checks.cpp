@@ -5,9 +5,17 @@
 #include <algorithm>
 
 #include "tactus/daemon/bus_load_text.h"
+#include "tactus/io/drive_setup.h"
 
 namespace tactus {
 namespace {
+
+void checkCycle(const YamlNode& scene, const ConfigDraft& draft) {
+  if (interpolationPeriod(draft.period_s)) return;
+  failAt(locate(scene, "period_s"), "period_s",
+         fmt::format("drives cannot be told of {} s", draft.period_s),
+         "expected 1 to 255 times a power of ten of seconds (object 60C2), as 0.001 or 0.00125");
+}
 
 void checkHeartbeat(const YamlNode& root, const ConfigDraft& draft) {
   const char* const key = "can.heartbeat_period_s";
@@ -46,10 +54,12 @@ void checkBusLoads(const YamlNode& root, const ConfigDraft& draft, const Hardwar
 
 }  // namespace
 
-void checkHardware(const YamlNode& root, const ConfigDraft& draft, const HardwareConfig& hardware) {
-  checkHeartbeat(root, draft);
-  checkTrackingGains(root, draft);
-  checkBusLoads(root, draft, hardware);
+void checkHardware(const YamlNode& scene, const YamlNode& robot, const ConfigDraft& draft,
+                   const HardwareConfig& hardware) {
+  checkCycle(scene, draft);
+  checkHeartbeat(robot, draft);
+  checkTrackingGains(robot, draft);
+  checkBusLoads(robot, draft, hardware);
 }
 
 }  // namespace tactus

@@ -132,7 +132,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
   const JointVector q_start = readStart(root, draft, robot);
   checkScene(root, draft, robot, q_start);
   const std::optional<HardwareConfig> hardware = chooseHardware(root, robot);
-  if (hardware && use == SceneUse::kHardware) checkHardware(robot.root, draft, *hardware);
+  if (hardware && use == SceneUse::kHardware) checkHardware(root, robot.root, draft, *hardware);
   return Scene{.name = sceneName(path),
                .controller = makeController(root, draft, robot, q_start),
                .variant = draft.variant,

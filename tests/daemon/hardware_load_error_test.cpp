@@ -285,6 +285,14 @@ TEST(RobotWithCan, CannotHaveVelocitiesThatOverflow) {
        "2.5e+09 counts at the joint's limits do not fit into 32 bits", "at most 8.58993e+06"});
 }
 
+TEST(RobotWithCan, HasACycleThatDrivesCanBeToldOf) {
+  SceneFiles files = test::hardwareFiles();
+  files.scene = "period_s: 0.0003333333333333333\n" + files.scene;
+  test::expectError(test::loadError(files.sources()),
+                    {"", "", "scene.yaml:1:11: period_s: ",
+                     "drives cannot be told of 0.0003333333333333333 s", "60C2"});
+}
+
 TEST(RobotWithCan, SendsHeartbeatsAtMostOnceACycle) {
   SceneFiles files = test::hardwareFiles();
   files.robot =

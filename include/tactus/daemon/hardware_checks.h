@@ -10,8 +10,10 @@
 
 namespace tactus {
 
-/// Checks a robot's hardware against the scene's cycle. `root` is robot.yaml's. Throws InputError.
-void checkHardware(const YamlNode& root, const ConfigDraft& draft, const HardwareConfig& hardware);
+/// Checks a robot's hardware against the scene's cycle, and the cycle against what drives can be
+/// told. `scene` and `robot` are the roots of the files. Throws InputError.
+void checkHardware(const YamlNode& scene, const YamlNode& robot, const ConfigDraft& draft,
+                   const HardwareConfig& hardware);
 
 /// The scene's troubles, checked against the hardware that they happen to. `root` is the scene's.
 /// Throws InputError.
