@@ -14,7 +14,6 @@
 #include "tactus/daemon/located_error.h"
 #include "tactus/daemon/path_check.h"
 #include "tactus/daemon/stability_check.h"
-#include "tactus/math/weighted_pseudoinverse.h"
 
 namespace tactus {
 namespace {
@@ -41,11 +40,8 @@ struct Findings {
 StartPose computeStart(const ControllerConfig& config) {
   ChainPose pose;
   config.chain.computePose(config.q_start, pose);
-  const Vector3 p_BaseTool = framePosition(pose, config.chain.tip());
-  TaskJacobian J;
-  computeTipJacobian(config.chain, pose, p_BaseTool, config.task.components.data(),
-                     config.task.size, J);
-  return {p_BaseTool, smallestSingularValue(J, JointVector::Ones(config.chain.size()))};
+  return {framePosition(pose, config.chain.tip()),
+          smallestSingularValueAtStart(config, JointVector::Ones(config.chain.size()))};
 }
 
 std::vector<std::string> taskComponents(const TaskConfig& task) {

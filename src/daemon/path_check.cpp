@@ -23,12 +23,7 @@ ControllerConfig undisturbed(ControllerConfig config) {
 }
 
 std::string singularStart(const ControllerConfig& config) {
-  ChainPose pose;
-  config.chain.computePose(config.q_start, pose);
-  TaskJacobian J;
-  computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()),
-                     config.task.components.data(), config.task.size, J);
-  const double smallest = smallestSingularValue(J, config.weights);
+  const double smallest = smallestSingularValueAtStart(config, config.weights);
   if (smallest >= WeightedPseudoinverse::kDampingThreshold) return "";
   return fmt::format(
       "singular start: smallest singular value {:.3g}, damped below {:g}, so that the tool lags "
@@ -86,6 +81,15 @@ std::vector<std::string> checkPath(const Scene& scene) {
     if (!warning.empty()) warnings.push_back(warning);
   }
   return warnings;
+}
+
+double smallestSingularValueAtStart(const ControllerConfig& config, const JointVector& weights) {
+  ChainPose pose;
+  config.chain.computePose(config.q_start, pose);
+  TaskJacobian J;
+  computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()),
+                     config.task.components.data(), config.task.size, J);
+  return smallestSingularValue(J, weights);
 }
 
 }  // namespace tactus

@@ -6,20 +6,11 @@
 
 #include "tactus/bench/plain_controller.h"
 #include "tactus/control/controller.h"
+#include "tactus/daemon/path_check.h"
 #include "tactus/math/weighted_pseudoinverse.h"
 
 namespace tactus {
 namespace {
-
-/// Smallest singular value of the task's Jacobian at the start.
-double smallestAtStart(const ControllerConfig& config) {
-  ChainPose pose;
-  config.chain.computePose(config.q_start, pose);
-  TaskJacobian J;
-  computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()),
-                     config.task.components.data(), config.task.size, J);
-  return smallestSingularValue(J, JointVector::Ones(config.chain.size()));
-}
 
 struct Size {
   int joints, task_components, contacts;
@@ -56,7 +47,9 @@ TEST_P(BenchStep, OtherCodeCommandsTheSameAsOurs) {
 TEST_P(BenchStep, IsFarFromSingular) {
   const auto [joints, task_components, contacts] = GetParam();
   const BenchRobot robot = makeBenchRobot(joints, task_components, contacts);
-  EXPECT_GT(smallestAtStart(robot.config), 2.0 * WeightedPseudoinverse::kDampingThreshold)
+  EXPECT_GT(
+      smallestSingularValueAtStart(robot.config, JointVector::Ones(robot.config.chain.size())),
+      2.0 * WeightedPseudoinverse::kDampingThreshold)
       << "damping would be measured as well";
 }
 

@@ -12,4 +12,7 @@ namespace tactus {
 /// people, to be printed as warnings.
 std::vector<std::string> checkPath(const Scene& scene);
 
+/// Smallest singular value of J W^-1/2 where the task starts. weights: positive.
+double smallestSingularValueAtStart(const ControllerConfig& config, const JointVector& weights);
+
 }  // namespace tactus
