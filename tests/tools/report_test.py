@@ -98,7 +98,7 @@ class WholePage(Report):
 
     def test_has_every_figure_as_well_formed_svg(self):
         svgs = re.findall(r"<svg.*?</svg>", self.page(), flags=re.DOTALL)
-        self.assertEqual(len(svgs), 8)
+        self.assertEqual(len(svgs), 10)
         for svg in svgs:
             xml.etree.ElementTree.fromstring(svg)
         for number in range(2, 9):
@@ -155,8 +155,25 @@ class Incomplete(Report):
         result = self.report()
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("Missing: scenario2_estimated", self.page())
-        self.assertIn("Missing: scenario1_joint_space, scenario1_multi_space", self.page())
-        self.assertIn("scenario1_none missing", result.stdout)
+        self.assertNotIn("scenario1", self.page() + result.stdout)
+        self.assertNotIn("scenario2_estimated missing", result.stdout)
+
+    def test_leaves_the_paper_out_where_none_of_its_scenes_was_run(self):
+        write_run(self.runs, "mine & yours")
+        result = self.report()
+        self.assertEqual(result.stdout, f"report: {(self.runs / 'report.html').resolve()}\n")
+        for word in ("scenario", "Figure 2", "Paper", "Missing"):
+            self.assertNotIn(word, self.page())
+        self.assertIn("<h2>mine &amp; yours</h2>", self.page())
+        self.assertIn("contact force, peak 8.00 N", self.page())
+        self.assertIn("Deviation of the tool", self.page())
+
+    def test_draws_no_force_of_a_run_without_any(self):
+        write_run(self.runs, "free", table_text(
+            lambda lines: lines[:1] + [re.sub(r",0,[^,]*,", ",0,0,", line) for line in lines[1:]]))
+        self.assertEqual(self.report().returncode, 0)
+        self.assertNotIn("Contact force", self.page())
+        self.assertIn("Deviation of the tool", self.page())
 
     def test_accepts_what_a_scene_without_contact_leaves_out(self):
         write_run(self.runs, "free_motion", peak_force_N=None, stiffness_at_peak_N_per_m=None)

@@ -43,7 +43,9 @@ def read_data():
 
 
 def compare(runs):
-    return [compare_row(row, runs) for row in read_data()["rows"]]
+    """The rows that any of the runs belongs to."""
+    return [compare_row(row, runs) for row in read_data()["rows"]
+            if any(key.split(":")[0] in runs for key in row["ours"])]
 
 
 def compare_row(row, runs):

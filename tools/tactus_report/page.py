@@ -13,26 +13,21 @@ OWN_SCENES = {scene for figure in paper_figures.BEYOND_FIGURES for scene, *_ in 
 
 
 def build_page(runs):
-    further = {scene: run for scene, run in runs.items() if scene not in PAPER_SCENES}
     of_paper = {scene: run for scene, run in runs.items() if scene in PAPER_SCENES}
-    sources = comparison.read_data()["sources"]
-    body = [
-        "<h1>Tactile feedback control: the paper&#8217;s experiments, simulated</h1>",
-        f"<p>{len(runs)} runs of the controller in virtual time, the same code that drives the "
-        "arm. Figures 2 to 8 carry the paper&#8217;s numbers.</p>",
-        "<h2>Paper, reference, ours</h2>",
-        "<p>The number in front is the paper&#8217;s scenario: 1 a soft band, 2 a softer band and a stiff "
-        "profile behind it, 3 the profile alone.</p>",
-        comparison_table(comparison.compare(runs)),
-        f'<p class="source">Paper: {html.escape(sources["paper"])}. Reference: '
-        f'{html.escape(sources["reference"])}.</p>',
-        "<h2>Figures</h2>",
-        *(paper_figures.render(figure, runs) for figure in paper_figures.FIGURES),
-        *beyond_the_paper(runs),
-        "<h2>Error against run time</h2>",
-        error_figure(runs),
-        runs_table(of_paper),
-    ]
+    further = {scene: run for scene, run in runs.items() if scene not in PAPER_SCENES}
+    title = "Tactile feedback control"
+    if of_paper:
+        title += ": the paper&#8217;s experiments, simulated"
+    body = [f"<h1>{title}</h1>",
+            f"<p>{len(runs)} runs of the controller.</p>",
+            *comparison_with_paper(runs),
+            *paper_section(of_paper),
+            *beyond_the_paper(runs),
+            *further_figures(further),
+            "<h2>Error against run time</h2>",
+            error_figure(runs)]
+    if of_paper:
+        body.append(runs_table(of_paper))
     if further:
         body += ["<h2>Further runs</h2>", "<p>Scenes that are not in the paper.</p>",
                  runs_table(further)]
@@ -43,6 +38,28 @@ def build_page(runs):
             + "\n".join(body) + "\n</main>\n</body>\n</html>\n")
 
 
+def comparison_with_paper(runs):
+    """Nothing where none of the scenes that it compares was run."""
+    rows = comparison.compare(runs)
+    if not rows:
+        return []
+    sources = comparison.read_data()["sources"]
+    return ["<h2>Paper, reference, ours</h2>",
+            "<p>The number in front is the paper&#8217;s scenario: 1 a soft band, 2 a softer band and a "
+            "stiff profile behind it, 3 the profile alone.</p>",
+            comparison_table(rows),
+            f'<p class="source">Paper: {html.escape(sources["paper"])}. Reference: '
+            f'{html.escape(sources["reference"])}.</p>']
+
+
+def paper_section(of_paper):
+    if not of_paper:
+        return []
+    return ["<h2>Figures</h2>",
+            "<p>Figures 2 to 8 carry the paper&#8217;s numbers.</p>",
+            *paper_figures.render_all(paper_figures.FIGURES, of_paper)]
+
+
 def beyond_the_paper(runs):
     """Nothing where none of its scenes was run."""
     if not (OWN_SCENES - PAPER_SCENES) & runs.keys():
@@ -50,7 +67,16 @@ def beyond_the_paper(runs):
     return ["<h2>Beyond the paper</h2>",
             "<p>The approach-speed limit (variant null_limit) beside the paper&#8217;s multi-space "
             "law.</p>",
-            *(paper_figures.render(figure, runs) for figure in paper_figures.BEYOND_FIGURES)]
+            *paper_figures.render_all(paper_figures.BEYOND_FIGURES, runs)]
+
+
+def further_figures(further):
+    """Of scenes that no figure above shows."""
+    own = [run for scene, run in sorted(further.items()) if scene not in OWN_SCENES]
+    body = []
+    for number, run in enumerate(own):
+        body += [f"<h2>{html.escape(run.scene)}</h2>", *paper_figures.render_run(number, run)]
+    return body
 
 
 def comparison_table(rows):

@@ -96,19 +96,38 @@ BEYOND_FIGURES = [
 ]
 
 
+def render_all(figures, runs):
+    """Those that show any of the runs."""
+    return [render(figure, runs) for figure in figures
+            if any(scene in runs for scene, *_ in figure.curves)]
+
+
 def render(spec, runs):
-    """One <figure> element. It says which runs it lacks."""
+    """One <figure> element of at least one run. It says which others it lacks."""
     curves = [Curve(label, colour, line, runs[scene].time_s, getattr(runs[scene], spec.quantity))
               for scene, label, colour, line in spec.curves if scene in runs]
     missing = [scene for scene, *_ in spec.curves if scene not in runs]
     name = f"figure-{spec.number}"
-    drawing = ""
-    if curves:
-        drawing = line_figure(name, curves, spec.y_label, spec.unit, spec.log_axis,
-                              spec.label_peak)
+    drawing = line_figure(name, curves, spec.y_label, spec.unit, spec.log_axis, spec.label_peak)
     note = f'<p class="missing">Missing: {html.escape(", ".join(missing))}</p>' if missing else ""
     return as_figure(name, drawing + note, f"Figure {spec.number}. {spec.title}.",
                      spec.what_to_see)
+
+
+def render_run(number, run):
+    """<figure> elements of a run by itself: force where there was any, and what it cost the task."""
+    quantities = [("force_N", "Contact force", "sensor force in N", "N"),
+                  ("tool_error_m", "Deviation of the tool from its path", "TCP error in m", "m")]
+    if not run.force_N.any():
+        del quantities[0]
+    figures = []
+    for quantity, title, y_label, unit in quantities:
+        name = f"run-{number}-{quantity}"
+        curve = Curve(title.lower(), BLUE, SOLID, run.time_s, getattr(run, quantity))
+        drawing = line_figure(name, [curve], y_label, unit, label_peak=True)
+        figures.append(as_figure(name, drawing, f"{title}.",
+                                 f"Outcome of {run.scene}: {run.summary['outcome']}."))
+    return figures
 
 
 def as_figure(name, drawing, title, what_to_see):
