@@ -46,17 +46,23 @@ std::string studyHelp() {
   failAt({std::make_shared<std::string>(place), 1, 1}, "-", problem, "expected " + expectation);
 }
 
-/// Without any named: those of config/scenes, from where this is called.
-std::vector<std::string> findScenes(const std::vector<std::string>& given) {
-  if (!given.empty()) return given;
-  const fs::path folder = "config/scenes";
+fs::path ownPath() { return fs::read_symlink("/proc/self/exe"); }
+
+/// What came along: config/scenes, from where this is called, or as installed.
+fs::path scenesFolder() {
+  const fs::path here = "config/scenes";
+  const fs::path installed = ownPath().parent_path().parent_path() / "share/tactus/scenes";
+  return !fs::is_directory(here) && fs::is_directory(installed) ? installed : here;
+}
+
+std::vector<std::string> findScenes(const std::string& folder) {
   std::vector<std::string> scenes;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     if (entry.path().extension() == ".yaml") scenes.push_back(entry.path().string());
   }
   if (scenes.empty())
-    fail(folder.string(), "no scenes here", "SCENE arguments, or to be called where they are");
+    fail(folder, "no scenes here", "SCENE arguments, or to be called where they are");
   std::ranges::sort(scenes);
   return scenes;
 }
@@ -122,10 +128,11 @@ void bench(const Options& options) {
   const std::vector<const Study*> chosen = chooseStudies(options);
   BenchOptions bench_options;
   bench_options.is_quick = options.is_quick;
-  bench_options.counting_program = fs::read_symlink("/proc/self/exe").string();
+  bench_options.counting_program = ownPath().string();
   bench_options.scenes = options.scenes;
-  if (std::ranges::any_of(chosen, &Study::needs_scenes))
-    bench_options.scenes = findScenes(options.scenes);
+  bench_options.scenes_folder = scenesFolder().string();
+  if (options.scenes.empty() && std::ranges::any_of(chosen, &Study::needs_scenes))
+    bench_options.scenes = findScenes(bench_options.scenes_folder);
   prepareFolder(options.folder);
   std::vector<StudyResult> results;
   for (const Study* study : chosen) {
@@ -144,7 +151,8 @@ void bench(const Options& options) {
 }
 
 void parse(CLI::App& app, Options& options, int argc, char** argv) {
-  app.add_option("SCENE", options.scenes, "Scenes to run; absent: config/scenes/*.yaml");
+  app.add_option("SCENE", options.scenes,
+                 "Scenes to run; absent: those in config/scenes, or installed");
   app.add_option("-o,--output", options.folder, "Folder for CSV files and report.html");
   app.add_option("--study", options.names, studyHelp())
       ->allow_extra_args(false)

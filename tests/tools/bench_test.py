@@ -84,6 +84,23 @@ class Bench(unittest.TestCase):
         self.assertEqual((result.returncode, result.stdout), (1, ""))
         self.assertRegex(result.stderr, r"\Aconfig/scenes:1:1: -: no scenes here, expected [^\n]+\n\Z")
 
+    def test_finds_the_scenes_that_are_installed_with_it(self):
+        programs = self.folder / "usr/bin"
+        programs.mkdir(parents=True)
+        for name in ("tactus", "tactus-bench"):
+            shutil.copy(TACTUS.with_name(name), programs)
+        data = self.folder / "usr/share/tactus"
+        for name in ("robots", "scenes/base"):
+            shutil.copytree(ROOT / "config" / name, data / name)
+        shutil.copy(SCENE, data / "scenes")
+        result = self.bench("--study", "closed_loop", "--quick", "--json",
+                            program=programs / "tactus")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        rows = json.loads(result.stdout)["closed_loop"]
+        self.assertEqual({row["scene"] for row in rows}, {"free_motion"})
+        result = self.bench("--stability", "--quick", "--json", program=programs / "tactus")
+        self.assertEqual(result.returncode, 0, result.stderr)
+
     def test_refuses_a_broken_scene(self):
         result = self.bench("--study", "closed_loop", "--quick", "gone.yaml")
         self.assertEqual((result.returncode, result.stdout), (1, ""))

@@ -10,6 +10,7 @@ namespace tactus {
 
 struct BenchOptions {
   std::vector<std::string> scenes;  ///< files for the studies that run scenes
+  std::string scenes_folder;        ///< of those that come along
   bool is_quick = false;            ///< a look: few repetitions, short sweeps
   /// The program to run under valgrind to count instructions; empty: times only.
   std::string counting_program;
