@@ -32,7 +32,7 @@ struct Selection {
     for (const KeyRow& row : keyRows(format.keys)) known.push_back(row.spec->key);
   }
   const std::string nearest = nearestWord(path.substr(path.rfind('.') + 1), known);
-  failAt({std::make_shared<std::string>("PATH"), 1, 1}, path, "no such key",
+  failAt({std::make_shared<std::string>("KEY"), 1, 1}, path, "no such key",
          nearest.empty() ? "expected a key of a scene or of a robot"
                          : "expected perhaps " + inQuotes(nearest));
 }
@@ -152,7 +152,7 @@ void addKeysCommand(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("keys", "Explain the keys of scenes and robots, all or some");
   const auto options = std::make_shared<KeysOptions>();
-  command->add_option("PATH", options->path, "A key or section: damping, simulation.obstacles");
+  command->add_option("KEY", options->path, "A key or section: damping, simulation.obstacles");
   command->add_flag("--json", options->json, "Print JSON");
   const CLI::IsMember formats({"scene", "robot"});
   command->add_option("--man", options->manual, "Print the manual page of a file's format")

@@ -312,7 +312,7 @@ class Keys(Case):
                            ("xyzzy", "expected a key of a scene or of a robot")):
             result = tactus("keys", path)
             self.assertEqual((result.returncode, result.stdout), (1, ""))
-            self.assertEqual(result.stderr, f"PATH:1:1: {path}: no such key, {hint}\n")
+            self.assertEqual(result.stderr, f"KEY:1:1: {path}: no such key, {hint}\n")
 
 
 unittest.main()
