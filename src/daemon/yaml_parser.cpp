@@ -95,7 +95,9 @@ class TreeBuilder : public YAML::EventHandler {
 
  private:
   std::string_view rest(const YAML::Mark& mark) const {
-    const std::size_t offset = mark.is_null() ? text_.size() : static_cast<std::size_t>(mark.pos);
+    const std::size_t uncounted = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // byte order mark
+    const std::size_t offset =
+        mark.is_null() ? text_.size() : static_cast<std::size_t>(mark.pos) + uncounted;
     return std::string_view(text_).substr(std::min(offset, text_.size()));
   }
 
@@ -249,6 +251,10 @@ YamlNode parseYaml(const SourceFile& file) {
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& error) {
+    // An open quote: where the last line has an end, the parser ends it there, and the builder
+    // names it.
+    if (error.msg == YAML::ErrorMsg::EOF_IN_SCALAR && !file.text.ends_with('\n'))
+      return parseYaml({file.path, file.text + '\n'});
     failSyntax(file.text, builder.position(error.mark), error.msg);
   }
   YamlNode root = builder.takeRoot();

@@ -297,6 +297,31 @@ TEST(BrokenSceneFile, TactileSampleStaleWithinACycle) {
   EXPECT_EQ(files.load({{"period_s", "0.005"}}).period_s, 0.005);
 }
 
+TEST(BrokenSceneFile, OverrideWithoutAKey) {
+  test::expectError(test::loadError(SceneFiles{}.sources(), {{"", "1"}}),
+                    {"", "", "--set :1:1: -: ", "is no path of keys", "section.key"});
+}
+
+TEST(BrokenSceneFile, OpenQuoteWhereTheTextEnds) {
+  const char* const problem = "a quote that is not closed in its line";
+  SceneFiles files;
+  test::expectError(test::loadError(files.sources(), {{"controller.variant", "\"none"}}),
+                    {"", "", "--set controller.variant:1:1: ", problem, "the same quote"});
+  files.scene = "robot: 'robot.yaml";
+  test::expectError(test::loadError(files.sources()),
+                    {"", "", "scene.yaml:1:8: robot: ", problem, "the same quote"});
+}
+
+TEST(BrokenSceneFile, OpenQuoteBehindAByteOrderMark) {
+  SceneFiles files;
+  files.scene = "\xEF\xBB\xBF" + test::replaced(files.scene, "[x, y]", "['x', \"y\"]");
+  EXPECT_EQ(test::loadError(files.sources()), "");
+  files.scene = test::replaced(files.scene, "\"y\"", "\"y");
+  test::expectError(test::loadError(files.sources()),
+                    {"", "", "scene.yaml:4:21: task.components[1]: ", "a quote that is not closed",
+                     "the same quote"});
+}
+
 TEST(BrokenSceneFile, TooManyKeys) {
   SceneFiles files;
   for (int i = 0; i < 200; ++i) files.scene += "k" + std::to_string(i) + ": 1\n";
