@@ -145,7 +145,7 @@ class WholePage(Report):
         self.assertIn("assumed, peak 8.00 N", self.page())
 
     def test_scenes_beyond_the_paper_have_their_own_table(self):
-        further = self.page().split("<h2>Further runs</h2>")[1]
+        further = self.page().split("<h2>Further runs, not of the paper</h2>")[1]
         self.assertEqual(re.findall(r'scope="row">(\w+)<', further), ["free_motion"])
 
 
@@ -164,9 +164,24 @@ class Incomplete(Report):
         self.assertEqual(result.stdout, f"report: {(self.runs / 'report.html').resolve()}\n")
         for word in ("scenario", "Figure 2", "Paper", "Missing"):
             self.assertNotIn(word, self.page())
-        self.assertIn("<h2>mine &amp; yours</h2>", self.page())
-        self.assertIn("contact force, peak 8.00 N", self.page())
-        self.assertIn("Deviation of the tool", self.page())
+        self.assertIn("<h3>mine &amp; yours</h3>", self.page())
+        self.assertIn("sensor force, peak 8.00 N", self.page())
+        self.assertIn("TCP error, peak 3.00 mm", self.page())
+
+    def test_says_in_the_table_which_run_is_missing(self):
+        write_run(self.runs, "scenario3_assumed")
+        self.assertIn("scenario3_estimated missing", self.report().stdout)
+
+    def test_draws_no_figure_without_its_subject(self):
+        for scene in ("scenario1_multi_space", "scenario3_tactus"):
+            write_run(self.runs, scene)
+        self.report()
+        self.assertIn("Figure 11. ", self.page())
+        self.assertNotIn("Figure 9. ", self.page())
+
+    def test_takes_no_name_for_a_formula(self):
+        write_run(self.runs, "a$\\frac$b")
+        self.assertEqual(self.report().returncode, 0)
 
     def test_draws_no_force_of_a_run_without_any(self):
         write_run(self.runs, "free", table_text(

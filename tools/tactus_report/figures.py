@@ -53,12 +53,10 @@ def line_figure(name, curves, y_label, unit, log_axis=False, label_peak=False):
             axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
         axes.set_xlabel("time in s")
         axes.set_ylabel(y_label)
-        if curves:
-            end_s = max(curve.time_s[-1] for curve in curves)
-            axes.set_xlim(0.0, end_s)
-            label_ends(axes, [(curve.time_s[-1], curve.value[-1],
-                               label_text(curve, unit, label_peak), curve.colour)
-                              for curve in curves])
+        axes.set_xlim(0.0, max(curve.time_s[-1] for curve in curves))
+        label_ends(axes, [(curve.time_s[-1], curve.value[-1],
+                           label_text(curve, unit, label_peak), curve.colour)
+                          for curve in curves])
         return as_svg(figure, name)
 
 
@@ -116,7 +114,7 @@ def label_ends(axes, labels):
         axes.plot([x, 1.015, 1.035], [y, height, height], transform=axes.transAxes, clip_on=False,
                   color=colour, linewidth=0.6, alpha=0.7)
         axes.text(1.045, height, text, transform=axes.transAxes, color=colour, va="center",
-                  fontsize=9.5)
+                  fontsize=9.5, parse_math=False)
 
 
 def spread(heights, gap):

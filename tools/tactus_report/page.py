@@ -19,18 +19,17 @@ def build_page(runs):
     if of_paper:
         title += ": the paper&#8217;s experiments, simulated"
     body = [f"<h1>{title}</h1>",
-            f"<p>{len(runs)} runs of the controller.</p>",
+            f"<p>{len(runs)} {'run' if len(runs) == 1 else 'runs'} of the controller.</p>",
             *comparison_with_paper(runs),
             *paper_section(of_paper),
             *beyond_the_paper(runs),
-            *further_figures(further),
             "<h2>Error against run time</h2>",
             error_figure(runs)]
     if of_paper:
         body.append(runs_table(of_paper))
     if further:
-        body += ["<h2>Further runs</h2>", "<p>Scenes that are not in the paper.</p>",
-                 runs_table(further)]
+        body += ["<h2>Further runs, not of the paper</h2>" if of_paper else "<h2>Runs</h2>",
+                 runs_table(further), *further_figures(further)]
     return ('<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
             '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
             "<title>Tactus report</title>\n"
@@ -57,17 +56,20 @@ def paper_section(of_paper):
         return []
     return ["<h2>Figures</h2>",
             "<p>Figures 2 to 8 carry the paper&#8217;s numbers.</p>",
-            *paper_figures.render_all(paper_figures.FIGURES, of_paper)]
+            *(paper_figures.render(figure, of_paper) for figure in paper_figures.FIGURES
+              if figure.shows_any_of(of_paper))]
 
 
 def beyond_the_paper(runs):
-    """Nothing where none of its scenes was run."""
-    if not (OWN_SCENES - PAPER_SCENES) & runs.keys():
+    """The figures that have a subject."""
+    own = {scene: run for scene, run in runs.items() if scene in OWN_SCENES - PAPER_SCENES}
+    figures = [figure for figure in paper_figures.BEYOND_FIGURES if figure.shows_any_of(own)]
+    if not figures:
         return []
     return ["<h2>Beyond the paper</h2>",
             "<p>The approach-speed limit (variant null_limit) beside the paper&#8217;s multi-space "
             "law.</p>",
-            *paper_figures.render_all(paper_figures.BEYOND_FIGURES, runs)]
+            *(paper_figures.render(figure, runs) for figure in figures)]
 
 
 def further_figures(further):
@@ -75,7 +77,7 @@ def further_figures(further):
     own = [run for scene, run in sorted(further.items()) if scene not in OWN_SCENES]
     body = []
     for number, run in enumerate(own):
-        body += [f"<h2>{html.escape(run.scene)}</h2>", *paper_figures.render_run(number, run)]
+        body += [f"<h3>{html.escape(run.scene)}</h3>", *paper_figures.render_run(number, run)]
     return body
 
 

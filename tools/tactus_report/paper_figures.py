@@ -1,4 +1,5 @@
-"""The paper's figures 2 to 8, and ours beyond it: which runs, what of them, and what to see."""
+"""The paper's figures 2 to 8, and ours beyond it: which runs, what of them, and what to see; and those
+of any other run."""
 
 import dataclasses
 import html
@@ -19,6 +20,9 @@ class PaperFigure:
     curves: list  # (scene, label, colour, line); broken lines last, to show what lies below
     log_axis: bool = False
     label_peak: bool = False  # name the largest value beside a curve, not the last one
+
+    def shows_any_of(self, runs):
+        return any(scene in runs for scene, *_ in self.curves)
 
 
 NONE = ("scenario1_none", "no controller", RED, DASH_DOT)
@@ -96,12 +100,6 @@ BEYOND_FIGURES = [
 ]
 
 
-def render_all(figures, runs):
-    """Those that show any of the runs."""
-    return [render(figure, runs) for figure in figures
-            if any(scene in runs for scene, *_ in figure.curves)]
-
-
 def render(spec, runs):
     """One <figure> element of at least one run. It says which others it lacks."""
     curves = [Curve(label, colour, line, runs[scene].time_s, getattr(runs[scene], spec.quantity))
@@ -116,15 +114,16 @@ def render(spec, runs):
 
 def render_run(number, run):
     """<figure> elements of a run by itself: force where there was any, and what it cost the task."""
-    quantities = [("force_N", "Contact force", "sensor force in N", "N"),
-                  ("tool_error_m", "Deviation of the tool from its path", "TCP error in m", "m")]
+    quantities = [("force", run.force_N, "N", "sensor force", "Contact force"),
+                  ("error", 1e3 * run.tool_error_m, "mm", "TCP error",
+                   "Deviation of the tool from its path")]
     if not run.force_N.any():
         del quantities[0]
     figures = []
-    for quantity, title, y_label, unit in quantities:
+    for quantity, values, unit, label, title in quantities:
         name = f"run-{number}-{quantity}"
-        curve = Curve(title.lower(), BLUE, SOLID, run.time_s, getattr(run, quantity))
-        drawing = line_figure(name, [curve], y_label, unit, label_peak=True)
+        drawing = line_figure(name, [Curve(label, BLUE, SOLID, run.time_s, values)],
+                              f"{label} in {unit}", unit, label_peak=True)
         figures.append(as_figure(name, drawing, f"{title}.",
                                  f"Outcome of {run.scene}: {run.summary['outcome']}."))
     return figures
