@@ -10,7 +10,7 @@
 namespace tactus {
 namespace {
 
-constexpr const char* kBase = "/base/crops9_contact.yaml";
+constexpr const char* kExtremesBase = "/base/crops9_contact.yaml";
 
 /// The longest ones first, so that no processor is left with one at the end.
 std::vector<ExtremeRow*> workList(std::vector<ExtremeRow>& rows) {
@@ -115,7 +115,7 @@ Table extremeStates(const std::vector<ExtremeRow>& rows) {
 
 StudyResult studyStability(const BenchOptions& options) {
   const std::string base =
-      options.scenes.empty() ? options.scenes_folder + kBase : options.scenes.front();
+      options.scenes.empty() ? options.scenes_folder + kExtremesBase : options.scenes.front();
   loadScene(base, {}, SceneUse::kSimulation);  // a broken one is no row of the table
   std::vector<ExtremeCase> cases = extremeCases();
   if (options.is_quick) {

@@ -11,7 +11,7 @@
 namespace tactus {
 namespace {
 
-constexpr const char* kBase = "/scenario2_estimated.yaml";
+constexpr const char* kLawBase = "/scenario2_estimated.yaml";
 
 std::vector<LawGridRow> runGrid(const RunSetup& base, const std::vector<LawGridPoint>& points,
                                 const LawTrial& trial) {
@@ -44,7 +44,7 @@ Plot peaks(const Table& grid) {
 
 StudyResult studyLaw(const BenchOptions& options) {
   const std::string path =
-      options.scenes.empty() ? options.scenes_folder + kBase : options.scenes.front();
+      options.scenes.empty() ? options.scenes_folder + kLawBase : options.scenes.front();
   const Scene scene = loadScene(path, {}, SceneUse::kSimulation);
   const RunSetup base{scene.controller, scene.plant, scene.period_s, scene.duration_s};
   std::vector<LawGridPoint> points = lawGridPoints(scene.plant.robot_stiffness_N_per_m);
