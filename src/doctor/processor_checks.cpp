@@ -12,7 +12,8 @@ std::set<int> cpusIn(const MachineRoot& root, const std::string& file) {
 Finding notAlone(const std::string& what, int cpu) {
   const std::string wanted = cpu == -1 ? "N" : std::to_string(cpu);
   return {"cpu_isolation", Level::kWarning, what,
-          "the kernel moves other work and its timer tick onto the loop's CPU",
+          "the kernel puts other work, its timer tick and its deferred callbacks (RCU), for which "
+          "sockets then wait, onto the loop's CPU",
           fmt::format("boot with isolcpus=managed_irq,domain,{0} nohz_full={0}{1}", wanted,
                       cpu == -1 ? ", and real_time: {cpu: N} in robot.yaml" : "")};
 }
