@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "tactus/daemon/command_scene.h"
@@ -54,7 +54,7 @@ void play(const PlantOptions& options) {
     } else {
       printCounters(result);
     }
-  } catch (const std::system_error& error) {
+  } catch (const std::runtime_error& error) {  // and what the operating system refuses
     throw RunError(error.what());
   }
 }

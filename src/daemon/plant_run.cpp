@@ -13,6 +13,8 @@
 #include <system_error>
 #include <vector>
 
+#include "tactus/io/can_socket.h"
+#include "tactus/io/kernel_frame.h"
 #include "tactus/io/raw_can_socket.h"
 #include "tactus/rt/memory.h"
 #include "tactus/rt/periodic_timer.h"
@@ -92,8 +94,11 @@ class PlantPump {
         e_stop_(e_stop_file),
         notes_(notes) {
     for (const BusConfig& bus : scene.hardware->buses) {
+      locks_.push_back(std::make_unique<InterfaceLock>(bus.interface, "tactus plant"));
       sockets_.push_back(std::make_unique<RawCanSocket>(bus.interface));
       polled_.push_back({sockets_.back()->descriptor(), POLLIN, 0});
+      requireUp(bus.interface);
+      interfaces_.push_back(bus.interface);
     }
   }
 
@@ -117,6 +122,8 @@ class PlantPump {
     for (int bus = 0; bus < plant_.buses(); ++bus) {
       if (polled_[bus].revents == 0) continue;
       sockets_[bus]->receive(frames_);
+      if (sockets_[bus]->isGone())
+        failOnInterface(ENODEV, interfaces_[bus], "the interface has gone");
       for (const CanFrame& frame : frames_) plant_.send(bus, frame, t_ns);
     }
     plant_.advance(t_ns);
@@ -151,6 +158,8 @@ class PlantPump {
   Plant plant_;
   EmergencyStopFile e_stop_;
   std::FILE* notes_;
+  std::vector<std::string> interfaces_;
+  std::vector<std::unique_ptr<InterfaceLock>> locks_;
   std::vector<std::unique_ptr<RawCanSocket>> sockets_;
   std::vector<pollfd> polled_;
   FrameBatch frames_;

@@ -95,15 +95,12 @@ void setOptions(int descriptor, const std::string& interface) {
 }
 
 void bindTo(int descriptor, const std::string& interface) {
-  const ifreq flags = ask(interface, SIOCGIFFLAGS);
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = ask(interface, SIOCGIFINDEX).ifr_ifindex;
   if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
     failOnInterface(errno, interface, "is no CAN interface");
-  if ((flags.ifr_flags & IFF_UP) == 0)
-    failOnInterface(ENETDOWN, interface,
-                    "the interface is down; `ip link set " + interface + " up`");
+  requireUp(interface);
 }
 
 }  // namespace
@@ -208,21 +205,27 @@ int transmitQueueLength(const std::string& interface) {
   return ask(interface, SIOCGIFTXQLEN).ifr_qlen;
 }
 
+void requireUp(const std::string& interface) {
+  if ((ask(interface, SIOCGIFFLAGS).ifr_flags & IFF_UP) == 0)
+    failOnInterface(ENETDOWN, interface,
+                    "the interface is down; `ip link set " + interface + " up`");
+}
+
 /// A name in the abstract name space of unix sockets, which the kernel gives to one socket at a
 /// time: no file to be left behind, no permission to be asked.
-InterfaceLock::InterfaceLock(const std::string& interface) {
+InterfaceLock::InterfaceLock(const std::string& interface, const std::string& program) {
   requestFor(interface);
   Descriptor opened(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (opened.get() < 0) failOnInterface(errno, interface, "cannot open a unix socket to lock it");
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  const std::string name = "tactus-" + interface;
+  const std::string name = program + "-" + interface;
   std::memcpy(address.sun_path + 1, name.data(), name.size());
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
   if (bind(opened.get(), reinterpret_cast<const sockaddr*>(&address), length) != 0) {
     if (errno != EADDRINUSE) failOnInterface(errno, interface, "cannot be locked");
-    throw std::runtime_error(interface +
-                             ": another tactusd already runs on this interface; stop it first");
+    throw std::runtime_error(interface + ": another " + program +
+                             " already runs on this interface; stop it first");
   }
   descriptor_ = opened.release();
 }

@@ -33,8 +33,11 @@ RawCanSocket::~RawCanSocket() { close(descriptor_); }
 void RawCanSocket::receive(FrameBatch& frames) noexcept {
   frames.clear();
   can_frame raw;
-  while (frames.size() < FrameBatch::kCapacity && read(descriptor_, &raw, sizeof(raw)) == CAN_MTU)
+  ssize_t size = 0;
+  while (frames.size() < FrameBatch::kCapacity &&
+         (size = read(descriptor_, &raw, sizeof(raw))) == CAN_MTU)
     frames.push(fromKernel(raw));
+  if (size < 0 && errno == ENODEV) is_gone_ = true;
 }
 
 void RawCanSocket::send(std::span<const CanFrame> frames) noexcept {

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "tactus/io/can_socket.h"
+#include "tactus/io/raw_can_socket.h"
 
 namespace tactus {
 namespace {
@@ -249,6 +250,12 @@ void checkDown(const std::string& interface) {
     std::printf("        %s\n", error.what());
   }
   check(is_refused, "a socket on an interface that is down is refused");
+  try {
+    requireUp(interface);
+    check(false, "an interface that is down is told apart");
+  } catch (const std::system_error& error) {
+    check(error.code().value() == ENETDOWN, "an interface that is down is told apart");
+  }
   shell("ip link set " + interface + " up");
 }
 
@@ -264,6 +271,7 @@ void checkLock(const std::string& interface) {
     }
   }
   check(refused == 2, "a second lock is refused, twice");
+  const InterfaceLock of_another_program(interface, "another program");
 }
 
 constexpr unsigned kEchoFlag = 1U << 18;  // IFF_ECHO of linux/if.h, which bites with net/if.h
@@ -343,8 +351,15 @@ void checkDeadBus(const std::string& interface) {
 
 void checkGone(const std::string& interface) {
   CanSocket bus(interface, kReceived, kSent);
+  RawCanSocket player(interface);
+  FrameBatch frames;
+  player.receive(frames);
+  check(!player.isGone(), "who plays the bus sees the interface");
   cycle(bus);
   shell("ip link del " + interface);
+  do player.receive(frames);
+  while (frames.size() > 0);
+  check(player.isGone(), "and that it is removed");
   check(cyclesUntil(bus, Fault::kBusDown, 2) == 1, "an interface that is removed is named at once");
   for (int i = 0; i < 250; ++i) cycle(bus);
   check(bus.monitor().fault() == Fault::kBusDown && bus.monitor().counters().sent == 2,

@@ -62,11 +62,15 @@ int transmitQueueLength(const std::string& interface);
 /// A longer one delays what follows; a cycle's frames fit.
 inline constexpr int kMaxTransmitQueue = 16;
 
+/// Throws std::system_error where the interface is down or missing, with the way to mend it.
+void requireUp(const std::string& interface);
+
 /// Held while a daemon owns an interface: a second one on it throws std::runtime_error. Freed by
-/// the kernel whenever the process ends. Holds in one network namespace, as interfaces do.
+/// the kernel whenever the process ends. Holds in one network namespace, as interfaces do. Whoever
+/// plays the robot may be there, too, but once: each program has its own lock.
 class InterfaceLock {
  public:
-  explicit InterfaceLock(const std::string& interface);
+  explicit InterfaceLock(const std::string& interface, const std::string& program = "tactusd");
   ~InterfaceLock();
   InterfaceLock(const InterfaceLock&) = delete;
   InterfaceLock& operator=(const InterfaceLock&) = delete;

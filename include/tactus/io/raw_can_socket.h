@@ -25,10 +25,13 @@ class RawCanSocket {
 
   int descriptor() const noexcept { return descriptor_; }
   std::uint64_t refused() const noexcept { return refused_; }
+  /// Whether the interface was removed, as receive() has seen. It does not come back.
+  bool isGone() const noexcept { return is_gone_; }
 
  private:
   int descriptor_ = -1;
   std::uint64_t refused_ = 0;
+  bool is_gone_ = false;
 };
 
 }  // namespace tactus
