@@ -44,7 +44,9 @@ std::string statusPath() {
 std::string readStatus(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    const char* reason = errno == ENOENT ? "no daemon is running" : std::strerror(errno);
+    const char* reason = errno == ENOENT ? "no service is running; `journalctl -u tactusd` says "
+                                           "how it ended"
+                                         : std::strerror(errno);
     const char* help = errno == EACCES ? "; it is for root and the group tactus" : "";
     throw RunError(fmt::format("{}: {}{}", escaped(path), reason, help));
   }

@@ -104,7 +104,10 @@ void ControlCycle::prepare() noexcept {
 void ControlCycle::noteCulprit() noexcept {
   report_.joint = judged_.joint;
   report_.bus = judged_.bus;
-  if (judged_.joint >= 0) report_.drive = robot_.drive(judged_.joint);
+  if (judged_.joint < 0) return;
+  report_.drive = robot_.drive(judged_.joint);
+  report_.q_measured = input_.q_measured[judged_.joint];
+  report_.q_expected = q_commanded_[judged_.joint];
 }
 
 Fault ControlCycle::judge(const CycleInput& input) noexcept {
@@ -138,8 +141,9 @@ Fault ControlCycle::judgeDrives() noexcept {
   judged_.joint = drives.joint;
   const bool is_about_to_move = mode_.mode == Mode::kReady || mode_.mode == Mode::kEnabling ||
                                 (mode_.mode == Mode::kBoot && areConfigured());
-  if (drives.fault == Fault::kNone && is_about_to_move && !isInPlace()) return Fault::kNotAtStart;
-  return drives.fault;
+  if (drives.fault != Fault::kNone || !is_about_to_move) return drives.fault;
+  judged_.joint = jointOutOfPlace();
+  return judged_.joint < 0 ? Fault::kNone : Fault::kNotAtStart;
 }
 
 Fault ControlCycle::judgeTactile() noexcept {
@@ -176,11 +180,16 @@ void ControlCycle::repeatRefusedTare() noexcept {
 }
 
 /// At the scene's start, or later where it was commanded to be or seen to rest: the task would pull
-/// an arm that somebody has pushed away back at once, as fast as its limits allow.
-bool ControlCycle::isInPlace() const noexcept {
+/// an arm that somebody has pushed away back at once, as fast as its limits allow. The joint that
+/// is farthest from there, or -1.
+int ControlCycle::jointOutOfPlace() const noexcept {
   const JointVector from_command = (input_.q_measured - q_commanded_).cwiseAbs();
   const JointVector from_release = (input_.q_measured - q_released_).cwiseAbs();
-  return (from_command.cwiseMin(from_release).array() <= start_tolerance_).all();
+  const JointVector distance = from_command.cwiseMin(from_release);
+  if ((distance.array() <= start_tolerance_).all()) return -1;  // no NaN is in place
+  Eigen::Index joint = 0;
+  distance.maxCoeff(&joint);
+  return static_cast<int>(joint);
 }
 
 void ControlCycle::rememberPlace() noexcept {

@@ -28,7 +28,16 @@ std::string describeDrive(const ModeReport& report, const Scene& scene) {
   return text + fmt::format(", {}", driveStateName(report.drive.state));
 }
 
+std::string describePlace(const ModeReport& report, const Scene& scene) {
+  const bool is_prismatic = scene.controller.chain.type(report.joint) == JointType::kPrismatic;
+  return fmt::format("joint {} is at {:.4g} {}, expected within {:g} of {:.4g}",
+                     scene.joint_names[report.joint], report.q_measured, is_prismatic ? "m" : "rad",
+                     scene.hardware->start_tolerance, report.q_expected);
+}
+
 std::string describeCulprit(const ModeReport& report, const Scene& scene) {
+  if (report.joint >= 0 && report.fault == Fault::kNotAtStart)
+    return ", " + describePlace(report, scene);
   if (report.joint >= 0) return ", " + describeDrive(report, scene);
   if (report.bus >= 0) return ", " + scene.hardware->buses[report.bus].interface;
   return "";
@@ -63,6 +72,7 @@ bool Telemetry::drain(LoopLink& link) {
   }
   while (link.reports.pop(report_)) {
     description_ = describeMode(report_, scene_);
+    showStatus(link);  // before the service manager hears of it, and people look
     service_.onMode(report_.mode, description_);
     std::fputs(fmt::format("tactusd: {}\n", description_).c_str(), stderr);
   }

@@ -11,6 +11,7 @@
 #include "support/shipped_scene.h"
 #include "support/virtual_robot_cell.h"
 #include "tactus/daemon/replay.h"
+#include "tactus/daemon/telemetry.h"
 
 namespace tactus {
 namespace {
@@ -47,6 +48,11 @@ TEST(ControlCycleBoot, RefusesAnArmThatIsNotAtTheStart) {
   cell.cycle = ControlCycle(scene);
   for (int i = 0; i < 8000 && !cell.cycle.isFinished(); ++i) cell.step();
   EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart);
+  // Where it is: at the plant's start, which is home.
+  EXPECT_NE(describeMode(cell.cycle.report(), scene)
+                .find("joint j5 is at 0.446 rad, expected within 0.02 of 0.476: "),
+            std::string::npos)
+      << describeMode(cell.cycle.report(), scene);
 }
 
 TEST(ControlCycleBoot, NamesTheDriveThatDoesNotAnswer) {

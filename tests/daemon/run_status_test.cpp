@@ -89,7 +89,8 @@ TEST_F(RunStatusFile, ShowsTheRunningDaemonUntilItEnds) {
     EXPECT_EQ(json["pid"].as<int>(), getpid());
   }
   EXPECT_FALSE(std::filesystem::exists(path()));
-  EXPECT_EQ(errorOfRun(), path() + ": no daemon is running");
+  EXPECT_EQ(errorOfRun(),
+            path() + ": no service is running; `journalctl -u tactusd` says how it ended");
 }
 
 TEST_F(RunStatusFile, NamesAFaultAndEndsSo) {

@@ -29,7 +29,9 @@ struct ModeReport {
   Fault fault = Fault::kNone;
   int joint = -1;
   int bus = -1;
-  DriveReport drive;  ///< of that joint, as it was
+  DriveReport drive;        ///< of that joint, as it was
+  double q_measured = 0.0;  ///< of that joint, m or rad
+  double q_expected = 0.0;  ///< where it was commanded to be at last, or where the scene starts
 };
 
 /// One cycle of the daemon between frames in and frames out: read - judge - control - limit -
@@ -66,7 +68,7 @@ class ControlCycle {
   Fault judgeTactile() noexcept;
   ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
   bool areConfigured() noexcept;
-  bool isInPlace() const noexcept;
+  int jointOutOfPlace() const noexcept;
   void rememberPlace() noexcept;
   void watchSamples(int missed_cycles) noexcept;
   bool hasFreshSample() const noexcept;
