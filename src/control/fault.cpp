@@ -22,7 +22,9 @@ const std::array<FaultRow, 22>& faultTable() noexcept {
        "a sample and 2 cycles", kHold},
       {kTareRefused, "tare_refused", "force at rest too large or not steady: a contact",
        "before motion", kRamp},
-      {kBusStalled, "bus_stalled", "frames of three cycles not confirmed, no error frame",
+      {kBusStalled, "bus_stalled",
+       "frames of three cycles not confirmed, no error frame; at first, an interface just taken "
+       "away",
        "4 cycles", kQuickStop},
       {kBusUnacknowledged, "bus_unacknowledged", "error-passive without acknowledgement", "1 cycle",
        kQuickStop},

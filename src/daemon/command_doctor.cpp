@@ -35,7 +35,9 @@ constexpr RecordShape kLargestShape{kMaxJoints, kMaxTaskSize};
 
 MachineNeeds needsOf(const std::optional<Scene>& scene, const DoctorOptions& options) {
   MachineNeeds needs;
-  needs.log_folder = std::filesystem::weakly_canonical(options.log_folder);
+  std::error_code problem;  // a folder that nobody may look into has no other name
+  needs.log_folder = std::filesystem::weakly_canonical(options.log_folder, problem);
+  if (problem) needs.log_folder = options.log_folder;
   const double period_s = scene ? scene->period_s : kDefaultPeriod_s;
   const RecordShape shape = scene ? describeLog(*scene).shape : kLargestShape;
   needs.log_bytes_per_s = static_cast<double>(logBytesACycle(shape)) / period_s;

@@ -128,9 +128,14 @@ KeySpec transitionSection() {
 }
 
 KeySpec controllerSection() {
-  KeySpec variant = value(ValueType::kChoice, "variant", "",
-                          "where the reaction to contact takes place; none: only measure",
-                          [](Draft& d) -> std::string& { return d.variant; });
+  KeySpec variant =
+      value(ValueType::kChoice, "variant", "",
+            "what gives way to contact: null_space the null space, the tool keeps its task; "
+            "joint_space all joints; task_space the tool alone; null_task, "
+            "null_joint the null space, and above activation_force_N the tool or "
+            "all joints; null_limit the null space, and the tool as far as the force "
+            "would else pass activation_force_N; none nothing, it is only measured",
+            [](Draft& d) -> std::string& { return d.variant; });
   variant.choices = variantNames();
   return section(
       "controller", "force control; absent: the tactile module is not even read",

@@ -77,7 +77,8 @@ KeySpec simulationSection() {
   return section(
       "simulation", "the world that the robot meets",
       {
-          number("duration_s", "s", above(0, kMaxTime_s), "length of the run",
+          number("duration_s", "s", above(0, kMaxTime_s),
+                 "length of a simulated run; tactusd goes on until it is stopped",
                  [](Draft& d) -> double& { return d.duration_s; }),
           optional(number("drive_lag_s", "s", within(0, 1),
                           "lag of the simulated drives; absent: as robot.yaml says",

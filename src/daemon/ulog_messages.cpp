@@ -14,6 +14,9 @@ UlogMessages::UlogMessages(std::istream& in, std::string name)
     : in_(in), name_(std::move(name)), buffer_(kMaxMessageSize) {
   std::array<char, kUlogHeaderSize> header;
   const std::size_t size = read(header.data(), header.size());
+  if (size == 0)
+    fail(0, "header",
+         "is empty: whatever wrote it was killed at once, a log of tactus is expected");
   if (size < header.size() ||
       std::memcmp(header.data(), kUlogMagic.data(), kUlogMagic.size()) != 0) {
     fail(0, "header", "not a ULog file of version 1, a log of tactus is expected");

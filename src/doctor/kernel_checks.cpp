@@ -48,8 +48,8 @@ Finding checkThrottling(const MachineRoot& root) {
   const auto runtime_us = readNumber(root / "proc/sys/kernel/sched_rt_runtime_us");
   const auto period_us = readNumber(root / "proc/sys/kernel/sched_rt_period_us");
   const std::string command =
-      "sysctl -w kernel.sched_rt_runtime_us=-1, and that line in "
-      "/etc/sysctl.d/";
+      "sysctl -w kernel.sched_rt_runtime_us=-1, and kernel.sched_rt_runtime_us=-1 in "
+      "/etc/sysctl.d/tactus.conf";
   if (!runtime_us || !period_us)
     return {name, Level::kNote, "the kernel does not tell its sched_rt_runtime_us"};
   if (*runtime_us == 0)

@@ -108,6 +108,8 @@ TEST(UlogReader, RefusesEachWithItsPlace) {
   };
   const std::string big(60000, 'x');
   const std::vector<Case> cases = {
+      {[](HandMadeLog& log) { log.header = log.flags = log.format = log.subscription = ""; },
+       "run.ulg:1:1: header: is empty"},
       {[](HandMadeLog& log) { log.header[1] = 'l'; }, "run.ulg:1:1: header: not a ULog"},
       {[](HandMadeLog& log) { log.header[7] = 2; }, "run.ulg:1:1: header: not a ULog"},
       {[](HandMadeLog& log) { log.flags.clear(); }, "run.ulg:1:17: flag bits: missing"},
