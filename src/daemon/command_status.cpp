@@ -133,7 +133,7 @@ bool showStatus(const StatusOptions& options) {
 }  // namespace
 
 void addStatusCommand(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("status", "Show the running daemon");
+  CLI::App* command = app.add_subcommand("status", "Show what the service does");
   const auto options = std::make_shared<StatusOptions>();
   command->add_flag("--watch", options->watch, "Show it each second until the daemon ends");
   command->add_flag("--json", options->json, "Print JSON");

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -91,7 +92,6 @@ class PlantPump {
  public:
   PlantPump(const Scene& scene, const std::string& e_stop_file, std::FILE* notes)
       : plant_(scene.controller, scene.plant, *scene.hardware, scene.period_s, scene.troubles),
-        e_stop_(e_stop_file),
         notes_(notes) {
     for (const BusConfig& bus : scene.hardware->buses) {
       locks_.push_back(std::make_unique<InterfaceLock>(bus.interface, "tactus plant"));
@@ -100,6 +100,7 @@ class PlantPump {
       requireUp(bus.interface);
       interfaces_.push_back(bus.interface);
     }
+    e_stop_.emplace(e_stop_file);  // it may be another plant's: that one holds the locks
   }
 
   void run(const sigset_t& signals_while_waiting) {
@@ -138,7 +139,7 @@ class PlantPump {
     const bool is_pressed = plant_.emergencyStop(t_ns);
     if (is_pressed == is_pressed_) return;
     is_pressed_ = is_pressed;
-    const bool is_written = e_stop_.write(is_pressed);
+    const bool is_written = e_stop_->write(is_pressed);
     fmt::print(notes_, "e-stop {} at {:.6f} s{}\n", is_pressed ? "pressed" : "released",
                1e-9 * static_cast<double>(t_ns),
                is_written ? "" : ", which nobody could be told: its file can't be written");
@@ -156,7 +157,7 @@ class PlantPump {
   }
 
   Plant plant_;
-  EmergencyStopFile e_stop_;
+  std::optional<EmergencyStopFile> e_stop_;
   std::FILE* notes_;
   std::vector<std::string> interfaces_;
   std::vector<std::unique_ptr<InterfaceLock>> locks_;

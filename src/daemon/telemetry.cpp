@@ -30,7 +30,7 @@ std::string describeDrive(const ModeReport& report, const Scene& scene) {
 
 std::string describePlace(const ModeReport& report, const Scene& scene) {
   const bool is_prismatic = scene.controller.chain.type(report.joint) == JointType::kPrismatic;
-  return fmt::format("joint {} is at {:.4g} {}, expected within {:g} of {:.4g}",
+  return fmt::format("joint {} is at {:.6g} {}, expected within {:g} of {:.6g}",
                      scene.joint_names[report.joint], report.q_measured, is_prismatic ? "m" : "rad",
                      scene.hardware->start_tolerance, report.q_expected);
 }

@@ -28,11 +28,11 @@ class Build:
         self.out = options.out
         self.keep = options.keep
 
-    def run(self, test, folder=None):
+    def run(self, test, folder=None, timeout_s=TIMEOUT_S):
         """Returns the folder with what the guest left in /out. Ends the program if it fails."""
         out = self.out / (folder or test)
         if not self.keep:
-            command = [sys.executable, HERE / "run.py", test, "--out", out, "--timeout", str(TIMEOUT_S)]
+            command = [sys.executable, HERE / "run.py", test, "--out", out, "--timeout", str(timeout_s)]
             for program in self.programs:
                 command += ["--program", program]
             for path in ["config", "tests/hil/scenes"]:  # the same place as in the repository

@@ -3,12 +3,12 @@
 
 usage: scenes_test.py --tactus FILE --tactusd FILE --out FOLDER [--keep] [--all]
 
-Three of the scenes, or --all, which takes six minutes and more."""
+Three of the scenes, or --all, which takes seven minutes and more."""
 
 import sys
 import unittest
 
-from machine import SCENES, Build, summary
+from machine import SCENES, TIMEOUT_S, Build, summary
 
 CYCLES = 13000
 STOPPING_CYCLES = 40  # until the drives have followed the last setpoint and are off
@@ -66,5 +66,5 @@ if __name__ == "__main__":
     every = "--all" in sys.argv
     sys.argv = [word for word in sys.argv if word != "--all"]
     build = Build()
-    results = build.run("all_scenes" if every else "scenes")
+    results = build.run("all_scenes", timeout_s=5 * TIMEOUT_S) if every else build.run("scenes")
     unittest.main(argv=sys.argv[:1])

@@ -1,3 +1,3 @@
-# Every scene of the paper in full length, half a minute each and more.
+# Every scene of the paper, and ours, in full length.
 SCENES=$(cd "$ROOT/config/scenes" && ls -d scenario*.yaml | sed 's/\.yaml$//')
 . "$ROOT/guest/scenes.sh"
