@@ -71,7 +71,7 @@ std::string timesLine(const char* name, const YAML::Node& times) {
 std::string motionText(const YAML::Node& motion) {
   const auto of = [&](const char* name) { return number(motion, name); };
   return fmt::format(
-      "force    {:.2f} N, at most {:.2f} N so far; stiffness {:.0f} N/m\n"
+      "force    {:.2f} N, at most {:.2f} N so far; obstacle taken for {:.0f} N/m\n"
       "tool     {:.1f} mm off its path, at most {:.1f} mm\n",
       of("force_N"), of("peak_force_N"), of("stiffness_N_per_m"), 1e3 * of("tcp_error_m"),
       1e3 * of("tcp_error_max_m"));

@@ -1,8 +1,12 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "tactus/daemon/commands.h"
+#include "tactus/daemon/located_error.h"
 #include "tactus/daemon/programs.h"
 #include "tactus/daemon/run_error.h"
 
@@ -15,6 +19,16 @@ int exitCodeAfterFlush(int exit_code) {
   if (is_flushed && std::ferror(stdout) == 0) return exit_code;
   std::fprintf(stderr, "standard output: cannot be written\n");
   return kExitFault;
+}
+
+/// CLI11 names only what is missing, a command.
+void refuseUnknownCommand(const CLI::App& app, const char* word) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  if (word[0] == '-' || std::ranges::count(commands, word) > 0) return;
+  const std::string nearest = nearestWord(word, commands);
+  throw CLI::ExtrasError(
+      "tactus", {nearest.empty() ? std::string(word) : std::string(word) + ", perhaps " + nearest});
 }
 
 }  // namespace
@@ -34,6 +48,7 @@ int tactusProgram(int argc, char** argv) {
   addDoctorCommand(app, exit_code);
   addStatusCommand(app, exit_code);
   try {
+    if (argc > 1) refuseUnknownCommand(app, argv[1]);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exitCodeAfterFlush(kExitDone) : kExitUsage;

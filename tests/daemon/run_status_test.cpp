@@ -80,7 +80,7 @@ TEST_F(RunStatusFile, ShowsTheRunningDaemonUntilItEnds) {
     EXPECT_EQ(run(), kExitDone);
     for (const char* expected :
          {"scenario1_multi_space (null_task)", "\nrunning\n", "force    4.50 N, at most 6.00 N",
-          "stiffness 7000 N/m", "cycles   2, 3 missed, 0 not logged", "wakes    4.0 us"})
+          "obstacle taken for 7000 N/m", "cycles   2, 3 missed, 0 not logged", "wakes    4.0 us"})
       EXPECT_NE(output_.find(expected), std::string::npos) << expected << " in\n" << output_;
     EXPECT_EQ(run({"--json"}), kExitDone);
     const YAML::Node json = YAML::Load(output_);

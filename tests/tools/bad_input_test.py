@@ -126,6 +126,11 @@ class BadInput(unittest.TestCase):
     def test_broken_yaml(self):
         self.expect_refused(self.write("start: [1, 2\n"), "scene.yaml:")
 
+    def test_unknown_command(self):
+        result = self.run_tactus("chek", "scene.yaml")
+        self.assertEqual((result.returncode, result.stdout), (2, ""))
+        self.assertIn("chek, perhaps check", result.stderr)
+
     def test_tab(self):
         scene = self.write("task:\n\tdrift_gain_per_s: 5\n")
         self.expect_refused(scene, "scene.yaml:3:1: -: a tab in the indentation, expected spaces")
