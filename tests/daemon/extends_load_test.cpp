@@ -117,8 +117,9 @@ TEST(Extends, LongRowsAreErrors) {
 TEST(Extends, HasToNameAFile) {
   test::expectError(test::loadError({{"run.yaml", "extends: [a, b]\n"}}),
                     {"", "", "run.yaml:1:10: extends: ", "a list of 2", "the path of a scene"});
-  test::expectError(test::loadError({{"run.yaml", "extends: gone.yaml\n"}}),
-                    {"", "", "run.yaml:1:10: extends: ", "gone.yaml: is not among", "a readable file"});
+  test::expectError(
+      test::loadError({{"run.yaml", "extends: gone.yaml\n"}}),
+      {"", "", "run.yaml:1:10: extends: ", "gone.yaml: is not among", "a readable file"});
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ TEST_P(BrokenRobot, EndsAsOneLine) {
 INSTANTIATE_TEST_SUITE_P(
     All, BrokenRobot,
     testing::Values(
-        BrokenText{"urdf: robot.urdf", "urdf: other.urdf",
-                   "robot.yaml:1:7: urdf: ", "other.urdf: is not among the recorded files", "a readable file"},
+        BrokenText{"urdf: robot.urdf", "urdf: other.urdf", "robot.yaml:1:7: urdf: ",
+                   "other.urdf: is not among the recorded files", "a readable file"},
         BrokenText{"urdf: robot.urdf\n", "", "robot.yaml:1:1: urdf: ", "is missing", "text"},
         BrokenText{"tip: tool", "tip: tol",
                    "robot.yaml:2:6: tip: ", "'tol' is no link of robot.urdf", "'tool'"},
