@@ -26,7 +26,8 @@ namespace {
 
 constexpr std::size_t kHeapBytes = std::size_t{1} << 20;
 constexpr int kPriority = 70;  // below the daemon's loop
-/// Events are handled up to this much late, to wake up less often.
+/// Events are handled up to this much late, to wake up less often: at (k + 1/2) of it, since a
+/// daemon on the same CPU wakes up at whole ones (PeriodicTimer), and no robot makes it late.
 constexpr std::int64_t kGrid_ns = 100'000;
 constexpr std::int64_t kLongestWait_ns = 1'000'000'000;
 
@@ -104,7 +105,7 @@ class PlantPump {
   }
 
   void run(const sigset_t& signals_while_waiting) {
-    start_ns_ = now_ns();
+    start_ns_ = (now_ns() - kGrid_ns / 2) / kGrid_ns * kGrid_ns + kGrid_ns / 2;
     while (is_stopping == 0) {
       pump();
       wait(signals_while_waiting);

@@ -13,7 +13,9 @@ using Kind = Trouble::Kind;
 
 constexpr std::uint32_t kSyncId = 0x80;
 constexpr double kFirstMove_periods = 0.25;
-constexpr double kMoveAfterSync_periods = 0.8;
+// After the first SYNC: behind those of later cycles, which setpoints precede on the bus, and early
+// enough that the module's frames do not end as the daemon reads, where chance picks the sample.
+constexpr double kMoveAfterSync_periods = 0.5;
 constexpr std::int64_t kLongSilence_periods = 100;
 
 /// The module on the bus has 24 bits, and filters only if nobody behind it does.

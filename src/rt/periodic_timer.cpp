@@ -15,6 +15,12 @@ std::int64_t now_ns() noexcept {
   return now.tv_sec * kSecond_ns + now.tv_nsec;
 }
 
+PeriodicTimer::PeriodicTimer(std::int64_t period_ns) : schedule_(0, period_ns) {
+  const std::int64_t half_ns = period_ns / 2;
+  const std::int64_t whole_periods = (now_ns() - half_ns) / period_ns + 2;
+  schedule_ = PeriodicSchedule(whole_periods * period_ns + half_ns, period_ns);
+}
+
 Wake PeriodicTimer::wait() noexcept {
   const std::int64_t due_ns = schedule_.due_ns();
   const timespec due{due_ns / kSecond_ns, due_ns % kSecond_ns};

@@ -35,6 +35,24 @@ TEST(PeriodicTimer, neverWakesEarlyAndKeepsItsPhase) {
   }
 }
 
+TEST(PeriodicTimer, wakesHalfAPeriodOffWholeOnes) {
+  for (const std::int64_t period_ns : {1, 2, 3, 1001, 100'000, 333'333, 1'000'000}) {
+    const std::int64_t before_ns = now_ns();
+    PeriodicTimer timer(period_ns);
+    const std::int64_t after_ns = now_ns();
+    const Wake first = timer.wait();
+    const std::int64_t due_ns = first.t_ns - first.skipped * period_ns;
+    EXPECT_EQ(due_ns % period_ns, period_ns / 2);
+    EXPECT_GT(due_ns, before_ns + period_ns);
+    EXPECT_LE(due_ns, after_ns + 2 * period_ns);
+  }
+}
+
+TEST(PeriodicTimer, refusesAPeriodThatIsNone) {
+  EXPECT_THROW(PeriodicTimer(0), std::invalid_argument);
+  EXPECT_THROW(PeriodicTimer(-1), std::invalid_argument);
+}
+
 TEST(PeriodicTimer, skipsWhatALoopThatFellAsleepHasMissed) {
   constexpr std::int64_t kPeriod_ns = 100'000;
   PeriodicTimer timer(kPeriod_ns);

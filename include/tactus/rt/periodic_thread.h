@@ -48,7 +48,7 @@ class PeriodicThread {
   /// What the machine did not grant to the thread.
   const std::vector<Refusal>& refusals() const noexcept { return refusals_; }
 
-  void start() noexcept;  ///< the first cycle is due a period later
+  void start() noexcept;  ///< the first cycle is due in one to two periods
   void join() noexcept;   ///< a thread that was not started ends without a cycle
 
   /// Of the thread from the end of its set-up to its last cycle; valid after join().

@@ -7,11 +7,14 @@ namespace tactus {
 /// CLOCK_MONOTONIC, through the vDSO: no system call where the clock source allows it.
 std::int64_t now_ns() noexcept;
 
-/// Sleeps to the absolute times of a PeriodicSchedule whose first cycle is due a period from now.
+/// Sleeps to the absolute times of a PeriodicSchedule: at (k + 1/2) periods of CLOCK_MONOTONIC. On
+/// whole ones the kernel's tick and other programs' timers expire, and a wake-up that shares its
+/// instant with theirs is a few us late; so each start has the same phase, and not chance's.
 class PeriodicTimer {
  public:
-  /// Throws std::invalid_argument unless period_ns > 0.
-  explicit PeriodicTimer(std::int64_t period_ns) : schedule_(now_ns() + period_ns, period_ns) {}
+  /// The first cycle is due in one to two periods. Throws std::invalid_argument unless
+  /// period_ns > 0.
+  explicit PeriodicTimer(std::int64_t period_ns);
 
   /// Returns when the next cycle is due, at once if it is already.
   Wake wait() noexcept;
