@@ -8,8 +8,8 @@ namespace tactus {
 std::int64_t now_ns() noexcept;
 
 /// Sleeps to the absolute times of a PeriodicSchedule: at (k + 1/2) periods of CLOCK_MONOTONIC. On
-/// whole ones the kernel's tick and other programs' timers expire, and a wake-up that shares its
-/// instant with theirs is a few us late; so each start has the same phase, and not chance's.
+/// whole ones other programs' timers tend to expire, in newer kernels the tick as well, and a
+/// wake-up that shares its instant with theirs is a few us late. So each start has one phase.
 class PeriodicTimer {
  public:
   /// The first cycle is due in one to two periods. Throws std::invalid_argument unless
