@@ -1,10 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <random>
+#include <sstream>
 
+#include "support/command_run.h"
 #include "support/telemetry.h"
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/csv_export.h"
@@ -36,12 +37,8 @@ struct Export {
 };
 
 int run(const std::vector<std::string>& arguments) {
-  CLI::App app;
-  int exit_code = -1;
-  addExportCommand(app, exit_code);
-  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
-  app.parse(reversed);
-  return exit_code;
+  std::string output;
+  return test::runCommand(addExportCommand, arguments, output);
 }
 
 TEST(Export, EveryNumberReadsBackToTheBit) {

@@ -16,6 +16,7 @@ TEST_P(BrokenScene, EndsAsOneLine) {
   test::expectError(test::loadError(files.sources()), GetParam());
 }
 
+const std::string kLongWord(5000, 'a');
 const std::string kDeepList = std::string(10000, '[') + std::string(10000, ']');
 
 INSTANTIATE_TEST_SUITE_P(
@@ -241,11 +242,11 @@ INSTANTIATE_TEST_SUITE_P(
                    "at most 16 levels"},
         BrokenText{"null_task", "\"a\\nb\\x1b[31m\"",
                    "scene.yaml:11:12: controller.variant: ", "'a\\x0ab\\x1b[31m'", "one of none"},
-        BrokenText{"null_task", std::string(5000, 'a'),
-                   "scene.yaml:11:12: controller.variant: ", "aaa...'", "one of none"},
+        BrokenText{"null_task", kLongWord, "scene.yaml:11:12: controller.variant: ", "aaa...'",
+                   "one of none"},
         BrokenText{"drift_gain_per_s", "\"drift\\ngain\"",
                    "scene.yaml:5:3: task.drift\\x0again: ", "unknown key", "drift_gain_per_s"},
-        BrokenText{"[x, y]", std::string("[x, \0y]", 7),
+        BrokenText{"[x, y]", std::string_view("[x, \0y]", 7),
                    "scene.yaml:4:19: -: ", "byte 0x00 is no text", "UTF-8"},
         BrokenText{"[x, y]", "[x, \xff]", "scene.yaml:4:19: -: ", "byte 0xff is no text", "UTF-8"},
         BrokenText{"[x, y]", "[x, \xc0\xaf]", "scene.yaml:4:19: -: ", "byte 0xc0 is no text",
@@ -351,15 +352,16 @@ TEST(BrokenSceneFile, NoFiles) {
 }
 
 struct BrokenOverride {
-  std::string key, value, place, problem, expectation;
+  std::string_view key, value, place, problem, expectation;
 };
 
 class BrokenSetting : public testing::TestWithParam<BrokenOverride> {};
 
 TEST_P(BrokenSetting, EndsAsOneLine) {
   const BrokenOverride& p = GetParam();
-  test::expectError(test::loadError(SceneFiles{}.sources(), {{p.key, p.value}}),
-                    {p.key, p.value, p.place, p.problem, p.expectation});
+  test::expectError(
+      test::loadError(SceneFiles{}.sources(), {{std::string(p.key), std::string(p.value)}}),
+      {p.key, p.value, p.place, p.problem, p.expectation});
 }
 
 INSTANTIATE_TEST_SUITE_P(

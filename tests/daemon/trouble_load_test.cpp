@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "support/hardware_files.h"
@@ -61,7 +62,7 @@ TEST(TroubleLoad, KeepsTheOrder) {
 TEST(TroubleLoad, HasNoneUnlessGiven) { EXPECT_TRUE(hardwareFiles().load().troubles.empty()); }
 
 struct BrokenTrouble {
-  std::string text, place, problem, expectation;
+  std::string_view text, place, problem, expectation;
 };
 
 void PrintTo(const BrokenTrouble& broken, std::ostream* stream) { *stream << broken.text; }
@@ -70,9 +71,9 @@ class BrokenTroubles : public testing::TestWithParam<BrokenTrouble> {};
 
 TEST_P(BrokenTroubles, EndsAsOneLine) {
   const BrokenTrouble& broken = GetParam();
-  test::expectError(test::loadError(withTrouble(broken.text).sources()),
-                    {"", broken.text, "scene.yaml:23:" + broken.place + ": ", broken.problem,
-                     broken.expectation});
+  const std::string place = fmt::format("scene.yaml:23:{}: ", broken.place);
+  test::expectError(test::loadError(withTrouble(std::string(broken.text)).sources()),
+                    {"", broken.text, place, broken.problem, broken.expectation});
 }
 
 INSTANTIATE_TEST_SUITE_P(

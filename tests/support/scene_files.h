@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tactus/daemon/input_error.h"
@@ -89,7 +90,7 @@ inline const std::string kUrdfText = R"(<robot name="three">
 )";
 
 /// `text` with the only occurrence of `from` replaced.
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+inline std::string replaced(std::string text, std::string_view from, std::string_view to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   EXPECT_EQ(text.find(from, at + 1), std::string::npos) << "ambiguous: " << from;
@@ -118,12 +119,13 @@ inline std::string loadError(const std::vector<SourceFile>& sources,
   return "";
 }
 
-/// One way to break a text, and the error it has to end as.
+/// One way to break a text, and the error it has to end as. Views, for a list of many strings takes
+/// seconds to compile.
 struct BrokenText {
-  std::string from, to;     ///< in the file
-  std::string place;        ///< `file:line:col: key: `
-  std::string problem;      ///< in what follows, before the expectation
-  std::string expectation;  ///< behind ", expected "
+  std::string_view from, to;     ///< in the file
+  std::string_view place;        ///< `file:line:col: key: `
+  std::string_view problem;      ///< in what follows, before the expectation
+  std::string_view expectation;  ///< behind ", expected "
 };
 
 inline void PrintTo(const BrokenText& broken, std::ostream* stream) {
@@ -131,7 +133,7 @@ inline void PrintTo(const BrokenText& broken, std::ostream* stream) {
 }
 
 inline void expectError(const std::string& error, const BrokenText& broken) {
-  SCOPED_TRACE(broken.from + " -> " + broken.to.substr(0, 200));
+  SCOPED_TRACE(testing::PrintToString(broken));
   ASSERT_NE(error, "") << "loaded without an error";
   EXPECT_EQ(error.substr(0, broken.place.size()), broken.place) << error;
   const std::size_t comma = error.rfind(", expected ");

@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 sys.dont_write_bytecode = True
 
-from tactus_report import comparison, figures, page  # noqa: E402
+from tactus_report import comparison, figures, page, runs  # noqa: E402
 
 FAKE_TACTUS = ROOT / "tests/tools/fake_tactus"
 
@@ -210,6 +210,13 @@ class Incomplete(Report):
 
 
 class Malformed(Report):
+    def refuse_to_load(self, expected):
+        """What refuse() prints; without a program for each of many cases."""
+        with self.assertRaises(runs.InputError) as refusal:
+            runs.load_runs([self.runs], FAKE_TACTUS)
+        self.assertIn(expected, str(refusal.exception))
+        self.assertEqual(len(str(refusal.exception).splitlines()), 1)
+
     def test_no_folder(self):
         self.refuse(f"{self.runs}: no such folder, expected what `tactus simulate -o` wrote")
 
@@ -238,7 +245,8 @@ class Malformed(Report):
             for text in texts:
                 with self.subTest(text=text[:60]):
                     (run / "summary.json").write_text(text)
-                    self.refuse(expected)
+                    self.refuse_to_load(expected)
+        self.refuse(expected)
 
     def test_logs(self):
         broken = {
@@ -251,7 +259,7 @@ class Malformed(Report):
         for expected, text in broken.items():
             with self.subTest(expected):
                 write_run(self.runs, "scenario1_none", text)
-                self.refuse(expected)
+                self.refuse_to_load(expected)
                 shutil.rmtree(self.runs)
 
     def test_binary_log(self):

@@ -1,5 +1,5 @@
-# CAN sockets and GPIO lines one by one, on what the kernel offers of them.
-. "$ROOT/guest/common.sh"
+# CAN sockets and GPIO lines one by one, on what the kernel offers of them; and that first.
+. "$ROOT/guest/smoke.sh"
 
 # With echo a frame is confirmed by its driver, and not if that never gets it.
 rmmod vcan
