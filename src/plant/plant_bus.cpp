@@ -65,7 +65,8 @@ PlantBus::PlantBus(double bit_rate_per_s, int nodes)
 
 bool PlantBus::send(int node, const CanFrame& frame, std::int64_t t_ns) noexcept {
   if (node != kOtherSide && !is_powered_) return false;
-  if (queues_[node].push({frame, t_ns})) return true;
+  const bool is_off = node == kOtherSide && is_other_side_off_;
+  if (!is_off && queues_[node].push({frame, t_ns})) return true;
   ++refused_;
   return false;
 }
@@ -90,11 +91,9 @@ void PlantBus::setOtherSideOff(bool is_off, std::int64_t t_ns) noexcept {
   if (is_off == is_other_side_off_) return;
   is_other_side_off_ = is_off;
   next_report_ns_ = t_ns;
-  if (!is_off) {
-    free_from_ns_ = std::max(free_from_ns_, t_ns);
-  } else if (phase_ != Phase::kIdle && sender_ == kOtherSide) {
-    becomeIdle(t_ns);
-  }
+  if (!is_off) return;
+  queues_[kOtherSide].clear();
+  if (phase_ != Phase::kIdle && sender_ == kOtherSide) becomeIdle(t_ns);
 }
 
 std::int64_t PlantBus::nextEvent_ns() const noexcept {
@@ -123,22 +122,17 @@ std::optional<BusDelivery> PlantBus::report(std::int64_t t_ns) noexcept {
   return BusDelivery{kController, {is_other_side_off_ ? busOffError() : busRestartedError(), t_ns}};
 }
 
-bool PlantBus::mayStart(int node) const noexcept {
-  if (queues_[node].empty()) return false;
-  return node != kOtherSide || !is_other_side_off_;
-}
-
 std::int64_t PlantBus::nextStart_ns() const noexcept {
   std::int64_t first_ns = kNever_ns;
-  for (int node = 0; node < static_cast<int>(queues_.size()); ++node)
-    if (mayStart(node)) first_ns = std::min(first_ns, queues_[node].front().sent_ns);
+  for (const FrameQueue& queue : queues_)
+    if (!queue.empty()) first_ns = std::min(first_ns, queue.front().sent_ns);
   return first_ns == kNever_ns ? kNever_ns : std::max(first_ns, free_from_ns_);
 }
 
 void PlantBus::start(std::int64_t t_ns) noexcept {
   sender_ = kController;
   for (int node = 0; node < static_cast<int>(queues_.size()); ++node) {
-    if (!mayStart(node) || queues_[node].front().sent_ns > t_ns) continue;
+    if (queues_[node].empty() || queues_[node].front().sent_ns > t_ns) continue;
     if (sender_ == kController ||
         arbitration(queues_[node].front().frame) < arbitration(queues_[sender_].front().frame))
       sender_ = node;

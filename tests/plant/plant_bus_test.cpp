@@ -226,6 +226,7 @@ TEST(PlantBus, InBusOffOnlyTheOthersTalk) {
   int from_node = 0;
   int reports = 0;
   for (const Seen& seen : runUntil(bus, 50'000'000)) {
+    EXPECT_NE(seen.delivery.sender, PlantBus::kOtherSide);
     if (seen.delivery.sender == 1) ++from_node;
     if (seen.delivery.sender != PlantBus::kController) continue;
     EXPECT_EQ(seen.delivery.item.frame.id, 0x40u);  // CAN_ERR_BUSOFF
@@ -235,12 +236,28 @@ TEST(PlantBus, InBusOffOnlyTheOthersTalk) {
   EXPECT_EQ(from_node, 1);
   EXPECT_GE(reports, 1);
   EXPECT_LE(reports, 50);
+  EXPECT_FALSE(bus.send(0, canFrame(0x202, {2}), 49'000'000));
+  EXPECT_EQ(bus.refused(), 1u);
   bus.setOtherSideOff(false, 50'000'000);
+  bus.send(0, canFrame(0x203, {3}), 51'000'000);
   const auto seen = runUntil(bus, 60'000'000);
-  ASSERT_EQ(seen.size(), 2u);
+  ASSERT_EQ(seen.size(), 2u) << "what it had, and what it wanted to send meanwhile, is gone";
   EXPECT_EQ(seen[0].delivery.item.frame.id, 0x100u);  // CAN_ERR_RESTARTED
-  EXPECT_EQ(seen[1].delivery.item.frame.id, 0x201u);
-  EXPECT_EQ(seen[1].end_ns, 50'000'000 + 65'000);
+  EXPECT_EQ(seen[1].delivery.item.frame.id, 0x203u);
+  EXPECT_EQ(seen[1].end_ns, 51'000'000 + 65'000);
+}
+
+TEST(PlantBus, BusOffEmptiesTheWholeQueueAlsoWithoutPower) {
+  PlantBus bus(kMegabit_per_s, 2);
+  bus.setPowered(false, 0);
+  for (int i = 0; i < 16; ++i) bus.send(0, canFrame(0x201, {i}), 1000);
+  runUntil(bus, 10'000'000);
+  bus.setOtherSideOff(true, 10'000'000);
+  EXPECT_EQ(bus.waiting(PlantBus::kOtherSide), 0u);
+  bus.setPowered(true, 11'000'000);
+  bus.setOtherSideOff(false, 12'000'000);
+  for (const Seen& seen : runUntil(bus, 100'000'000))
+    EXPECT_EQ(seen.delivery.item.frame.kind, FrameKind::kError);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace tactus {
 /// What a test asks of the plant after a run.
 struct PlantCounters {
   std::uint64_t stale_setpoints_applied = 0;  ///< older than two periods when the drive took them
-  std::uint64_t frames_refused = 0;           ///< by a full transmit queue
+  std::uint64_t frames_refused = 0;           ///< by a full transmit queue, or in bus-off
   std::uint64_t frames_not_taken = 0;         ///< lost because take() came too late
 };
 

@@ -60,14 +60,16 @@ class PlantBus {
   /// nodes: with the other side, which is node 0.
   PlantBus(double bit_rate_per_s, int nodes);
 
-  /// False: the queue is full, which is counted, or the node has no power.
+  /// False: the queue is full or the other side is in bus-off, which is counted, or the node has no
+  /// power.
   bool send(int node, const CanFrame& frame, std::int64_t t_ns) noexcept;
 
   /// Without power no node of the plant sends, hears or acknowledges: the other side's frame stays
   /// where it is and is tried again and again.
   void setPowered(bool is_powered, std::int64_t t_ns) noexcept;
-  /// Bus-off: nothing of the other side gets out, it waits; and it hears no more than that, again
-  /// and again, as an interface in that state refuses frames again and again.
+  /// Bus-off: controller and kernel drop what the other side has to send, and refuse what it hands
+  /// over meanwhile. It hears of no more than that, again and again, as an interface in that state
+  /// refuses frames again and again.
   void setOtherSideOff(bool is_off, std::int64_t t_ns) noexcept;
 
   bool isPowered() const noexcept { return is_powered_; }
@@ -83,7 +85,6 @@ class PlantBus {
  private:
   enum class Phase : std::uint8_t { kIdle, kSending, kUnacknowledged };
 
-  bool mayStart(int node) const noexcept;
   std::int64_t nextStart_ns() const noexcept;
   void start(std::int64_t t_ns) noexcept;
   std::optional<BusDelivery> report(std::int64_t t_ns) noexcept;

@@ -12,7 +12,7 @@ struct Trouble {
     kReorder,     ///< pairs of frames of the bus swap
     kCorrupt,     ///< bits of the id's frames flip (beyond what the CRC of CAN would catch)
     kDuplicate,   ///< frames of the id come twice
-    kBusOff,      ///< the other side's controller leaves the bus
+    kBusOff,      ///< the other side's controller leaves the bus and drops its frames
     kPowerCut,    ///< all nodes of the bus lose power; frames are not acknowledged
     kDriveFault,  ///< the drive with this node id reports a fault and stops by itself
     kEmergencyStop,
