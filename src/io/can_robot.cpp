@@ -34,7 +34,7 @@ CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
     has_drives_[drive.bus] = true;
   }
   if (!hardware.tactile) return;
-  tactile_.emplace(*hardware.tactile);
+  tactile_.emplace(*hardware.tactile, period_s);
   tactile_bus_ = hardware.tactile->bus;
 }
 
@@ -51,6 +51,7 @@ void CanRobot::read(RobotInput& input) noexcept {
   input.q_measured.resize(static_cast<int>(drives_.size()));
   for (std::size_t i = 0; i < drives_.size(); ++i)
     input.q_measured[static_cast<int>(i)] = drives_[i].report().position;
+  if (tactile_) tactile_->tick();
   if (tactile_) input.tactile = tactile_->sample();
 }
 

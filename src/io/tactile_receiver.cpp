@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tactus/io/cycle_count.h"
+
 namespace tactus {
 namespace {
 
@@ -23,7 +25,9 @@ bool isAtRail(int counts) noexcept { return counts >= kRail || counts <= -kRail;
 
 }  // namespace
 
-TactileReceiver::TactileReceiver(const CanTactileConfig& config) : config_(config) {
+TactileReceiver::TactileReceiver(const CanTactileConfig& config, double period_s)
+    : config_(config),
+      max_silent_cycles_(cyclesLasting(kMaxSilentSamples * config.sample_period_s, period_s)) {
   if (config.filter_cutoff_hz)
     fresh_filter_.emplace(*config.filter_cutoff_hz, 1.0 / config.sample_period_s);
   filters_.fill(fresh_filter_);
@@ -36,10 +40,23 @@ void TactileReceiver::receive(const CanFrame& frame) noexcept {
     ++counters_.malformed;
     return;
   }
+  silent_cycles_ = 0;
   if (isNew(frame.data[0]))
     add(static_cast<int>(index), frame);
   else
     ++counters_.repeated;
+}
+
+void TactileReceiver::tick() noexcept {
+  if (silent_cycles_ == max_silent_cycles_) return;
+  if (++silent_cycles_ == max_silent_cycles_) forgetNumbers();
+}
+
+/// Nor may frames from before the silence complete a sample after it.
+void TactileReceiver::forgetNumbers() noexcept {
+  has_finished_ = false;
+  if (assembly_.arrived != 0) ++counters_.incomplete;
+  assembly_.arrived = 0;
 }
 
 bool TactileReceiver::isNew(std::uint8_t sequence) const noexcept {

@@ -16,6 +16,8 @@ using tactus::TactileReceiver;
 
 /// Input: one byte of options, then thirteen bytes a frame.
 constexpr std::size_t kBytesPerFrame = 13;
+/// The cycle's period: one without frames is a silence that makes the receiver forget numbers.
+constexpr double kSilence_s = 1.0;
 
 void require(bool holds) {
   if (!holds) std::abort();
@@ -61,10 +63,11 @@ void check(const TactileReceiver& receiver, std::uint64_t frames) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  TactileReceiver receiver(configOf(data[0]));
+  TactileReceiver receiver(configOf(data[0]), kSilence_s);
   std::uint64_t frames = 0;
   for (std::size_t at = 1; at + kBytesPerFrame <= size; at += kBytesPerFrame) {
     if (data[at] == 0xFF) receiver.startTare();
+    if (data[at] == 0xFE) receiver.tick();
     const auto samples = receiver.counters().samples;
     receiver.receive(frameOf(data + at));
     check(receiver, ++frames);

@@ -9,11 +9,13 @@
 
 #include "io/tactile_frames.h"
 #include "support/allocation_guard.h"
+#include "support/period.h"
 
 namespace tactus {
 namespace {
 
 using test::Counts;
+using test::kPeriod_s;
 using test::tactileConfig;
 using test::TactileFrames;
 using test::tactileFrames;
@@ -26,7 +28,7 @@ void receive(TactileReceiver& receiver, const Frames& frames) {
 }
 
 TEST(TactileReceiver, TurnsFourFramesIntoTheWrenchOfTheCalibration) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   EXPECT_EQ(receiver.sample().sequence, 0u);
   receive(receiver, tactileFrames(0, kTouch));
   const TactileSample& sample = receiver.sample();
@@ -39,7 +41,7 @@ TEST(TactileReceiver, TurnsFourFramesIntoTheWrenchOfTheCalibration) {
 }
 
 TEST(TactileReceiver, DecodesAFrameWrittenByHand) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   TactileFrames frames = tactileFrames(9, Counts{});
   // 0x123456 = 1193046 counts, and 0xFFFFFE = -2
   frames[0].data = {9, 0, 0x56, 0x34, 0x12, 0xFE, 0xFF, 0xFF};
@@ -54,7 +56,7 @@ TEST(TactileReceiver, DecodesEveryLevelOfEveryChannel) {
   for (int channel = 0; channel < 8; ++channel) {
     config.calibration.setZero();
     config.calibration(2, channel) = 1.0;
-    TactileReceiver receiver(config);
+    TactileReceiver receiver(config, kPeriod_s);
     for (int i = 0; i < 20000; ++i) {
       Counts counts{};
       for (std::int32_t& count : counts)
@@ -68,7 +70,7 @@ TEST(TactileReceiver, DecodesEveryLevelOfEveryChannel) {
 
 TEST(TactileReceiver, TakesTheFramesOfASampleInAnyOrder) {
   std::array<int, 4> order = {0, 1, 2, 3};
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   std::uint32_t count = 0;
   do {
     const TactileFrames frames = tactileFrames(static_cast<int>(count), kTouch);
@@ -83,7 +85,7 @@ TEST(TactileReceiver, TakesTheFramesOfASampleInAnyOrder) {
 
 TEST(TactileReceiver, DropsASampleThatLacksAFrameAndTakesTheNext) {
   for (int missing = 0; missing < 4; ++missing) {
-    TactileReceiver receiver(tactileConfig());
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
     const TactileFrames frames = tactileFrames(5, kTouch);
     for (int k = 0; k < 4; ++k)
       if (k != missing) receiver.receive(frames[k]);
@@ -95,7 +97,7 @@ TEST(TactileReceiver, DropsASampleThatLacksAFrameAndTakesTheNext) {
 }
 
 TEST(TactileReceiver, NeverMixesTwoSequenceNumbers) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   const TactileFrames first = tactileFrames(1, kTouch);
   const TactileFrames second = tactileFrames(2, Counts{});
   receive(receiver, std::vector{first[0], first[1], second[2], second[3]});
@@ -107,7 +109,7 @@ TEST(TactileReceiver, NeverMixesTwoSequenceNumbers) {
 }
 
 TEST(TactileReceiver, IgnoresAFrameThatComesTwice) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   const TactileFrames frames = tactileFrames(1, kTouch);
   receive(receiver, std::vector{frames[0], frames[0], frames[1], frames[2], frames[3], frames[3]});
   EXPECT_EQ(receiver.counters().samples, 1u);
@@ -116,7 +118,7 @@ TEST(TactileReceiver, IgnoresAFrameThatComesTwice) {
 }
 
 TEST(TactileReceiver, DropsASampleOneFrameOfWhichComesInTwoVersions) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   const TactileFrames frames = tactileFrames(1, kTouch);
   CanFrame other = frames[0];
   other.data[4] ^= 1;
@@ -130,7 +132,7 @@ TEST(TactileReceiver, DropsASampleOneFrameOfWhichComesInTwoVersions) {
 }
 
 TEST(TactileReceiver, DropsFramesOfWrongSizeOrKindButIgnoresOthersIds) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   const TactileFrames frames = tactileFrames(1, kTouch);
   for (int size = 0; size < 256; ++size) {
     if (size == 8) continue;
@@ -159,7 +161,7 @@ TEST(TactileReceiver, DropsFramesOfWrongSizeOrKindButIgnoresOthersIds) {
 }
 
 TEST(TactileReceiver, FollowsTheSequenceAroundItsEndAndOverGaps) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   int sequence = 250;
   for (std::uint32_t i = 1; i <= 1000; ++i) {
     receive(receiver, tactileFrames(sequence % 256, kTouch));
@@ -169,7 +171,7 @@ TEST(TactileReceiver, FollowsTheSequenceAroundItsEndAndOverGaps) {
 }
 
 TEST(TactileReceiver, AStuckOrReplayedModuleGivesNoSamples) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   for (int sequence = 0; sequence < 200; ++sequence)
     receive(receiver, tactileFrames(sequence, kTouch));
   for (int age = 0; age < 128; ++age) receive(receiver, tactileFrames(199 - age, Counts{}));
@@ -180,7 +182,7 @@ TEST(TactileReceiver, AStuckOrReplayedModuleGivesNoSamples) {
 
 TEST(TactileReceiver, HearsAModuleThatStartsAnewAfterAtMost129Samples) {
   for (int last = 0; last < 256; ++last) {
-    TactileReceiver receiver(tactileConfig());
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
     receive(receiver, tactileFrames(last, kTouch));
     int sequence = 0;
     for (; sequence <= 129 && receiver.sample().sequence == 1; ++sequence)
@@ -190,8 +192,103 @@ TEST(TactileReceiver, HearsAModuleThatStartsAnewAfterAtMost129Samples) {
   }
 }
 
+/// Cycles in which nothing comes of the module.
+void waitSilently(TactileReceiver& receiver, int cycles) {
+  for (int i = 0; i < cycles; ++i) receiver.tick();
+}
+
+constexpr int kCyclesPerSample = 4;
+constexpr int kLongSilence = 128 * kCyclesPerSample;
+
+TEST(TactileReceiver, TakesAnyNumberAfterALongSilence) {
+  for (int next = 0; next < 256; ++next) {
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
+    receive(receiver, tactileFrames(77, kTouch));
+    waitSilently(receiver, kLongSilence);
+    receive(receiver, tactileFrames(next, Counts{}));
+    ASSERT_EQ(receiver.sample().sequence, 2u) << next;
+    EXPECT_EQ(receiver.sample().force_y_N, 0.0);
+    receive(receiver, tactileFrames(next, kTouch));
+    EXPECT_EQ(receiver.sample().sequence, 2u) << "and goes by its number again";
+    receive(receiver, tactileFrames(next + 1, kTouch));
+    EXPECT_EQ(receiver.sample().sequence, 3u);
+  }
+}
+
+TEST(TactileReceiver, GoesByTheNumbersAfterAShortSilence) {
+  for (int ahead = 0; ahead < 256; ++ahead) {
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
+    receive(receiver, tactileFrames(77, kTouch));
+    waitSilently(receiver, 100 * kCyclesPerSample);
+    receive(receiver, tactileFrames(77 + ahead, kTouch));
+    EXPECT_EQ(receiver.sample().sequence, ahead >= 1 && ahead <= 127 ? 2u : 1u) << ahead;
+  }
+}
+
+/// A module that counts on while nobody hears it, its clock 1 % off, the frames early or late in a
+/// cycle: the first sample after any silence counts.
+TEST(TactileReceiver, LosesNoSampleAfterASilenceOfAnyLength) {
+  for (const double sample_cycles : {3.96, 4.0, 4.04}) {
+    for (int silent = 1; silent <= 600; ++silent) {
+      for (const double phase : {0.02, 0.5, 0.98}) {
+        TactileReceiver receiver(tactileConfig(), kPeriod_s);
+        receive(receiver, tactileFrames(200, kTouch));
+        const int cycles = static_cast<int>(phase + sample_cycles * silent);
+        waitSilently(receiver, cycles);
+        receive(receiver, tactileFrames(200 + silent, kTouch));
+        ASSERT_EQ(receiver.sample().sequence, 2u) << silent << " " << phase;
+      }
+    }
+  }
+}
+
+TEST(TactileReceiver, AModuleThatRepeatsItselfForLongStaysIgnored) {
+  for (const int number : {77, 76, 77 - 128}) {
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
+    receive(receiver, tactileFrames(77, kTouch));
+    for (int i = 0; i < 1000; ++i) {
+      waitSilently(receiver, kCyclesPerSample);
+      receiver.receive(tactileFrames(number, Counts{})[i % 4]);
+    }
+    EXPECT_EQ(receiver.sample().sequence, 1u);
+    waitSilently(receiver, 100 * kCyclesPerSample);
+    receive(receiver, tactileFrames(number, Counts{}));
+    EXPECT_EQ(receiver.sample().sequence, 1u) << "its frames have broken the silence";
+  }
+}
+
+TEST(TactileReceiver, FramesThatTellNoNumberBreakNoSilence) {
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
+  receive(receiver, tactileFrames(77, kTouch));
+  CanFrame cut_off = tactileFrames(78, kTouch)[0];
+  cut_off.size = 7;
+  CanFrame foreign = tactileFrames(78, kTouch)[0];
+  foreign.id = 0x104;
+  for (int i = 0; i < kLongSilence; ++i) {
+    receiver.receive(i % 2 == 0 ? cut_off : foreign);
+    receiver.tick();
+  }
+  receive(receiver, tactileFrames(77, kTouch));
+  EXPECT_EQ(receiver.sample().sequence, 2u);
+}
+
+TEST(TactileReceiver, NeverMixesFramesOfBeforeAndAfterALongSilence) {
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
+  const TactileFrames before = tactileFrames(77, kTouch);
+  const TactileFrames after = tactileFrames(77, Counts{});
+  receive(receiver, std::vector{before[0], before[1]});
+  waitSilently(receiver, kLongSilence);
+  EXPECT_EQ(receiver.counters().incomplete, 1u);
+  receive(receiver, std::vector{after[2], after[3]});
+  EXPECT_EQ(receiver.sample().sequence, 0u);
+  receive(receiver, std::vector{after[0], after[1]});
+  EXPECT_EQ(receiver.sample().sequence, 1u);
+  EXPECT_EQ(receiver.sample().force_y_N, 0.0);
+  EXPECT_EQ(receiver.counters().incomplete, 1u);
+}
+
 TEST(TactileReceiver, ALateFrameOfAnOldSampleDoesNoHarm) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   const TactileFrames old = tactileFrames(1, Counts{});
   receive(receiver, old);
   const TactileFrames frames = tactileFrames(2, kTouch);
@@ -204,7 +301,7 @@ TEST(TactileReceiver, ALateFrameOfAnOldSampleDoesNoHarm) {
 TEST(TactileReceiver, ACorruptedSequenceNumberCostsOneSample) {
   for (int wrong = 0; wrong < 256; ++wrong) {
     if (wrong == 11) continue;
-    TactileReceiver receiver(tactileConfig());
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
     receive(receiver, tactileFrames(10, kTouch));
     TactileFrames frames = tactileFrames(11, kTouch);
     frames[2].data[0] = static_cast<std::uint8_t>(wrong);
@@ -235,7 +332,7 @@ TEST(TactileReceiver, NamesTheFaultOfTheNewestSample) {
       {0x02, 8388607, Fault::kTactileCableBreak},
   };
   for (std::size_t place = 0; place < 8; ++place) {
-    TactileReceiver receiver(tactileConfig());
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
     int sequence = 0;
     for (const auto& row : kRows) {
       Counts counts{};
@@ -254,7 +351,7 @@ TEST(TactileReceiver, NamesTheFaultOfTheNewestSample) {
 Counts forceY(double force_N) { return {static_cast<std::int32_t>(std::lround(1000 * force_N))}; }
 
 TEST(TactileReceiver, TaresToTheMeanOfTheSamplesAtRest) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   EXPECT_EQ(receiver.tareState(), TareState::kNone);
   receiver.startTare();
   for (int i = 0; i < 50; ++i) {
@@ -276,7 +373,7 @@ TareState tare(TactileReceiver& receiver, int& sequence, const std::vector<Count
 }
 
 TEST(TactileReceiver, RefusesToTareInContactWhileUnsteadyOrFaulty) {
-  TactileReceiver receiver(tactileConfig());
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
   int sequence = 0;
   const std::vector<Counts> rest(50, forceY(0.5));
   ASSERT_EQ(tare(receiver, sequence, rest), TareState::kDone);
@@ -308,8 +405,8 @@ TEST(TactileReceiver, RefusesToTareInContactWhileUnsteadyOrFaulty) {
 TEST(TactileReceiver, FiltersEachComponentAtTheModulesRate) {
   CanTactileConfig config = tactileConfig();
   config.filter_cutoff_hz = 15.0;
-  TactileReceiver filtered(config);
-  TactileReceiver raw(tactileConfig());
+  TactileReceiver filtered(config, kPeriod_s);
+  TactileReceiver raw(tactileConfig(), kPeriod_s);
   std::vector<ButterworthLowPass> filters(4, ButterworthLowPass(15.0, 250.0));
   std::mt19937 random(5);
   for (int i = 0; i < 1000; ++i) {
@@ -324,13 +421,13 @@ TEST(TactileReceiver, FiltersEachComponentAtTheModulesRate) {
     EXPECT_EQ(sample.moment_z_Nm, filters[3].update(raw.sample().moment_z_Nm));
   }
   config.filter_cutoff_hz = 125.0;
-  EXPECT_THROW(TactileReceiver{config}, std::invalid_argument);
+  EXPECT_THROW(TactileReceiver(config, kPeriod_s), std::invalid_argument);
 }
 
 TEST(TactileReceiver, TheOffsetDoesNotRingInTheFilterAfterATare) {
   CanTactileConfig config = tactileConfig();
   config.filter_cutoff_hz = 15.0;
-  TactileReceiver receiver(config);
+  TactileReceiver receiver(config, kPeriod_s);
   int sequence = 0;
   ASSERT_EQ(tare(receiver, sequence, std::vector<Counts>(50, forceY(1.9))), TareState::kDone);
   for (int i = 0; i < 50; ++i) {
@@ -372,7 +469,7 @@ CanFrame randomFrame(std::mt19937& random, int& sequence) {
 TEST(TactileReceiver, KeepsItsPromisesUnderRandomFrames) {
   CanTactileConfig config = tactileConfig();
   config.filter_cutoff_hz = 40.0;
-  TactileReceiver receiver(config);
+  TactileReceiver receiver(config, kPeriod_s);
   std::mt19937 random(13);
   int sequence = 0;
   std::uint64_t frames = 0;
@@ -383,6 +480,7 @@ TEST(TactileReceiver, KeepsItsPromisesUnderRandomFrames) {
       const test::AllocationGuard guard;
       receiver.receive(frame);
       if (frames % 997 == 0) receiver.startTare();
+      if (frames % 99'991 < 2 * kLongSilence) receiver.tick();
     }
     const TactileSample& sample = receiver.sample();
     ASSERT_LE(sample.sequence - before, 1u);

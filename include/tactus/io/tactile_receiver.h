@@ -22,23 +22,30 @@ struct TactileCounters {
 };
 
 /// Assembles samples of the tactile module from its four frames, calibrates, tares and, where the
-/// module does not, filters them. Knows no socket and no clock.
+/// module does not, filters them. Knows no socket and no clock: time is counted in cycles.
 ///
 /// A sample is four frames of one sequence number, in any order; a frame of another new number
 /// begins another sample. A number is new if it is 1 to 127 after the last sample's, modulo 256,
 /// and others are ignored: a module that is stuck or replayed gives no samples, and one that
-/// started anew is heard again after at most 129. A frame that comes twice is ignored if it says
-/// the same, and spoils its sample if not.
+/// started anew is heard again after at most 129. Once nothing has come for kMaxSilentSamples
+/// sample periods, numbers tell nothing any more, and any is new. A frame that comes twice is
+/// ignored if it says the same, and spoils its sample if not.
 ///
 /// Status bit 0 and a channel at its rail (+-(2^23 - 1), -2^23) are saturation. Bit 1 is a broken
 /// cable; so is any bit that this code does not know, as the module then says what nobody heeds.
 class TactileReceiver {
  public:
-  /// Throws std::invalid_argument if the filter's cut-off is not below half the sample rate.
-  explicit TactileReceiver(const CanTactileConfig& config);
+  /// Less than the 128 that make a number look old, as clocks differ.
+  static constexpr int kMaxSilentSamples = 120;
+
+  /// period_s: of the cycle. Throws std::invalid_argument if the filter's cut-off is not below half
+  /// the sample rate.
+  TactileReceiver(const CanTactileConfig& config, double period_s);
 
   /// A data frame of the module's bus; ids that are not its own are ignored.
   void receive(const CanFrame& frame) noexcept;
+  /// Once a cycle, after all frames.
+  void tick() noexcept;
 
   /// Starts averaging the offset anew; until it is done the old one holds. Never in contact: |F|
   /// without offset above tare_max_offset_N, F wandering by more than tare_max_spread_N (the
@@ -71,6 +78,7 @@ class TactileReceiver {
   void begin(std::uint8_t sequence) noexcept;
   bool isNew(std::uint8_t sequence) const noexcept;
   void finish() noexcept;
+  void forgetNumbers() noexcept;
   void publish(const Wrench& raw) noexcept;
   void average(const Wrench& raw) noexcept;
   void endTare() noexcept;
@@ -82,6 +90,8 @@ class TactileReceiver {
   Assembly assembly_;
   bool has_finished_ = false;
   std::uint8_t finished_sequence_ = 0;
+  int max_silent_cycles_;
+  int silent_cycles_ = 0;  ///< without a frame that has a number, up to that
 
   Wrench offset_ = Wrench::Zero();
   TareState tare_state_ = TareState::kNone;
