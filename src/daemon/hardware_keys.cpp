@@ -30,8 +30,8 @@ std::vector<KeySpec> canopenKeys() {
                                "of daemon and drives, whole milliseconds",
                                [](Draft& d) -> double& { return d.canopen.heartbeat_period_s; })),
       defaulted("0.06", number("heartbeat_timeout_s", "s", within(0.001, kMaxHeartbeat_s),
-                               "silence after which the other side is taken for dead, whole "
-                               "milliseconds",
+                               "silence after which the other side is taken for dead, and a drive "
+                               "with object 1400:05 misses its setpoints, whole milliseconds",
                                [](Draft& d) -> double& { return d.canopen.heartbeat_timeout_s; })),
       defaulted("0.1", number("sdo_timeout_s", "s", within(0.001, 10),
                               "for a drive to answer while it is configured",

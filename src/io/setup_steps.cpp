@@ -29,6 +29,11 @@ SetupStep ifThere(SetupStep step) {
   return step;
 }
 
+SetupStep ifWritable(SetupStep step) {
+  step.may_be_read_only = true;
+  return ifThere(step);
+}
+
 std::uint32_t milliseconds(double duration_s, const char* key) {
   const double ms = std::round(duration_s * 1e3);
   if (ms >= 1.0 && ms <= 65535.0) return static_cast<std::uint32_t>(ms);
@@ -74,6 +79,9 @@ SetupSteps setupSteps(const DriveConfig& drive, const CanopenConfig& canopen, do
       write(0x1600, 2, 4, 0x60FF0020),
       write(0x1600, 0, 1, 2),
       write(0x1400, 2, 1, kEverySync),
+      // Deadline of setpoints (CiA 301, 7.5.2.35, event timer): SYNC and heartbeat may still come
+      // when they do not.
+      ifWritable(write(0x1400, 5, 2, timeout_ms)),
       stopPdo(0x1800),
       write(0x1A00, 0, 1, 0),
       write(0x1A00, 1, 4, 0x60410010),

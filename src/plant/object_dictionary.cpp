@@ -28,9 +28,10 @@ constexpr auto kObjects = std::to_array<ObjectDescription>({
     {0x1018, 2, 4, kRo, kNever, 1},            // product
     {0x1018, 3, 4, kRo, kNever, 0x0001'0000},  // revision
     {0x1018, 4, 4, kRo, kNever, 1},            // serial number
-    {0x1400, 0, 1, kRo, kNever, 2},            // RPDO 1
+    {0x1400, 0, 1, kRo, kNever, 5},            // RPDO 1
     {0x1400, 1, 4, kRw, kNever, 0x200},        // COB-id
     {0x1400, 2, 1, kRw, kNever, 255},          // transmission type
+    {0x1400, 5, 2, kRw, kNever, 0},            // event timer: its deadline, ms; 0: none
     {0x1600, 0, 1, kRw, kNever, 1},            // its mapping
     {0x1600, 1, 4, kRw, kNever, 0x6040'0010},  //
     {0x1600, 2, 4, kRw, kNever, 0},            //

@@ -32,6 +32,7 @@ AbortCode checkCobId(const ObjectDictionary& objects, std::uint16_t index, std::
 AbortCode checkCommunication(const ObjectDictionary& objects, const ObjectDescription& object,
                              std::uint32_t value) {
   if (object.subindex == 1) return checkCobId(objects, object.index, value);
+  if (object.subindex == 5) return AbortCode::kNone;
   return allowed(value <= 240 || value >= 254, AbortCode::kValueRange);  // transmission type
 }
 

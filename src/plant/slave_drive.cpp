@@ -14,6 +14,7 @@ constexpr std::uint16_t kOverCurrent = 0x2310;
 constexpr std::uint16_t kCommunication = 0x8100;
 constexpr std::uint16_t kHeartbeatLost = 0x8130;
 constexpr std::uint16_t kPdoTooShort = 0x8210;
+constexpr std::uint16_t kRpdoLost = 0x8250;
 constexpr std::uint16_t kSyncLost = 0x8700;
 
 constexpr std::uint32_t kNoStatus = 0xFFFF'FFFF;
@@ -78,11 +79,13 @@ void SlaveDrive::update(std::int64_t t_ns) noexcept {
     if (nmt_ == NodeState::kOperational) enter(NodeState::kPreOperational);  // default of 1029
   }
   if (t_ns >= syncDeadline_ns()) fail(kSyncLost);
+  if (t_ns >= rpdoDeadline_ns()) fail(kRpdoLost);
   sendTpdoOnChange();
 }
 
 std::int64_t SlaveDrive::nextEvent_ns() const noexcept {
-  return std::min({boot_end_ns_, next_heartbeat_ns_, master_deadline_ns_, syncDeadline_ns()});
+  return std::min({boot_end_ns_, next_heartbeat_ns_, master_deadline_ns_, syncDeadline_ns(),
+                   rpdoDeadline_ns()});
 }
 
 void SlaveDrive::move(double dt_s) noexcept {
@@ -162,6 +165,7 @@ void SlaveDrive::onRpdo(const QueuedFrame& item, std::int64_t t_ns) noexcept {
     sendEmergency(kPdoTooShort);
     return;
   }
+  last_rpdo_ns_ = t_ns;
   const bool is_synchronous = objects_.get(0x1400, 2) <= 240;
   if (!is_synchronous) {
     applyRpdo(item, t_ns);
@@ -194,8 +198,9 @@ void SlaveDrive::obey(std::int64_t t_ns) noexcept {
     objects_.set(0x1001, 0, 0);
     sendEmergency(0);
   }
-  if (axis_.state() == PowerState::kOperationEnabled && before != axis_.state())
-    last_sync_ns_ = std::max(last_sync_ns_, t_ns);
+  if (axis_.state() != PowerState::kOperationEnabled || before == axis_.state()) return;
+  last_sync_ns_ = std::max(last_sync_ns_, t_ns);
+  last_rpdo_ns_ = std::max(last_rpdo_ns_, t_ns);
 }
 
 void SlaveDrive::fail(std::uint16_t error_code) noexcept {
@@ -221,6 +226,12 @@ std::int64_t SlaveDrive::syncDeadline_ns() const noexcept {
   double sync_period_ns = 1e9 * objects_.get(0x60C2, 1);
   for (int power = objects_.getSigned(0x60C2, 2); power < 0; ++power) sync_period_ns /= 10.0;
   return last_sync_ns_ + std::llround(kMaxMissingSyncs * sync_period_ns);
+}
+
+std::int64_t SlaveDrive::rpdoDeadline_ns() const noexcept {
+  const std::uint32_t timer_ms = objects_.get(0x1400, 5);
+  if (axis_.state() != PowerState::kOperationEnabled || timer_ms == 0) return kNever_ns;
+  return last_rpdo_ns_ + timer_ms * kMillisecond_ns;
 }
 
 void SlaveDrive::sendTpdoAtSync() noexcept {

@@ -21,30 +21,16 @@ TEST(DriveSetup, WritesTheObjectsOfTheStandardsInOrder) {
   DriveRig rig;
   rig.configure();
   ASSERT_TRUE(rig.report().is_configured);
-  const Writes expected = {{{0x6040, 0}, 0x0002},
-                           {{0x1400, 1}, 0x80000205},
-                           {{0x1600, 0}, 0},
-                           {{0x1600, 1}, 0x60400010},
-                           {{0x1600, 2}, 0x60FF0020},
-                           {{0x1600, 0}, 2},
-                           {{0x1400, 2}, 1},
-                           {{0x1800, 1}, 0x80000185},
-                           {{0x1A00, 0}, 0},
-                           {{0x1A00, 1}, 0x60410010},
-                           {{0x1A00, 2}, 0x60640020},
-                           {{0x1A00, 0}, 2},
-                           {{0x1800, 2}, 1},
-                           {{0x1801, 1}, 0x80000285},
-                           {{0x1400, 1}, 0x00000205},
-                           {{0x1800, 1}, 0x40000185},
-                           {{0x6060, 0}, 9},
-                           {{0x60C2, 1}, 1},
-                           {{0x60C2, 2}, 0xFD},
-                           {{0x605A, 0}, 2},
-                           {{0x605E, 0}, 2},
-                           {{0x6007, 0}, 3},
-                           {{0x1016, 1}, 127u << 16 | 60},
-                           {{0x1017, 0}, 20}};
+  const Writes expected = {
+      {{0x6040, 0}, 0x0002},     {{0x1400, 1}, 0x80000205}, {{0x1600, 0}, 0},
+      {{0x1600, 1}, 0x60400010}, {{0x1600, 2}, 0x60FF0020}, {{0x1600, 0}, 2},
+      {{0x1400, 2}, 1},          {{0x1400, 5}, 60},         {{0x1800, 1}, 0x80000185},
+      {{0x1A00, 0}, 0},          {{0x1A00, 1}, 0x60410010}, {{0x1A00, 2}, 0x60640020},
+      {{0x1A00, 0}, 2},          {{0x1800, 2}, 1},          {{0x1801, 1}, 0x80000285},
+      {{0x1400, 1}, 0x00000205}, {{0x1800, 1}, 0x40000185}, {{0x6060, 0}, 9},
+      {{0x60C2, 1}, 1},          {{0x60C2, 2}, 0xFD},       {{0x605A, 0}, 2},
+      {{0x605E, 0}, 2},          {{0x6007, 0}, 3},          {{0x1016, 1}, 127u << 16 | 60},
+      {{0x1017, 0}, 20}};
   EXPECT_EQ(rig.slave.writes, expected);
   EXPECT_EQ(rig.slave.nmt, 5);
   EXPECT_EQ(rig.slave.aborts_heard, 0);
@@ -73,7 +59,7 @@ TEST(DriveSetup, LeavesAPdoThatIsOffAsItIs) {
   EXPECT_TRUE(rig.report().is_configured);
   EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1801, 1})], 0xC0000285u);
   EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1400, 1})], 0x205u);
-  EXPECT_EQ(rig.slave.writes.size(), 22u);
+  EXPECT_EQ(rig.slave.writes.size(), 23u);
 }
 
 class DriveSetupStep : public testing::TestWithParam<SetupStep> {
@@ -117,6 +103,19 @@ TEST_P(DriveSetupStep, MissingIsAcceptedOnlyWhereItMayBe) {
   }
 }
 
+TEST_P(DriveSetupStep, ReadOnlyIsAcceptedOnlyWhereItMayBe) {
+  for (std::uint32_t code : {0x06010000u, 0x06010002u}) {
+    DriveRig rig;
+    rig.slave.refused[entry()] = code;
+    if (!GetParam().may_be_read_only) {
+      expectRefused(rig, code);
+    } else {
+      rig.configure();
+      EXPECT_TRUE(rig.report().is_configured);
+    }
+  }
+}
+
 TEST_P(DriveSetupStep, UnansweredEndsTheSetUp) {
   CanopenConfig canopen;
   const bool may_be_booting = GetParam().entry.index == 0x1000;
@@ -139,7 +138,7 @@ TEST_P(DriveSetupStep, BeginsAnewAfterABootUpThere) {
   rig.slave.powerUp();
   rig.slave.writes.clear();
   rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
-  EXPECT_EQ(rig.slave.writes.size(), 24u) << "all of it";
+  EXPECT_EQ(rig.slave.writes.size(), 25u) << "all of it";
   EXPECT_EQ(rig.report().fault, Fault::kNone);
 }
 
@@ -245,7 +244,7 @@ TEST(DriveSetup, BeginsAnewAfterABootUpAtTheEnd) {
   rig.slave.powerUp();
   rig.slave.writes.clear();
   rig.cycles(150, DriveGoal::kConfigure);
-  EXPECT_EQ(rig.slave.writes.size(), 24u);
+  EXPECT_EQ(rig.slave.writes.size(), 25u);
   EXPECT_FALSE(rig.report().is_configured) << "its feedback was that of before";
   rig.slave.sends_feedback = true;
   rig.cycles(2, DriveGoal::kConfigure);

@@ -40,5 +40,24 @@ TEST(SetupSteps, AreRefusedWhereDrivesCannotBeTold) {
   }
 }
 
+/// Where a drive watches them, setpoints may stay away no longer than the heartbeat.
+TEST(SetupSteps, GiveSetpointsADeadlineBeforeTheyAreValid) {
+  CanopenConfig canopen;
+  canopen.heartbeat_timeout_s = 0.123;
+  int found = 0;
+  bool is_valid = true;
+  for (const SetupStep& step : setupSteps({}, canopen, 0.001)) {
+    const bool is_id = step.entry.index == 0x1400 && step.entry.subindex == 1;
+    if (is_id) is_valid = step.kind == SetupStep::Kind::kWrite;
+    if (step.entry.index != 0x1400 || step.entry.subindex != 5) continue;
+    ++found;
+    EXPECT_FALSE(is_valid);
+    EXPECT_EQ(step.value, 123u);
+    EXPECT_EQ(step.entry.size, 2);
+    EXPECT_TRUE(step.is_optional && step.may_be_read_only);
+  }
+  EXPECT_EQ(found, 1);
+}
+
 }  // namespace
 }  // namespace tactus

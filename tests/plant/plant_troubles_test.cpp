@@ -71,6 +71,19 @@ TEST_F(PlantInTrouble, DroppedSyncsMakeTheDrivesStop) {
   EXPECT_EQ(plant_->drive(0).velocity(), 0.0);
 }
 
+TEST_F(PlantInTrouble, DroppedSetpointsMakeTheirDriveStop) {
+  startWith({trouble(Kind::kDrop, 0, 0x202)});
+  runUntil(0.11);
+  master_->setVelocity(1, 0.0);
+  runUntil(0.155);
+  EXPECT_TRUE(isEnabled(1));
+  EXPECT_NEAR(plant_->drive(1).velocity(), 0.05, 1e-6) << "goes on";
+  runUntil(0.17);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(isEnabled(i), i != 1) << i;
+  EXPECT_EQ(plant_->drive(1).objects().get(0x603F), 0x8250u);
+  EXPECT_EQ(plant_->drive(1).velocity(), 0.0);
+}
+
 TEST_F(PlantInTrouble, DelayedSetpointsAreCountedAsStale) {
   startWith({trouble(Kind::kDelay, 0, 0x201, 0.01)});
   runUntil(0.15);

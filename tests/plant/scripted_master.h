@@ -158,6 +158,7 @@ class ScriptedMaster {
       write(drive, communication, 1, static_cast<std::uint32_t>(id), 4);
     };
     map(0x1400, 0x1600, 0x200 + node, 0x6040'0010, 0x60FF'0020);
+    write(drive, 0x1400, 5, 60, 2);
     map(0x1800, 0x1A00, 0x180 + node, 0x6041'0010, 0x6064'0020);
     write(drive, 0x1016, 1, 0x007F'003C, 4);
     write(drive, 0x1017, 0, 20, 2);

@@ -116,6 +116,18 @@ TEST_F(SdoServer, MapsPdosInTheOrderOfTheStandard) {
   EXPECT_EQ(read(0x1400, 1), 0x201u);
 }
 
+TEST_F(SdoServer, HasAnEventTimerForTheReceivePdoOnly) {
+  EXPECT_EQ(read(0x1400, 0), 5u);
+  EXPECT_EQ(read(0x1400, 5), 0u);
+  for (const std::uint32_t ms : {60U, 250U, 65535U, 0U}) {
+    EXPECT_EQ(write(0x1400, 5, ms, 2), 0u);
+    EXPECT_EQ(read(0x1400, 5), ms);
+  }
+  EXPECT_EQ(write(0x1400, 5, 60, 4), 0x0607'0012u);
+  for (const int subindex : {3, 4, 6}) EXPECT_EQ(write(0x1400, subindex, 1, 1), 0x0609'0011u);
+  EXPECT_EQ(write(0x1800, 5, 60, 2), 0x0609'0011u);
+}
+
 TEST_F(SdoServer, RefusesMappingsInAnyOtherOrder) {
   EXPECT_EQ(write(0x1600, 0, 0, 1), 0x0800'0022u) << "the PDO is valid";
   EXPECT_EQ(write(0x1600, 1, 0x60FF'0020, 4), 0x0800'0022u);

@@ -143,8 +143,10 @@ TEST_F(DriveOfNode5, ObeysNmtForItselfAndForAll) {
 TEST_F(DriveOfNode5, ResetsGiveBackTheFactoryMapping) {
   configure();
   write(0x6085, 0, 777, 4);
+  write(0x1400, 5, 60, 2);
   hear(canFrame(0, {130, 5}));
   wait(60);
+  EXPECT_EQ(drive_.objects().get(0x1400, 5), 0u);
   EXPECT_EQ(drive_.objects().get(0x1600), 1u);
   EXPECT_EQ(drive_.objects().get(0x1400, 1), 0x205u);
   EXPECT_EQ(drive_.objects().get(0x6085), 777u) << "the device profile stays";
@@ -355,6 +357,65 @@ TEST_F(DriveOfNode5, MissesSync) {
   EXPECT_EQ(number(*lastSaid(0x85), 0, 2), 0x8700u);
   EXPECT_EQ(drive_.nmtState(), NodeState::kOperational);
   EXPECT_EQ(drive_.powerState(), PowerState::kFaultReactionActive);
+}
+
+TEST_F(DriveOfNode5, MissesSetpointsWhileSyncAndHeartbeatGoOn) {
+  configure();
+  write(0x1400, 5, 20, 2);
+  enable();
+  for (int i = 0; i < 100; ++i) cycle(0x0F, 500);
+  ASSERT_EQ(drive_.powerState(), PowerState::kOperationEnabled);
+  hear(canFrame(0x205, {0x0F, 0, 0, 0}));  // too short: the drive has got none
+  said_.clear();
+  for (int i = 0; i < 18; ++i) {
+    hear(canFrame(0x80, {}));
+    wait(1);
+  }
+  EXPECT_EQ(timesSaid(0x85), 0);
+  EXPECT_EQ(drive_.velocity(), -0.5);
+  hear(canFrame(0x80, {}));
+  wait(1);
+  ASSERT_EQ(timesSaid(0x85), 1);
+  EXPECT_EQ(number(*lastSaid(0x85), 0, 2), 0x8250u);
+  EXPECT_EQ(drive_.objects().get(0x603F), 0x8250u);
+  EXPECT_EQ(drive_.powerState(), PowerState::kFaultReactionActive);
+  EXPECT_EQ(drive_.nmtState(), NodeState::kOperational);
+  for (int i = 0; i < 50; ++i) drive_.move(0.001);
+  EXPECT_EQ(drive_.velocity(), 0.0);
+}
+
+TEST_F(DriveOfNode5, HasNoDeadlineForSetpointsUnlessItIsToldOne) {
+  configure();
+  write(0x1400, 5, 20, 2);
+  for (int i = 0; i < 100; ++i) {
+    hear(canFrame(0x80, {}));
+    wait(1);
+  }
+  EXPECT_EQ(timesSaid(0x85), 0) << "it is disabled";
+  enable();
+  write(0x1400, 5, 0, 2);
+  for (int i = 0; i < 100; ++i) {
+    hear(canFrame(0x80, {}));
+    wait(1);
+  }
+  EXPECT_EQ(timesSaid(0x85), 0);
+  EXPECT_EQ(drive_.powerState(), PowerState::kOperationEnabled);
+}
+
+TEST_F(DriveOfNode5, EnabledBySdoItWaitsForSetpointsAsLongAsAnyOther) {
+  configure();
+  wait(1000);
+  write(0x1400, 5, 20, 2);
+  for (const std::uint32_t word : {0x06U, 0x07U, 0x0FU}) write(0x6040, 0, word, 2);
+  const auto stays = [&](int ms) {
+    for (int i = 0; i < ms; ++i) {
+      hear(canFrame(0x80, {}));
+      wait(1);
+    }
+    return drive_.powerState() == PowerState::kOperationEnabled;
+  };
+  EXPECT_TRUE(stays(19));
+  EXPECT_FALSE(stays(1));
 }
 
 TEST_F(DriveOfNode5, IsNoFaultToBeDisabledWithoutSync) {

@@ -39,10 +39,11 @@ struct SetupStep {
   ObjectEntry entry;
   std::uint32_t value = 0;
   std::uint32_t mask = 0xFFFFFFFF;
-  bool is_optional = false;  ///< drives may be without this entry
+  bool is_optional = false;       ///< drives may be without this entry
+  bool may_be_read_only = false;  ///< drives may have it without letting it be written
 };
 
-inline constexpr int kSetupStepCount = 28;
+inline constexpr int kSetupStepCount = 29;
 using SetupSteps = std::array<SetupStep, kSetupStepCount>;
 
 /// The steps in their order. Throws std::invalid_argument with one line if the drive could not be

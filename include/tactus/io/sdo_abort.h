@@ -9,6 +9,8 @@ namespace tactus {
 namespace sdo_abort {
 inline constexpr std::uint32_t kTimedOut = 0x05040000;
 inline constexpr std::uint32_t kCommandUnknown = 0x05040001;
+inline constexpr std::uint32_t kAccessUnsupported = 0x06010000;
+inline constexpr std::uint32_t kReadOnly = 0x06010002;
 inline constexpr std::uint32_t kObjectMissing = 0x06020000;
 inline constexpr std::uint32_t kLengthMismatch = 0x06070010;
 inline constexpr std::uint32_t kTooLong = 0x06070012;

@@ -20,8 +20,8 @@ enum class NodeState : std::uint8_t {
 };
 
 /// A velocity drive as a CANopen slave (CiA 301). It stops by itself, with a fault, when the
-/// master's heartbeat or SYNC stays away, or when it is taken out of operational while enabled.
-/// Times in ns since the plant was switched on.
+/// master's heartbeat or SYNC stays away, or RPDOs for longer than 1400:05 says, or when it is taken
+/// out of operational while enabled. Times in ns since the plant was switched on.
 class SlaveDrive {
  public:
   static constexpr std::int64_t kBootTime_ns = 50'000'000;
@@ -68,6 +68,7 @@ class SlaveDrive {
   std::int64_t masterTimeout_ns() const noexcept;
   std::int64_t heartbeatPeriod_ns() const noexcept;
   std::int64_t syncDeadline_ns() const noexcept;
+  std::int64_t rpdoDeadline_ns() const noexcept;
   void sendTpdoAtSync() noexcept;
   void sendTpdoOnChange() noexcept;
   void sendTpdo() noexcept;
@@ -89,6 +90,7 @@ class SlaveDrive {
   std::int64_t next_heartbeat_ns_ = kNever_ns;
   std::int64_t master_deadline_ns_ = kNever_ns;  ///< armed by the master's first heartbeat
   std::int64_t last_sync_ns_ = 0;                ///< or when operation was enabled, if later
+  std::int64_t last_rpdo_ns_ = 0;                ///< likewise
   std::uint64_t stale_setpoints_ = 0;
 };
 

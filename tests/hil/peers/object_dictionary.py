@@ -70,7 +70,8 @@ def _group(group, index, members):
 
 
 def _process_data_object(number, is_receive, node_id):
-    """Communication and mapping record; all are valid at power-on and sent or taken at any time."""
+    """Communication and mapping record; all are valid at power-on and sent or taken at any time.
+    RPDOs have no event timer, as drives may be without it."""
     communication, mapping = (0x1400, 0x1600) if is_receive else (0x1800, 0x1A00)
     cob_id = (0x200 if is_receive else 0x180) + 0x100 * number + node_id
     word = 0x60400010 if is_receive else 0x60410010
