@@ -45,8 +45,15 @@ std::vector<KeySpec> obstacleKeys() {
 }
 
 std::vector<KeySpec> troubleKeys() {
-  KeySpec kind = value(ValueType::kChoice, "kind", "", "what happens",
-                       [](Draft& d) -> std::string& { return trouble(d).kind; });
+  KeySpec kind = value(
+      ValueType::kChoice, "kind", "",
+      "what happens. To frames: drop, delay, reorder, corrupt, duplicate. To a bus: bus_off, "
+      "power_cut. To a drive: drive_fault; ignore_commands, it obeys neither control words nor "
+      "setpoints and keeps its last velocity; freeze_feedback, it sends the status and "
+      "position of the beginning; nonsense_status, its status word is not in CiA 402; boot_up, "
+      "it sends one boot-up message and runs on; heartbeat_only, neither missing SYNC nor "
+      "missing setpoints stop it. To the line: emergency_stop",
+      [](Draft& d) -> std::string& { return trouble(d).kind; });
   kind.choices = troubleNames();
   return {
       kind,
@@ -67,9 +74,20 @@ std::vector<KeySpec> troubleKeys() {
 }  // namespace
 
 const std::vector<std::string>& troubleNames() {
-  static const std::vector<std::string> names = {"drop",      "delay",       "reorder",
-                                                 "corrupt",   "duplicate",   "bus_off",
-                                                 "power_cut", "drive_fault", "emergency_stop"};
+  static const std::vector<std::string> names = {"drop",
+                                                 "delay",
+                                                 "reorder",
+                                                 "corrupt",
+                                                 "duplicate",
+                                                 "bus_off",
+                                                 "power_cut",
+                                                 "drive_fault",
+                                                 "ignore_commands",
+                                                 "freeze_feedback",
+                                                 "nonsense_status",
+                                                 "boot_up",
+                                                 "heartbeat_only",
+                                                 "emergency_stop"};
   return names;
 }
 

@@ -31,10 +31,18 @@ struct Loading {
   }
 };
 
+/// Of one drive, or of all drives of a bus.
+bool isOfDrive(TroubleKind kind) {
+  constexpr std::array kKinds = {TroubleKind::kDriveFault,     TroubleKind::kIgnoreCommands,
+                                 TroubleKind::kFreezeFeedback, TroubleKind::kNonsenseStatus,
+                                 TroubleKind::kBootUp,         TroubleKind::kHeartbeatOnly};
+  return std::ranges::count(kKinds, kind) > 0;
+}
+
 bool hasId(TroubleKind kind) {
   constexpr std::array kKinds = {TroubleKind::kDrop, TroubleKind::kDelay, TroubleKind::kCorrupt,
-                                 TroubleKind::kDuplicate, TroubleKind::kDriveFault};
-  return std::ranges::count(kKinds, kind) > 0;
+                                 TroubleKind::kDuplicate};
+  return isOfDrive(kind) || std::ranges::count(kKinds, kind) > 0;
 }
 
 int findBus(const Loading& l) {
@@ -81,7 +89,7 @@ Trouble loadTrouble(const Loading& l) {
     return trouble;
   }
   trouble.bus = findBus(l);
-  if (trouble.kind == TroubleKind::kDriveFault) checkNodeId(l, trouble);
+  if (isOfDrive(trouble.kind)) checkNodeId(l, trouble);
   return trouble;
 }
 

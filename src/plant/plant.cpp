@@ -107,10 +107,22 @@ void Plant::step(std::int64_t t_ns) noexcept {
 void Plant::applyTroubles(std::int64_t t_ns) noexcept {
   for (int bus = 0; bus < buses(); ++bus) applyBusTroubles(bus, t_ns);
   for (Node& node : drives_) {
-    node.drive.setFailing(script_.isActive(Kind::kDriveFault, node.bus, node.id, t_ns));
+    node.drive.setTroubles(troublesOf(node, t_ns));
     collect(node, t_ns);
   }
   next_trouble_ns_ = script_.nextChange_ns(t_ns);
+}
+
+DriveTroubles Plant::troublesOf(const Node& node, std::int64_t t_ns) const noexcept {
+  const auto has = [&](Kind kind) { return script_.isActive(kind, node.bus, node.id, t_ns); };
+  DriveTroubles troubles;
+  troubles.is_failing = has(Kind::kDriveFault);
+  troubles.ignores_commands = has(Kind::kIgnoreCommands);
+  troubles.freezes_feedback = has(Kind::kFreezeFeedback);
+  troubles.tells_nonsense = has(Kind::kNonsenseStatus);
+  troubles.claims_boot_up = has(Kind::kBootUp);
+  troubles.watches_heartbeat_only = has(Kind::kHeartbeatOnly);
+  return troubles;
 }
 
 void Plant::applyBusTroubles(int bus, std::int64_t t_ns) noexcept {

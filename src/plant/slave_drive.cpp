@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tactus/plant/sdo_server.h"
 #include "tactus/plant/slave_pdo.h"
@@ -16,6 +17,10 @@ constexpr std::uint16_t kHeartbeatLost = 0x8130;
 constexpr std::uint16_t kPdoTooShort = 0x8210;
 constexpr std::uint16_t kRpdoLost = 0x8250;
 constexpr std::uint16_t kSyncLost = 0x8700;
+
+// Of the status word: the bits that tell the state (CiA 402), and what no state looks like.
+constexpr std::uint32_t kStateBits = 0x6F;
+constexpr std::uint32_t kNoState = 0x67;
 
 constexpr std::uint32_t kNoStatus = 0xFFFF'FFFF;
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
@@ -47,9 +52,14 @@ void SlaveDrive::setPowered(bool is_on, std::int64_t t_ns) noexcept {
   boot_end_ns_ = next_heartbeat_ns_ = master_deadline_ns_ = kNever_ns;
 }
 
-void SlaveDrive::setFailing(bool is_failing) noexcept {
-  is_failing_ = is_failing;
-  if (is_failing) fail(kOverCurrent);
+void SlaveDrive::setTroubles(const DriveTroubles& troubles) noexcept {
+  const DriveTroubles before = std::exchange(troubles_, troubles);
+  if (troubles.freezes_feedback && !before.freezes_feedback) {
+    frozen_status_ = objects_.get(0x6041);
+    frozen_position_ = objects_.get(0x6064);
+  }
+  if (troubles.claims_boot_up && !before.claims_boot_up && isConnected()) sendNmtState(0);
+  if (troubles.is_failing) fail(kOverCurrent);
   sendTpdoOnChange();
 }
 
@@ -143,7 +153,7 @@ void SlaveDrive::finishBoot() noexcept {
   sendNmtState(0);
   enter(NodeState::kPreOperational);
   if (axis_.state() == PowerState::kNotReadyToSwitchOn) axis_.setPowered(true, objects_);
-  if (is_failing_) fail(kOverCurrent);
+  if (troubles_.is_failing) fail(kOverCurrent);
 }
 
 void SlaveDrive::onSdo(const CanFrame& frame, std::int64_t t_ns) noexcept {
@@ -184,6 +194,7 @@ void SlaveDrive::onSync(std::int64_t t_ns) noexcept {
 }
 
 void SlaveDrive::applyRpdo(const QueuedFrame& item, std::int64_t t_ns) noexcept {
+  if (troubles_.ignores_commands) return;
   unpackRpdo(item.frame, objects_);
   obey(t_ns);
   const bool is_stale = t_ns - item.sent_ns > max_setpoint_age_ns_;
@@ -191,8 +202,9 @@ void SlaveDrive::applyRpdo(const QueuedFrame& item, std::int64_t t_ns) noexcept 
 }
 
 void SlaveDrive::obey(std::int64_t t_ns) noexcept {
+  if (troubles_.ignores_commands) return;
   const PowerState before = axis_.state();
-  const bool was_reset = axis_.obey(objects_, !is_failing_);
+  const bool was_reset = axis_.obey(objects_, !troubles_.is_failing);
   if (was_reset) {
     objects_.set(0x603F, 0, 0);
     objects_.set(0x1001, 0, 0);
@@ -221,8 +233,12 @@ std::int64_t SlaveDrive::heartbeatPeriod_ns() const noexcept {
   return objects_.get(0x1017) * kMillisecond_ns;
 }
 
+bool SlaveDrive::watchesMotion() const noexcept {
+  return axis_.state() == PowerState::kOperationEnabled && !troubles_.watches_heartbeat_only;
+}
+
 std::int64_t SlaveDrive::syncDeadline_ns() const noexcept {
-  if (axis_.state() != PowerState::kOperationEnabled) return kNever_ns;
+  if (!watchesMotion()) return kNever_ns;
   double sync_period_ns = 1e9 * objects_.get(0x60C2, 1);
   for (int power = objects_.getSigned(0x60C2, 2); power < 0; ++power) sync_period_ns /= 10.0;
   return last_sync_ns_ + std::llround(kMaxMissingSyncs * sync_period_ns);
@@ -230,7 +246,7 @@ std::int64_t SlaveDrive::syncDeadline_ns() const noexcept {
 
 std::int64_t SlaveDrive::rpdoDeadline_ns() const noexcept {
   const std::uint32_t timer_ms = objects_.get(0x1400, 5);
-  if (axis_.state() != PowerState::kOperationEnabled || timer_ms == 0) return kNever_ns;
+  if (!watchesMotion() || timer_ms == 0) return kNever_ns;
   return last_rpdo_ns_ + timer_ms * kMillisecond_ns;
 }
 
@@ -254,8 +270,20 @@ void SlaveDrive::sendTpdo() noexcept {
   const auto id = pdoId(objects_, kTransmitPdo);
   if (!id) return;
   CanFrame frame = frameOf(*id, 0);
-  packTpdo(objects_, frame);
+  packFeedback(frame);
   outbox_.push(frame);
+}
+
+/// The truth, unless the drive is in trouble.
+void SlaveDrive::packFeedback(CanFrame& frame) const noexcept {
+  if (!troubles_.freezes_feedback && !troubles_.tells_nonsense) return packTpdo(objects_, frame);
+  ObjectDictionary told = objects_;
+  if (troubles_.freezes_feedback) {
+    told.set(0x6041, 0, frozen_status_);
+    told.set(0x6064, 0, frozen_position_);
+  }
+  if (troubles_.tells_nonsense) told.set(0x6041, 0, (told.get(0x6041) & ~kStateBits) | kNoState);
+  packTpdo(told, frame);
 }
 
 void SlaveDrive::sendEmergency(std::uint16_t error_code) noexcept {

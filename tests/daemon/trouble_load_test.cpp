@@ -45,6 +45,11 @@ TEST(TroubleLoad, SpellsEveryKind) {
   EXPECT_EQ(load("kind: bus_off" + bus).kind, Kind::kBusOff);
   EXPECT_EQ(load("kind: power_cut" + bus).kind, Kind::kPowerCut);
   EXPECT_EQ(load("kind: drive_fault, id: 2" + bus).kind, Kind::kDriveFault);
+  EXPECT_EQ(load("kind: ignore_commands, id: 2" + bus).kind, Kind::kIgnoreCommands);
+  EXPECT_EQ(load("kind: freeze_feedback, id: 2" + bus).kind, Kind::kFreezeFeedback);
+  EXPECT_EQ(load("kind: nonsense_status, id: 2" + bus).kind, Kind::kNonsenseStatus);
+  EXPECT_EQ(load("kind: boot_up, id: 2" + bus).kind, Kind::kBootUp);
+  EXPECT_EQ(load("kind: heartbeat_only, id: 2" + bus).kind, Kind::kHeartbeatOnly);
   EXPECT_EQ(load("kind: emergency_stop" + time).kind, Kind::kEmergencyStop);
   EXPECT_EQ(static_cast<std::size_t>(Kind::kEmergencyStop) + 1, troubleNames().size());
 }
@@ -103,6 +108,23 @@ INSTANTIATE_TEST_SUITE_P(
                       "no such key"},
         BrokenTrouble{"kind: drive_fault, from_s: 1, until_s: 2, interface: can0, id: 3",
                       "71: simulation.troubles[0].id", "3 is no drive of 'can0'",
+                      "the node id of a drive"},
+        BrokenTrouble{"kind: ignore_commands, from_s: 1, until_s: 2, interface: can0, id: 3",
+                      "75: simulation.troubles[0].id", "3 is no drive of 'can0'",
+                      "the node id of a drive"},
+        BrokenTrouble{"kind: freeze_feedback, from_s: 1, until_s: 2, interface: can0, id: 3",
+                      "75: simulation.troubles[0].id", "3 is no drive of 'can0'",
+                      "the node id of a drive"},
+        BrokenTrouble{"kind: nonsense_status, from_s: 1, until_s: 2, interface: can0, id: 3",
+                      "75: simulation.troubles[0].id", "3 is no drive of 'can0'",
+                      "the node id of a drive"},
+        BrokenTrouble{"kind: boot_up, from_s: 1, until_s: 2, interface: can0, id: 3",
+                      "67: simulation.troubles[0].id", "3 is no drive of 'can0'",
+                      "the node id of a drive"},
+        BrokenTrouble{"kind: heartbeat_only, from_s: 1, until_s: 2, id: 3",
+                      "7: simulation.troubles[0].interface", "is missing", "one of can0, can1"},
+        BrokenTrouble{"kind: heartbeat_only, from_s: 1, until_s: 2, interface: can0, id: 3",
+                      "74: simulation.troubles[0].id", "3 is no drive of 'can0'",
                       "the node id of a drive"},
         BrokenTrouble{"kind: emergency_stop, from_s: 1, until_s: 2, interface: can0",
                       "64: simulation.troubles[0].interface", "says nothing with emergency_stop",

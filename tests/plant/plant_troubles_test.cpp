@@ -4,6 +4,7 @@
 
 #include "plant/scripted_master.h"
 #include "support/random.h"
+#include "tactus/io/cia402.h"
 #include "tactus/plant/plant.h"
 
 /// Scripted troubles of the whole plant. All last from 0.1 to 0.2 s after enabling.
@@ -16,6 +17,10 @@ using test::kPeriod_ns;
 using test::kPeriod_s;
 using test::ScriptedMaster;
 using Kind = Trouble::Kind;
+
+constexpr int kKinds = static_cast<int>(Kind::kEmergencyStop) + 1;
+/// Another trouble that begins and ends while one lasts.
+constexpr Trouble kMeanwhile = {Kind::kDuplicate, 0.14, 0.16, 1, 0x181, 0.0};
 
 class PlantInTrouble : public testing::Test {
  protected:
@@ -181,6 +186,112 @@ TEST_F(PlantInTrouble, AllDrivesOfABusFailTogether) {
   for (int i = 0; i < 9; ++i) EXPECT_EQ(isEnabled(i), i < 6) << i;
 }
 
+TEST_F(PlantInTrouble, ADriveIgnoresCommandsAndKeepsItsVelocity) {
+  startWith({trouble(Kind::kIgnoreCommands, 0, 2)});
+  runUntil(0.11);
+  for (int i = 0; i < 9; ++i) master_->setVelocity(i, -0.02);
+  runUntil(0.12);
+  EXPECT_NEAR(plant_->drive(1).velocity(), 0.05, 1e-6);
+  EXPECT_NEAR(plant_->drive(2).velocity(), -0.02, 1e-6);
+  master_->control_word = 0x02;  // quick stop
+  runUntil(0.135);
+  plant_->send(0, canFrame(0x602, {0x2B, 0x40, 0x60, 0, 0x02, 0, 0, 0}), master_->t_ns());
+  runUntil(0.195);  // longer than its deadline for setpoints: they do arrive
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(isEnabled(i), i == 1) << i;
+  EXPECT_NEAR(plant_->drive(1).velocity(), 0.05, 1e-6);
+  EXPECT_EQ(master_->status(1) & 0x6F, 0x27);
+  runUntil(0.23);
+  EXPECT_FALSE(isEnabled(1));
+  EXPECT_EQ(plant_->drive(1).velocity(), 0.0);
+}
+
+TEST_F(PlantInTrouble, ADriveThatIgnoresCommandsStillStopsByItself) {
+  for (const bool by_nmt : {false, true}) {
+    startWith({trouble(Kind::kIgnoreCommands, 0, 0)});
+    runUntil(0.11);
+    if (by_nmt) plant_->send(0, canFrame(0, {2, 2}), master_->t_ns());
+    master_->is_silent = !by_nmt;
+    runUntil(0.19);
+    EXPECT_EQ(plant_->drive(1).velocity(), 0.0);
+    EXPECT_EQ(plant_->drive(1).objects().get(0x603F), by_nmt ? 0x8100u : 0x8700u);
+    EXPECT_EQ(isEnabled(0), by_nmt);
+  }
+}
+
+TEST_F(PlantInTrouble, ADrivesFeedbackFreezes) {
+  startWith({trouble(Kind::kFreezeFeedback, 0, 2), kMeanwhile});
+  runUntil(0.099);
+  const double begin = master_->position(1);
+  runUntil(0.11);
+  const double frozen = master_->position(1);
+  EXPECT_NEAR(frozen, begin, 0.003 * 0.05) << "that of the moment";
+  const int feedbacks = master_->feedbacks(1);
+  master_->control_word = 0x07;  // the drive obeys, and says nothing of it
+  runUntil(0.195);
+  EXPECT_EQ(plant_->drive(1).powerState(), PowerState::kSwitchedOn);
+  EXPECT_EQ(master_->status(1) & 0x6F, 0x27);
+  EXPECT_EQ(master_->status(2) & 0x6F, 0x23);
+  EXPECT_EQ(master_->position(1), frozen);
+  EXPECT_GE(master_->feedbacks(1), feedbacks + 80);
+  runUntil(0.21);
+  EXPECT_EQ(master_->status(1) & 0x6F, 0x23);
+  EXPECT_GT(master_->position(1), frozen + 0.005 * 0.05);
+}
+
+TEST_F(PlantInTrouble, ADriveTellsAStatusThatTheStandardDoesNotKnow) {
+  startWith({trouble(Kind::kNonsenseStatus, 0, 2)});
+  runUntil(0.11);
+  const double before = master_->position(1);
+  for (const int word : {0x0F, 0x07, 0x06, 0x00}) {  // enabled, switched on, ready, disabled
+    master_->control_word = word;
+    master_->cycles(10);
+    const auto status = static_cast<std::uint16_t>(master_->status(1));
+    EXPECT_FALSE(decodeStatusWord(status)) << word << " " << status;
+    EXPECT_TRUE(decodeStatusWord(static_cast<std::uint16_t>(master_->status(2)))) << word;
+  }
+  EXPECT_GT(master_->position(1), before) << "its position is the truth";
+  runUntil(0.21);
+  EXPECT_EQ(master_->status(1) & 0x4F, 0x40);
+}
+
+TEST_F(PlantInTrouble, ADriveSaysThatItHasBootedThoughItRunsOn) {
+  startWith({trouble(Kind::kBootUp, 0, 2), kMeanwhile});
+  runUntil(0.09);
+  master_->forget();
+  runUntil(0.3);
+  int boot_ups = 0;
+  for (const CanFrame& frame : master_->heard(0)) {
+    if (frame.id < 0x701 || frame.size != 1 || frame.data[0] != 0) continue;
+    EXPECT_EQ(frame, canFrame(0x702, {0}));
+    ++boot_ups;
+  }
+  EXPECT_EQ(boot_ups, 1);
+  EXPECT_TRUE(isEnabled(1));
+  EXPECT_NEAR(plant_->drive(1).velocity(), 0.05, 1e-6);
+  EXPECT_GT(master_->timesHeard(0, 0x182), 200);
+}
+
+TEST_F(PlantInTrouble, ADriveMissesTheHeartbeatOnly) {
+  for (const std::uint32_t lost : {0x080U, 0x202U}) {
+    startWith({trouble(Kind::kHeartbeatOnly, 0, 2), trouble(Kind::kDrop, 0, lost)});
+    runUntil(0.105);
+    master_->setVelocity(1, 0.0);
+    runUntil(0.199);
+    EXPECT_TRUE(isEnabled(1));
+    EXPECT_NEAR(plant_->drive(1).velocity(), 0.05, 1e-6) << "nobody has told it otherwise";
+    EXPECT_EQ(isEnabled(0), lost == 0x202U);
+  }
+  startWith({trouble(Kind::kHeartbeatOnly, 0, 2)});
+  runUntil(0.105);
+  master_->is_silent = true;
+  runUntil(0.135);
+  EXPECT_TRUE(isEnabled(1));
+  EXPECT_FALSE(isEnabled(0));
+  runUntil(0.19);
+  EXPECT_FALSE(isEnabled(1));
+  EXPECT_EQ(plant_->drive(1).objects().get(0x603F), 0x8130u);
+}
+
 TEST_F(PlantInTrouble, ThePowerOfABusIsCutAndReturns) {
   startWith({trouble(Kind::kPowerCut, 0, 0)});
   runUntil(0.1);
@@ -279,7 +390,7 @@ TEST_F(PlantInTrouble, AnyScriptRepeatsToTheBit) {
     for (int i = 0; i < 6; ++i) {
       const double from_s = random.uniform(0.0, 0.2);
       const std::uint32_t ids[] = {0, 0x201, 0x181, 0x80, 0x100, 2};
-      troubles.push_back({static_cast<Kind>(random.index(9)), from_s,
+      troubles.push_back({static_cast<Kind>(random.index(kKinds)), from_s,
                           from_s + random.uniform(0.001, 0.2), random.index(4),
                           ids[random.index(6)], random.uniform(0.0, 0.02)});
     }

@@ -32,6 +32,12 @@ class DriveOfNode5 : public testing::Test {
     return config;
   }
 
+  static DriveTroubles failing() {
+    DriveTroubles troubles;
+    troubles.is_failing = true;
+    return troubles;
+  }
+
   void hear(const CanFrame& frame) { hearSince(t_ns_, frame); }
   void hearSince(std::int64_t sent_ns, const CanFrame& frame) {
     drive_.receive({frame, sent_ns}, t_ns_);
@@ -428,14 +434,14 @@ TEST_F(DriveOfNode5, ForgivesAFaultOnceItsCauseIsGone) {
   configure();
   enable();
   cycle(0x0F, 100);
-  drive_.setFailing(true);
+  drive_.setTroubles(failing());
   collect();
   EXPECT_EQ(number(*lastSaid(0x85), 0, 2), 0x2310u);
   for (int i = 0; i < 20; ++i) cycle(0x0F, 100);
   EXPECT_EQ(statusWord() & 0x4F, 0x08);
   cycle(0x80, 0);
   EXPECT_EQ(statusWord() & 0x4F, 0x08) << "still failing";
-  drive_.setFailing(false);
+  drive_.setTroubles({});
   cycle(0x80, 0);
   EXPECT_EQ(statusWord() & 0x4F, 0x08) << "no edge";
   cycle(0x00, 0);
@@ -480,7 +486,7 @@ TEST_F(DriveOfNode5, WithoutPowerItIsSilentAndComesToRest) {
 
 TEST_F(DriveOfNode5, ALastingFaultOutlivesAPowerCut) {
   configure();
-  drive_.setFailing(true);
+  drive_.setTroubles(failing());
   drive_.setPowered(false, t_ns_);
   drive_.setPowered(true, t_ns_);
   said_.clear();

@@ -76,6 +76,7 @@ class Plant {
   void step(std::int64_t t_ns) noexcept;
   void applyTroubles(std::int64_t t_ns) noexcept;
   void applyBusTroubles(int bus, std::int64_t t_ns) noexcept;
+  DriveTroubles troublesOf(const Node& node, std::int64_t t_ns) const noexcept;
   void moveBus(int bus, std::int64_t t_ns) noexcept;
   void deliver(int bus, const BusDelivery& delivery, std::int64_t t_ns) noexcept;
   void hearSync(std::int64_t t_ns) noexcept;

@@ -19,9 +19,19 @@ enum class NodeState : std::uint8_t {
   kOff = 255,
 };
 
+/// What is wrong with a drive now; see Trouble::Kind.
+struct DriveTroubles {
+  bool is_failing = false;  ///< in fault, which can't be reset
+  bool ignores_commands = false;
+  bool freezes_feedback = false;
+  bool tells_nonsense = false;  ///< as its status
+  bool claims_boot_up = false;  ///< once, when this begins
+  bool watches_heartbeat_only = false;
+};
+
 /// A velocity drive as a CANopen slave (CiA 301). It stops by itself, with a fault, when the
-/// master's heartbeat or SYNC stays away, or RPDOs for longer than 1400:05 says, or when it is taken
-/// out of operational while enabled. Times in ns since the plant was switched on.
+/// master's heartbeat or SYNC stays away, or RPDOs for longer than 1400:05 says, or when it is
+/// taken out of operational while enabled. Times in ns since the plant was switched on.
 class SlaveDrive {
  public:
   static constexpr std::int64_t kBootTime_ns = 50'000'000;
@@ -31,8 +41,7 @@ class SlaveDrive {
   SlaveDrive(const DriveConfig& config, double period_s);
 
   void setPowered(bool is_on, std::int64_t t_ns) noexcept;
-  /// While failing, its fault can't be reset.
-  void setFailing(bool is_failing) noexcept;
+  void setTroubles(const DriveTroubles& troubles) noexcept;
   void receive(const QueuedFrame& item, std::int64_t t_ns) noexcept;
   /// Does what is due by the drive's own timers.
   void update(std::int64_t t_ns) noexcept;
@@ -67,11 +76,13 @@ class SlaveDrive {
   void fail(std::uint16_t error_code) noexcept;
   std::int64_t masterTimeout_ns() const noexcept;
   std::int64_t heartbeatPeriod_ns() const noexcept;
+  bool watchesMotion() const noexcept;
   std::int64_t syncDeadline_ns() const noexcept;
   std::int64_t rpdoDeadline_ns() const noexcept;
   void sendTpdoAtSync() noexcept;
   void sendTpdoOnChange() noexcept;
   void sendTpdo() noexcept;
+  void packFeedback(CanFrame& frame) const noexcept;
   void sendEmergency(std::uint16_t error_code) noexcept;
   void sendNmtState(std::uint8_t state) noexcept;
 
@@ -81,7 +92,9 @@ class SlaveDrive {
   SlaveAxis axis_;
   NodeState nmt_ = NodeState::kOff;
   FrameBatch outbox_;
-  bool is_failing_ = false;
+  DriveTroubles troubles_;
+  std::uint32_t frozen_status_ = 0;
+  std::uint32_t frozen_position_ = 0;
   QueuedFrame latched_rpdo_;
   bool has_latched_rpdo_ = false;
   std::uint32_t sent_status_ = 0;

@@ -15,6 +15,12 @@ struct Trouble {
     kBusOff,      ///< the other side's controller leaves the bus and drops its frames
     kPowerCut,    ///< all nodes of the bus lose power; frames are not acknowledged
     kDriveFault,  ///< the drive with this node id reports a fault and stops by itself
+    // Drives that deceive their master; of the one with this node id:
+    kIgnoreCommands,  ///< obeys neither control words nor RPDOs, keeps its last velocity
+    kFreezeFeedback,  ///< its TPDO says where it was, in which state, when this began
+    kNonsenseStatus,  ///< its TPDO has a status word that the standard does not know
+    kBootUp,          ///< it sends a boot-up message when this begins, and runs on
+    kHeartbeatOnly,   ///< it watches the master's heartbeat, but neither SYNC nor RPDO
     kEmergencyStop,
   };
   Kind kind = Kind::kDrop;
