@@ -48,6 +48,7 @@ void OutputFile::append(std::string_view bytes) {
 void OutputFile::flush() {
   const char* next = buffer_.get();
   std::size_t left = std::exchange(used_, 0);
+  flushed_ += left;
   while (left > 0) {
     const ssize_t written = ::write(descriptor_, next, left);
     if (written < 0 && errno == EINTR) continue;

@@ -46,6 +46,53 @@ std::vector<CopyRun> packedRuns(const RecordShape& shape, std::size_t message_of
   return runs;
 }
 
+void appendMessage(std::string& bytes, char type, std::string_view payload) {
+  if (payload.size() > kMaxMessageSize) throw std::invalid_argument("ULog: message too long");
+  append(bytes, static_cast<std::uint16_t>(payload.size()));
+  bytes += type;
+  bytes += payload;
+}
+
+void appendFormat(std::string& bytes, const RecordShape& shape) {
+  std::string format = fmt::format("{}:uint64_t timestamp;", kCycleTopic);
+  for (const RecordField& field : recordFields()) {
+    format += typeName(field.type);
+    if (field.shape != FieldShape::kScalar) format += fmt::format("[{}]", shape.entries(field));
+    format += fmt::format(" {};", field.name);
+  }
+  appendMessage(bytes, 'F', format);
+}
+
+void appendInfo(std::string& bytes, std::string_view name, std::string_view value) {
+  std::string payload;
+  appendKey(payload, textKey(name, value));
+  payload += value;
+  appendMessage(bytes, 'I', payload);
+}
+
+void appendMultiInfo(std::string& bytes, std::string_view name, std::string_view value) {
+  bool is_continued = false;
+  do {
+    const std::string_view chunk = value.substr(0, kTextChunk);
+    std::string payload(1, is_continued ? '\1' : '\0');
+    appendKey(payload, textKey(name, chunk));
+    payload += chunk;
+    appendMessage(bytes, 'M', payload);
+    value.remove_prefix(chunk.size());
+    is_continued = true;
+  } while (!value.empty());
+}
+
+void appendParameter(std::string& bytes, std::string name, double value) {
+  std::erase(name, ']');
+  std::ranges::replace_if(
+      name, [](char c) { return c == '.' || c == '['; }, '/');
+  std::string payload;
+  appendKey(payload, "float " + name);
+  append(payload, static_cast<float>(value));
+  appendMessage(bytes, 'P', payload);
+}
+
 }  // namespace
 
 LogDescription describeLog(const Scene& scene) {
@@ -64,6 +111,31 @@ LogDescription describeLog(const Scene& scene) {
   return description;
 }
 
+std::string logDefinitions(const LogDescription& description) {
+  std::string bytes(reinterpret_cast<const char*>(kUlogMagic.data()), kUlogMagic.size());
+  append(bytes, std::uint64_t{0});  // start time: virtual time begins at zero
+  appendMessage(bytes, 'B', std::string(kFlagBitsSize, '\0'));
+  appendFormat(bytes, description.shape);
+  appendInfo(bytes, "sys_name", "tactus");
+  for (const auto& [name, value] : description.infos) appendInfo(bytes, name, value);
+  for (const RecordField& field : recordFields()) {
+    if (*field.unit) appendInfo(bytes, fmt::format("unit/{}", field.name), field.unit);
+  }
+  for (const auto& [name, value] : description.parameters) appendParameter(bytes, name, value);
+  for (const SourceFile& source : description.sources) {
+    appendMultiInfo(bytes, kSourcePathKey, source.path);
+    appendMultiInfo(bytes, kSourceTextKey, source.text);
+  }
+  for (const Override& override_ : description.overrides) {
+    appendMultiInfo(bytes, kOverrideKeyKey, override_.key);
+    appendMultiInfo(bytes, kOverrideValueKey, override_.value);
+  }
+  std::string subscription(1, '\0');  // the topic's first and only instance
+  append(subscription, kCycleId);
+  appendMessage(bytes, 'A', subscription + kCycleTopic);
+  return bytes;
+}
+
 std::size_t logBytesACycle(const RecordShape& shape) {
   const CopyRun last = packedRuns(shape, kDataHeaderSize).back();
   return last.message_offset + last.size;
@@ -73,7 +145,7 @@ UlogWriter::UlogWriter(const std::string& path, const LogDescription& descriptio
     : file_(path),
       runs_(packedRuns(description.shape, kDataHeaderSize)),
       data_size_(logBytesACycle(description.shape)) {
-  writeDefinitions(description);
+  file_.append(logDefinitions(description));
 }
 
 void UlogWriter::write(const CycleRecord& record) {
@@ -89,80 +161,6 @@ void UlogWriter::write(const CycleRecord& record) {
     std::memcpy(message + run.message_offset, bytes + run.record_offset, run.size);
   }
   file_.commit(data_size_);
-}
-
-void UlogWriter::writeDefinitions(const LogDescription& description) {
-  std::string header(reinterpret_cast<const char*>(kUlogMagic.data()), kUlogMagic.size());
-  append(header, std::uint64_t{0});  // start time: virtual time begins at zero
-  file_.append(header);
-  writeMessage('B', std::string(kFlagBitsSize, '\0'));
-  writeFormat(description.shape);
-  writeInfo("sys_name", "tactus");
-  for (const auto& [name, value] : description.infos) writeInfo(name, value);
-  for (const RecordField& field : recordFields()) {
-    if (*field.unit) writeInfo(fmt::format("unit/{}", field.name), field.unit);
-  }
-  for (const auto& [name, value] : description.parameters) writeParameter(name, value);
-  for (const SourceFile& source : description.sources) {
-    writeMultiInfo(kSourcePathKey, source.path);
-    writeMultiInfo(kSourceTextKey, source.text);
-  }
-  for (const Override& override_ : description.overrides) {
-    writeMultiInfo(kOverrideKeyKey, override_.key);
-    writeMultiInfo(kOverrideValueKey, override_.value);
-  }
-  std::string subscription(1, '\0');  // the topic's first and only instance
-  append(subscription, kCycleId);
-  writeMessage('A', subscription + kCycleTopic);
-}
-
-void UlogWriter::writeFormat(const RecordShape& shape) {
-  std::string format = fmt::format("{}:uint64_t timestamp;", kCycleTopic);
-  for (const RecordField& field : recordFields()) {
-    format += typeName(field.type);
-    if (field.shape != FieldShape::kScalar) format += fmt::format("[{}]", shape.entries(field));
-    format += fmt::format(" {};", field.name);
-  }
-  writeMessage('F', format);
-}
-
-void UlogWriter::writeInfo(std::string_view name, std::string_view value) {
-  std::string payload;
-  appendKey(payload, textKey(name, value));
-  payload += value;
-  writeMessage('I', payload);
-}
-
-void UlogWriter::writeMultiInfo(std::string_view name, std::string_view value) {
-  bool is_continued = false;
-  do {
-    const std::string_view chunk = value.substr(0, kTextChunk);
-    std::string payload(1, is_continued ? '\1' : '\0');
-    appendKey(payload, textKey(name, chunk));
-    payload += chunk;
-    writeMessage('M', payload);
-    value.remove_prefix(chunk.size());
-    is_continued = true;
-  } while (!value.empty());
-}
-
-void UlogWriter::writeParameter(std::string name, double value) {
-  std::erase(name, ']');
-  std::ranges::replace_if(
-      name, [](char c) { return c == '.' || c == '['; }, '/');
-  std::string payload;
-  appendKey(payload, "float " + name);
-  append(payload, static_cast<float>(value));
-  writeMessage('P', payload);
-}
-
-void UlogWriter::writeMessage(char type, std::string_view payload) {
-  if (payload.size() > kMaxMessageSize) throw std::invalid_argument("ULog: message too long");
-  std::string message;
-  append(message, static_cast<std::uint16_t>(payload.size()));
-  message += type;
-  message += payload;
-  file_.append(message);
 }
 
 }  // namespace tactus

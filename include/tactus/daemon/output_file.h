@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -8,7 +9,8 @@
 namespace tactus {
 
 /// A file that is written from start to end through one large buffer. Nothing is lost silently:
-/// append(), reserve() and close() throw RunError when the system refuses a byte (disk full).
+/// append(), reserve(), flush() and close() throw RunError when the system refuses a byte (disk
+/// full).
 class OutputFile {
  public:
   /// Fits into a second-level cache: filling it costs less than the system call that empties it.
@@ -32,15 +34,19 @@ class OutputFile {
   }
   void commit(std::size_t size) noexcept { used_ += size; }
 
+  /// Hands what is in the buffer to the kernel, from where no end of this process takes it away.
+  void flush();
   void close();
 
- private:
-  void flush();
+  /// What was appended so far, bytes.
+  std::uint64_t size() const noexcept { return flushed_ + used_; }
 
+ private:
   std::string path_;  ///< as errors show it
   int descriptor_;
   std::unique_ptr<char[]> buffer_;
   std::size_t used_ = 0;
+  std::uint64_t flushed_ = 0;  ///< bytes
 };
 
 /// Throws InputError if writing to `output` would destroy the file `input`.

@@ -26,6 +26,9 @@ struct LogDescription {
 
 LogDescription describeLog(const Scene& scene);
 
+/// What a log begins with, up to its first cycle.
+std::string logDefinitions(const LogDescription& description);
+
 /// What a log grows by each cycle.
 std::size_t logBytesACycle(const RecordShape& shape);
 
@@ -39,17 +42,16 @@ class UlogWriter {
   /// Throws RunError if it cannot be written.
   void write(const CycleRecord& record);
 
+  /// Writes out what is in the buffer; throws RunError.
+  void flush() { file_.flush(); }
+
+  /// Of the log so far, bytes.
+  std::uint64_t size() const noexcept { return file_.size(); }
+
   /// Writes what is left; throws RunError. A log that was not closed may have lost its end.
   void close() { file_.close(); }
 
  private:
-  void writeDefinitions(const LogDescription& description);
-  void writeFormat(const RecordShape& shape);
-  void writeInfo(std::string_view name, std::string_view value);
-  void writeMultiInfo(std::string_view name, std::string_view value);
-  void writeParameter(std::string name, double value);
-  void writeMessage(char type, std::string_view payload);
-
   OutputFile file_;
   std::vector<CopyRun> runs_;  ///< from a record to a data message, header included
   std::size_t data_size_;      ///< of a data message, header included, bytes
