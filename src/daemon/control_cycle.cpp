@@ -231,6 +231,7 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   fillRecord(static_cast<double>(cycles_) * period_s_, input_, output_, Vector3::Zero(), record_);
   record_.task_time_s = task_time_s;
   record_.mode = static_cast<std::uint64_t>(mode_.mode);
+  record_.missed_cycles = static_cast<std::uint64_t>(missed);
   if (mode_.fault != Fault::kNone) record_.fault = static_cast<std::uint64_t>(mode_.fault);
 }
 

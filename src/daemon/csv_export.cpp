@@ -10,7 +10,8 @@ void exportCsv(const std::string& log_path, const std::string& csv_path) {
   std::ifstream in = openLog(log_path);
   UlogReader reader(in, log_path);
   CsvWriter csv(csv_path);
-  const std::vector<RecordColumn> columns = recordColumns(reader.description().shape);
+  std::vector<RecordColumn> columns = recordColumns(reader.description().shape);
+  std::erase_if(columns, [&](const RecordColumn& column) { return !reader.has(column.field); });
   for (const RecordColumn& column : columns) csv.add(column.name);
   csv.endLine();
   CycleRecord record;

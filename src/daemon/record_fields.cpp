@@ -57,6 +57,7 @@ constexpr std::array kFields = {
     RecordField{"mode", "", kScalar, kUint64, kInput, AT(mode)},
     RecordField{"read_ns", "ns", kScalar, kInt64, kObservation, AT(read_ns)},
     RecordField{"write_ns", "ns", kScalar, kInt64, kObservation, AT(write_ns)},
+    RecordField{"missed_cycles", "", kScalar, kUint64, kInput, AT(missed_cycles), true},
 };
 #undef AT
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -14,6 +15,10 @@ namespace tactus {
 
 UlogReader::UlogReader(std::istream& in, std::string name)
     : messages_(in, std::move(name)), definitions_(readDefinitions(messages_)) {}
+
+bool UlogReader::has(std::string_view field) const noexcept {
+  return std::ranges::count(definitions_.topic.absent, field) == 0;
+}
 
 bool UlogReader::next(CycleRecord& record) {
   UlogMessage message;
@@ -67,17 +72,24 @@ std::ifstream openLog(const std::string& path) {
   }
 }
 
-LogExtent checkLog(const std::string& path) {
-  std::ifstream in = openLog(path);
-  UlogReader reader(in, path);
+LogExtent readToEnd(UlogReader& reader) {
   CycleRecord record;
   LogExtent extent;
   while (reader.next(record)) ++extent.cycles;
   extent.cut_off = reader.cutOff();
-  if (extent.cycles == 0) {
-    failAt({std::make_shared<std::string>(path), 1, 1}, kCycleTopic, "the log holds none",
-           "expected at least one");
-  }
+  return extent;
+}
+
+void refuseEmptyLog(const std::string& path) {
+  failAt({std::make_shared<std::string>(path), 1, 1}, kCycleTopic, "the log holds none",
+         "expected at least one");
+}
+
+LogExtent checkLog(const std::string& path) {
+  std::ifstream in = openLog(path);
+  UlogReader reader(in, path);
+  const LogExtent extent = readToEnd(reader);
+  if (extent.cycles == 0) refuseEmptyLog(path);
   return extent;
 }
 

@@ -113,6 +113,10 @@ std::string parseTopicFormat(std::string_view format, TopicLayout& layout) {
   if (!problem.empty()) return problem;
   for (const RecordField& field : recordFields()) {
     const LoggedField* found = find(logged, field.name);
+    if (!found && field.may_be_absent) {
+      layout.absent.push_back(field.name);
+      continue;
+    }
     const std::size_t entries = layout.shape.entries(field);
     if (!found || found->type != typeName(field.type) || found->entries != entries) {
       return fmt::format("no field {} of type {}[{}], every field of a cycle is expected",

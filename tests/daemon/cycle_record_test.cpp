@@ -88,7 +88,8 @@ TEST(RecordFields, OnlyClocksFaultAndToolErrorAreNoConcernOfTheController) {
     const bool observed = name.ends_with("_ns") || name.starts_with("tool_error") ||
                           name == "fault";  // the loop knows more faults than the controller
     const bool input = name == "t_s" || name == "task_time_s" || name == "mode" ||
-                       name == "q_measured" || name.starts_with("tactile_");
+                       name == "missed_cycles" || name == "q_measured" ||
+                       name.starts_with("tactile_");
     EXPECT_EQ(field.role, observed ? FieldRole::kObservation
                           : input  ? FieldRole::kInput
                                    : FieldRole::kOutput)
@@ -145,12 +146,13 @@ TEST(FillRecord, PutsEveryNumberInItsColumn) {
   record.wake_latency_ns = 6;
   record.read_ns = 7;
   record.write_ns = 8;
+  record.missed_cycles = 9;
   fillRecord(0.5, cycle.input, cycle.output, cycle.tool_error, record);
   const std::vector<double> expected = {0.5,  8.01, 8.02, 8.03, 8.04, 8.05, 8.06, 8.07, 8.08, 8.09,
                                         8.10, 8.11, 8.12, 8.13, 8.14, 8.15, 8.16, 4.1,  4.2,  4.3,
                                         3.1,  3.2,  3.3,  5.1,  5.2,  6.1,  6.2,  7.1,  7.2,  2,
                                         6,    -5,   1.1,  1.2,  1.3,  2.1,  2.2,  2.3,  2.4,  4e9,
-                                        0.91, 0.92, 0.93, 0.5,  3,    7,    8};
+                                        0.91, 0.92, 0.93, 0.5,  3,    7,    8,    9};
   const RecordShape shape{3, 2};
   const auto columns = recordColumns(shape);
   const auto words = test::loggedWords(record, shape);

@@ -79,7 +79,16 @@ TEST(Export, HeaderNamesTheColumns) {
   const auto columns = recordColumns(e.shape);
   ASSERT_EQ(header.size(), columns.size());
   EXPECT_EQ(header.front(), "t_s");
-  EXPECT_EQ(header.back(), "write_ns");
+  EXPECT_EQ(header.back(), "missed_cycles");
+}
+
+TEST(Export, LeavesOutWhatTheLogDoesNotHave) {
+  const Export e(1);
+  std::string bytes = e.log.content();
+  bytes.replace(bytes.find("missed_cycles"), 13, "something_new");
+  e.log.setContent(bytes);
+  exportCsv(e.log.path(), e.csv.path());
+  EXPECT_EQ(split(split(e.csv.content(), '\n')[0], ',').back(), "write_ns");
 }
 
 TEST(Export, CommandExportsACutLogUpToTheCut) {

@@ -76,10 +76,10 @@ TEST(UlogReader, FindsFieldsByNameWhateverTheirOrderAndNeighbours) {
   log.data = message('D', data);
   const auto read = test::readLog(log.bytes());
   ASSERT_EQ(read.records.size(), 1u);
-  EXPECT_EQ(read.records[0].tool_error_m[2], 5.0);
-  EXPECT_EQ(read.records[0].tool_error_m[0], 7.0);
-  EXPECT_EQ(read.records[0].q_measured[0], 13.0);
-  EXPECT_EQ(read.records[0].q_measured[1], 14.0);
+  EXPECT_EQ(read.records[0].tool_error_m[2], 6.0);
+  EXPECT_EQ(read.records[0].tool_error_m[0], 8.0);
+  EXPECT_EQ(read.records[0].q_measured[0], 14.0);
+  EXPECT_EQ(read.records[0].q_measured[1], 15.0);
   EXPECT_EQ(read.records[0].t_s, number);
 }
 
@@ -89,10 +89,23 @@ TEST(UlogReader, PassesOverOtherTopicsAndHarmlessMessages) {
                     message('I', "\x0b"s + "float[2] xy" + std::string(8, '\0')) +
                     message('M', "\0\x08"s + "int8_t m" + "m") + message('A', "\0\1\0other"s) +
                     message('Q', "whatever");
-  const std::size_t size = 2 + 8 + 8 * (17 + 4 + 3 + 3 + 2 + 5 + 3 + 4);
+  const std::size_t size = 2 + 8 + 8 * (17 + 4 + 3 + 3 + 2 + 5 + 3 + 5);
   log.data = message('D', "\1\0"s + "other topic") + message('L', "6text") + message('S', "sync") +
              message('O', "\5\0"s) + message('D', std::string(size, '\0')) + message('R', "\1\0"s);
   EXPECT_EQ(test::readLog(log.bytes()).records.size(), 1u);
+}
+
+TEST(UlogReader, ReadsALogOfBeforeThereWereMissedCycles) {
+  HandMadeLog log;
+  log.replaceInFormat("uint64_t missed_cycles;", "");
+  log.data = message('D', "\0\0"s + std::string(8 + 8 * (17 + 4 + 3 + 3 + 2 + 5 + 3 + 4), '\0'));
+  EXPECT_EQ(test::readLog(log.bytes()).records.size(), 1u);
+  for (const HandMadeLog& candidate : {log, HandMadeLog()}) {
+    std::istringstream in(candidate.bytes());
+    const UlogReader reader(in, "run.ulg");
+    EXPECT_EQ(reader.has("missed_cycles"), candidate.format != log.format);
+    EXPECT_TRUE(reader.has("mode"));
+  }
 }
 
 TEST(UlogReader, RefusesEachWithItsPlace) {
@@ -127,6 +140,7 @@ TEST(UlogReader, RefusesEachWithItsPlace) {
       {swap("double[2] dq;", "double[3] dq;"), "no field dq of type double[2]"},
       {swap("double gamma;", "float gamma;"), "no field gamma of type double[1]"},
       {swap("uint64_t fault;", ""), "no field fault of type uint64_t[1]"},
+      {swap("uint64_t missed_cycles;", "double missed_cycles;"), "no field missed_cycles of type"},
       {swap("double gamma;", "double[99999999999999999999] gamma;"), "is no field"},
       {swap("double gamma;", "double[-1] gamma;"), "is no field"},
       {swap("double gamma;", "double[1 gamma;"), "is no field"},

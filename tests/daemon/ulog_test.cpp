@@ -110,23 +110,24 @@ TEST(Ulog, WritesTheBytesOfTheSpecification) {
       "int64_t wake_latency_ns;int64_t step_ns;double[2] q_measured;double tactile_force_y_N;"
       "double tactile_force_z_N;double tactile_moment_y_Nm;double tactile_moment_z_Nm;"
       "uint64_t tactile_sequence;double tool_error_x_m;double tool_error_y_m;"
-      "double tool_error_z_m;double task_time_s;uint64_t mode;int64_t read_ns;int64_t write_ns;";
+      "double tool_error_z_m;double task_time_s;uint64_t mode;int64_t read_ns;int64_t write_ns;"
+      "uint64_t missed_cycles;";
   const std::string format_size{static_cast<char>(format.size() & 0xff),
                                 static_cast<char>(format.size() >> 8)};
   EXPECT_TRUE(startsAt(59, format_size + "F" + format));
   EXPECT_TRUE(startsAt(62 + format.size(),
                        "\x17\0I\x10"
                        "char[6] sys_nametactus"s));
-  const std::size_t data_size = 2 + 8 + 8 * (17 + 2 + 2 + 3 + 3 + 2 + 5 + 3 + 4);
+  const std::size_t data_size = 2 + 8 + 8 * (17 + 2 + 2 + 3 + 3 + 2 + 5 + 3 + 5);
   const std::size_t data_start = bytes.size() - data_size - 3;
   EXPECT_TRUE(startsAt(data_start - 11, "\x08\0A\0\0\0cycle"s));
   const std::string timestamp_250000_us = "\x90\xd0\x03\0\0\0\0\0"s;
   const std::string quarter_as_double = "\0\0\0\0\0\0\xd0\x3f"s;
   EXPECT_TRUE(startsAt(data_start,
-                       "\x52\x01"
+                       "\x5a\x01"
                        "D\0\0"s +
                            timestamp_250000_us + quarter_as_double));
-  EXPECT_EQ(data_size, 0x152u);
+  EXPECT_EQ(data_size, 0x15au);
 }
 
 TEST(Ulog, WritesInfoMultiInfoAndParameterAsSpecified) {
@@ -236,7 +237,9 @@ TEST(Ulog, ReportsAFullDisk) {
       },
       RunError);
   UlogWriter writer("/dev/full", description);
-  EXPECT_THROW(writer.close(), RunError);
+  EXPECT_THROW(writer.flush(), RunError);
+  UlogWriter another("/dev/full", description);
+  EXPECT_THROW(another.close(), RunError);
 }
 
 TEST(Ulog, ReportsAPathThatCannotBeOpened) {
@@ -244,6 +247,17 @@ TEST(Ulog, ReportsAPathThatCannotBeOpened) {
   EXPECT_THROW(openLog("/nowhere/run.ulg"), InputError);
   EXPECT_THROW(openLog("/dev/null"), InputError) << "no regular file, as a fifo";
   EXPECT_THROW(checkLog("/tmp"), InputError);
+}
+
+TEST(Ulog, KnowsItsSizeAndHandsItOverWhenAsked) {
+  const test::TemporaryFile file;
+  UlogWriter writer(file.path(), smallDescription());
+  EXPECT_EQ(writer.size(), logDefinitions(smallDescription()).size());
+  for (const CycleRecord& record : randomRecords(3, 14)) writer.write(record);
+  EXPECT_EQ(file.content().size(), 0u);
+  writer.flush();
+  EXPECT_EQ(file.content().size(), writer.size());
+  EXPECT_EQ(readLog(file.content()).records.size(), 3u);
 }
 
 TEST(Ulog, ALogLeftByAnErrorIsReadable) {

@@ -41,10 +41,11 @@ struct CycleRecord {
   std::uint64_t mode = static_cast<std::uint64_t>(Mode::kRunning);  ///< the number of a Mode
   std::int64_t read_ns = 0;   ///< from waking to all frames and lines read; hardware only
   std::int64_t write_ns = 0;  ///< from the set-points to the last frame handed over; hardware only
+  std::uint64_t missed_cycles = 0;  ///< skipped by the loop just before this one
 };
 
 static_assert(std::is_trivially_copyable_v<CycleRecord> && std::is_standard_layout_v<CycleRecord>);
-static_assert(sizeof(CycleRecord) == 8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 4));
+static_assert(sizeof(CycleRecord) == 8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 5));
 
 /// Copies one cycle into a record; wake_latency_ns and step_ns are left to the caller, who alone
 /// knows a clock. tool_error_m: see CycleRecord. Entries of arrays beyond the robot's joints and

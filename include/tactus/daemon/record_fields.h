@@ -25,7 +25,8 @@ struct RecordField {
   FieldShape shape;
   FieldType type;
   FieldRole role;
-  std::size_t offset;  ///< of the first word in a CycleRecord, bytes
+  std::size_t offset;          ///< of the first word in a CycleRecord, bytes
+  bool may_be_absent = false;  ///< from logs of older versions
 };
 
 /// All fields, in the order of the CSV's columns and of CycleRecord's members.

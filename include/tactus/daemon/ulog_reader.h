@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 #include "tactus/daemon/ulog_definitions.h"
 #include "tactus/daemon/ulog_messages.h"
@@ -19,7 +20,11 @@ class UlogReader {
 
   const LogDescription& description() const noexcept { return definitions_.description; }
 
-  /// False at the end of the log. Entries of arrays beyond the shape keep what they held.
+  /// Whether the log has a field of recordFields(): one of an older version may not.
+  bool has(std::string_view field) const noexcept;
+
+  /// False at the end of the log. Entries of arrays beyond the shape, and fields that the log does
+  /// not have, keep what they held.
   bool next(CycleRecord& record);
 
   /// Whether the log ended within a message; known once next() has returned false.
@@ -43,6 +48,12 @@ struct LogExtent {
   long long cycles = 0;
   bool cut_off = false;  ///< ends within a message: an interrupted run
 };
+
+/// Reads what is left of a log. Throws InputError if it is damaged.
+LogExtent readToEnd(UlogReader& reader);
+
+/// Throws the InputError of a log without a cycle.
+[[noreturn]] void refuseEmptyLog(const std::string& path);
 
 /// Reads a log to its end, so that a damaged one is refused before anything else happens. Throws
 /// InputError, also for a log without a cycle.

@@ -12,8 +12,9 @@ namespace tactus {
 /// Where a log's data messages hold the fields of a CycleRecord.
 struct TopicLayout {
   RecordShape shape;
-  std::vector<CopyRun> runs;  ///< message offsets count from the first field
-  std::size_t size = 0;       ///< of all fields, bytes
+  std::vector<CopyRun> runs;             ///< message offsets count from the first field
+  std::size_t size = 0;                  ///< of all fields, bytes
+  std::vector<std::string_view> absent;  ///< of recordFields(), from a log of an older version
 };
 
 /// "cycle" of "cycle:uint64_t timestamp;..."; empty if there is no colon.
