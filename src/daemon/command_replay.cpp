@@ -5,21 +5,26 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "tactus/daemon/apply_mode.h"
 #include "tactus/daemon/command_scene.h"
 #include "tactus/daemon/commands.h"
 #include "tactus/daemon/json.h"
 #include "tactus/daemon/located_error.h"
+#include "tactus/daemon/log_parts.h"
 #include "tactus/daemon/replay.h"
 #include "tactus/daemon/ulog_reader.h"
 
 namespace tactus {
 namespace {
 
+constexpr std::string_view kMissedCycles = "missed_cycles";
+
 struct ReplayOptions {
-  std::string log, output;
-  std::vector<std::string> settings;
+  std::vector<std::string> logs, settings;
+  std::string output;
   bool json = false;
 };
 
@@ -31,37 +36,97 @@ void checkSize(const std::string& log, const char* field, const char* what, int 
          "expected the log of a run of its scene");
 }
 
-/// The scene of the log with its own overrides and then those of the command line.
+/// The scene of the first log with its own overrides and then those of the command line.
 Scene loadLoggedScene(const ReplayOptions& options, const LogDescription& description) {
+  const std::string& log = options.logs.front();
   std::vector<Override> overrides = description.overrides;
   for (const Override& setting : parseOverrides(options.settings)) overrides.push_back(setting);
   if (description.sources.empty()) {
-    failAt({std::make_shared<std::string>(options.log), 1, 1}, "source_path",
-           "the log holds no scene", "expected the files of the run");
+    failAt({std::make_shared<std::string>(log), 1, 1}, "source_path", "the log holds no scene",
+           "expected the files of the run");
   }
   Scene scene = loadScene(description.sources, overrides, SceneUse::kSimulation);
-  checkSize(options.log, "q", "joints", description.shape.joints, scene.controller.chain.size());
-  checkSize(options.log, "w", "task components", description.shape.task_size,
-            scene.controller.task.size);
+  checkSize(log, "q", "joints", description.shape.joints, scene.controller.chain.size());
+  checkSize(log, "w", "task components", description.shape.task_size, scene.controller.task.size);
   return scene;
 }
 
-ReplayComparison replayLog(const ReplayOptions& options, UlogReader& reader) {
-  const RecordShape& shape = reader.description().shape;
-  const Scene scene = loadLoggedScene(options, reader.description());
-  const Controller controller(scene.controller);
-  Replayer replayer(controller, shape.joints, scene.period_s);
-  ReplayComparison comparison(shape);
-  std::optional<ReplayCsv> csv;
-  if (!options.output.empty()) csv.emplace(options.output, shape);
-  CycleRecord recorded;
-  while (reader.next(recorded)) {
-    const CycleRecord replayed = replayer.replay(recorded);
-    comparison.add(recorded, replayed);
-    if (csv) csv->add(recorded, replayed);
+struct ReplayResult {
+  ReplayComparison comparison;
+  std::vector<UnknownStretch> unknown;  ///< that were not compared
+  bool cut_off = false;                 ///< any of the logs
+};
+
+/// A replay without a single cycle of an arm under command would say nothing, and must not look as
+/// if all were well.
+void refuseUnknown(const std::vector<std::string>& logs, LogContinuity continuity) {
+  CycleRecord record;
+  for (const std::string& path : logs) {
+    std::ifstream in = openLog(path);
+    UlogReader reader(in, path);
+    continuity.beginPart(logPart(reader.description(), path).part);
+    while (reader.next(record)) {
+      if (continuity.add(record) && isCommanding(static_cast<Mode>(record.mode))) return;
+    }
   }
-  if (csv) csv->close();
-  return comparison;
+  if (continuity.stretches().empty()) return;
+  const UnknownStretch& first = continuity.stretches().front();
+  failAt({std::make_shared<std::string>(logs.front()), 1, 1}, "cycle",
+         fmt::format("none with a command can be replayed: from {:.9g} s on {}", first.from_s,
+                     first.reason),
+         "expected all logs of the run, the oldest first");
+}
+
+/// A scene, and what becomes of it fed with logs, one after the other.
+class LogReplay {
+ public:
+  LogReplay(const ReplayOptions& options, const UlogReader& first)
+      : shape_(first.description().shape),
+        scene_(loadLoggedScene(options, first.description())),
+        controller_(scene_.controller),
+        replayer_(controller_, shape_.joints, scene_.period_s, first.has(kMissedCycles)),
+        comparison_(shape_) {
+    refuseUnknown(options.logs, LogContinuity(scene_.period_s, first.has(kMissedCycles)));
+    if (!options.output.empty()) csv_.emplace(options.output, shape_);
+  }
+
+  void add(UlogReader& reader, const std::string& path) {
+    replayer_.beginPart(logPart(reader.description(), path).part);
+    CycleRecord recorded;
+    while (reader.next(recorded)) {
+      const CycleRecord replayed = replayer_.replay(recorded);
+      if (!replayer_.isKnown()) {
+        comparison_.skip();
+        continue;
+      }
+      comparison_.add(recorded, replayed);
+      if (csv_) csv_->add(recorded, replayed);
+    }
+  }
+
+  ReplayResult finish() {
+    if (csv_) csv_->close();
+    return {std::move(comparison_), replayer_.unknown()};
+  }
+
+ private:
+  RecordShape shape_;
+  Scene scene_;
+  Controller controller_;
+  Replayer replayer_;
+  ReplayComparison comparison_;
+  std::optional<ReplayCsv> csv_;
+};
+
+ReplayResult replayLogs(const ReplayOptions& options) {
+  std::optional<LogReplay> replay;
+  for (const std::string& path : options.logs) {
+    std::ifstream in = openLog(path);
+    UlogReader reader(in, path);
+    if (!replay) replay.emplace(options, reader);
+    replay->add(reader, path);
+  }
+  return replay->finish();
 }
 
 void writeDifference(const ReplayDifference& difference, JsonWriter& json) {
@@ -74,16 +139,34 @@ void writeDifference(const ReplayDifference& difference, JsonWriter& json) {
   json.endObject();
 }
 
-std::string jsonReport(const ReplayOptions& options, const ReplayComparison& comparison,
-                       bool cut_off) {
+void writeList(const char* name, const std::vector<std::string>& texts, JsonWriter& json) {
+  json.key(name).beginArray();
+  for (const std::string& text : texts) json.value(text);
+  json.endArray();
+}
+
+void writeStretches(const std::vector<UnknownStretch>& stretches, JsonWriter& json) {
+  json.key("not_replayed").beginArray();
+  for (const UnknownStretch& stretch : stretches) {
+    json.beginObject();
+    json.key("from_s").value(stretch.from_s);
+    json.key("to_s").value(stretch.to_s);
+    json.key("reason").value(stretch.reason);
+    json.endObject();
+  }
+  json.endArray();
+}
+
+std::string jsonReport(const ReplayOptions& options, const ReplayResult& result) {
+  const ReplayComparison& comparison = result.comparison;
   JsonWriter json;
   json.beginObject();
-  json.key("log").value(options.log);
-  json.key("set").beginArray();
-  for (const std::string& setting : options.settings) json.value(setting);
-  json.endArray();
-  json.key("cycles").value(comparison.cycles());
-  json.key("cut_off").value(cut_off);
+  writeList("logs", options.logs, json);
+  writeList("set", options.settings, json);
+  json.key("cycles").value(comparison.cycles() + comparison.skipped());
+  json.key("cut_off").value(result.cut_off);
+  json.key("compared_cycles").value(comparison.cycles());
+  writeStretches(result.unknown, json);
   json.key("differing_cycles").value(comparison.differingCycles());
   json.key("first_difference");
   if (comparison.first()) {
@@ -98,7 +181,19 @@ std::string jsonReport(const ReplayOptions& options, const ReplayComparison& com
   return json.text();
 }
 
-std::string textReport(const ReplayOptions& options, const ReplayComparison& comparison) {
+std::string stretchesText(const ReplayResult& result) {
+  std::string text;
+  for (const UnknownStretch& stretch : result.unknown) {
+    text += fmt::format("not replayed from {:.9g} s to {:.9g} s: {}\n", stretch.from_s,
+                        stretch.to_s, stretch.reason);
+  }
+  const ReplayComparison& comparison = result.comparison;
+  if (comparison.skipped() == 0) return text;
+  return text + fmt::format("{} of {} cycles compared\n", comparison.cycles(),
+                            comparison.cycles() + comparison.skipped());
+}
+
+std::string differencesText(const ReplayOptions& options, const ReplayComparison& comparison) {
   if (!comparison.first()) {
     return fmt::format("{} cycles, every output equal to the bit\n", comparison.cycles());
   }
@@ -117,16 +212,21 @@ std::string textReport(const ReplayOptions& options, const ReplayComparison& com
 }
 
 int runReplay(const ReplayOptions& options) {
-  const LogExtent extent = checkLog(options.log);
-  if (!options.output.empty()) refuseOverwriting(options.log, options.output);
-  std::ifstream in = openLog(options.log);
-  UlogReader reader(in, options.log);
-  const ReplayComparison comparison = replayLog(options, reader);
-  if (extent.cut_off)
-    fmt::print(stderr, "{}: the log was cut off after {} cycles\n", escaped(options.log),
-               extent.cycles);
-  const std::string report = options.json ? jsonReport(options, comparison, extent.cut_off)
-                                          : textReport(options, comparison);
+  const std::vector<LogExtent> extents = checkParts(options.logs);
+  for (const std::string& log : options.logs) {
+    if (!options.output.empty()) refuseOverwriting(log, options.output);
+  }
+  ReplayResult result = replayLogs(options);
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    if (!extents[i].cut_off) continue;
+    result.cut_off = true;
+    fmt::print(stderr, "{}: the log was cut off after {} cycles\n", escaped(options.logs[i]),
+               extents[i].cycles);
+  }
+  const ReplayComparison& comparison = result.comparison;
+  const std::string report = options.json
+                                 ? jsonReport(options, result)
+                                 : stretchesText(result) + differencesText(options, comparison);
   fmt::print(options.output == "-" ? stderr : stdout, "{}", report);
   return options.settings.empty() && comparison.first() ? kExitFault : kExitDone;
 }
@@ -137,7 +237,8 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<ReplayOptions>();
   CLI::App* const command =
       app.add_subcommand("replay", "Feed a log's inputs to the controller and compare its outputs");
-  command->add_option("log", options->log, "Log of a run (run.ulg)")->required();
+  command->add_option("log", options->logs, "Log of a run (run.ulg), or its logs, oldest first")
+      ->required();
   command
       ->add_option("--set", options->settings, std::string(kSetHelp) + "; shows what that changes")
       ->allow_extra_args(false);

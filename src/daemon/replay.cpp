@@ -10,9 +10,6 @@
 namespace tactus {
 namespace {
 
-/// A longer gap is none that a loop went on after.
-constexpr double kMaxMissedCycles = 1e6;
-
 constexpr std::array<std::string_view, 7> kLawColumns = {
     "force_contact_N", "stiffness_N_per_m", "gamma", "x_dot_eff_m_per_s", "u_n", "u_j", "u_t"};
 
@@ -40,23 +37,22 @@ double numberAt(const CycleRecord& record, const RecordColumn& column) noexcept 
 
 }  // namespace
 
-Replayer::Replayer(const Controller& controller, int joints, double period_s)
+Replayer::Replayer(const Controller& controller, int joints, double period_s, bool has_missed)
     : controller_(controller),
       joints_(joints),
       period_s_(period_s),
+      continuity_(period_s, has_missed),
       state_(controller.initialState()) {}
 
-CycleRecord Replayer::replay(const CycleRecord& recorded) noexcept {
+CycleRecord Replayer::replay(const CycleRecord& recorded) {
   CycleRecord replayed = recorded;
   const RobotInput input = recordedInput(recorded, joints_);
   const Mode mode = static_cast<Mode>(recorded.mode);
-  const double cycle = std::round(recorded.t_s / period_s_);
-  const double missed = cycle - cycle_before_ - 1.0;
-  if (missed > 0.0 && missed <= kMaxMissedCycles)
-    controller_.coast(static_cast<int>(missed), period_s_, state_);
+  is_known_ = continuity_.add(recorded);
+  const int missed = continuity_.missedCycles();
+  if (missed > 0) controller_.coast(missed, period_s_, state_);
   applyMode(controller_, mode, mode_before_, input, state_);
   controller_.update(input, recorded.task_time_s, period_s_, state_, output_);
-  cycle_before_ = cycle;
   mode_before_ = mode;
   fillRecord(recorded.t_s, input, output_, Eigen::Map<const Vector3>(recorded.tool_error_m),
              replayed);
@@ -110,7 +106,7 @@ void ReplayComparison::compareSizes(const CycleRecord& recorded, const CycleReco
 ReplayDifference ReplayComparison::difference(const RecordColumn& column,
                                               const CycleRecord& recorded,
                                               const CycleRecord& replayed) const {
-  return {cycles_, recorded.t_s, column.name, numberAt(recorded, column),
+  return {cycles_ + skipped_, recorded.t_s, column.name, numberAt(recorded, column),
           numberAt(replayed, column)};
 }
 

@@ -193,6 +193,66 @@ TEST(ControlCycleReplay, EveryOutputIsEqualToTheBit) {
       << comparison.first()->column << " in cycle " << comparison.first()->cycle;
 }
 
+/// With an e-stop at one time, after which the drives are configured anew and the task goes on.
+std::vector<CycleRecord> restartedRun(const Scene& scene) {
+  VirtualRobotCell cell(scene);
+  std::vector<CycleRecord> records;
+  for (int i = 0; i < 8000; ++i) {
+    cell.input.lines.emergency_stop = i >= 4000 && i < 4100;
+    cell.input.lines.enable = i < 4000 || i > 4500;
+    cell.step();
+    if (cell.cycle.isRecorded()) records.push_back(cell.cycle.record());
+  }
+  EXPECT_EQ(cell.cycle.report().mode, Mode::kRunning);
+  return records;
+}
+
+TEST(ControlCycleReplay, GoesOnToTheBitWhereTheControllerBeginsAnewBehindMissingRecords) {
+  Scene scene = shippedScene("scenario2_estimated");
+  scene.hardware->gpio.emplace();
+  scene.hardware->gpio->enable.emplace();
+  std::vector<CycleRecord> records = restartedRun(scene);
+  const auto fault = std::find_if(records.begin(), records.end(), [](const CycleRecord& record) {
+    return record.mode == static_cast<std::uint64_t>(Mode::kFault);
+  });
+  ASSERT_GT(records.end() - fault, 3000);
+  const double fault_s = fault->t_s;
+  records.erase(fault - 1000, fault - 600);
+  const Controller controller(scene.controller);
+  Replayer replayer(controller, 9, scene.period_s);
+  ReplayComparison comparison({9, 3});
+  for (const CycleRecord& record : records) {
+    const CycleRecord replayed = replayer.replay(record);
+    replayer.isKnown() ? comparison.add(record, replayed) : comparison.skip();
+  }
+  EXPECT_EQ(comparison.differingCycles(), 0)
+      << comparison.first()->column << " in cycle " << comparison.first()->cycle;
+  EXPECT_EQ(comparison.skipped(), 600);
+  EXPECT_GT(comparison.cycles(), 4000);
+  ASSERT_EQ(replayer.unknown().size(), 1u);
+  EXPECT_NEAR(replayer.unknown()[0].from_s, fault_s - 1.0, 1e-9);
+  EXPECT_NEAR(replayer.unknown()[0].to_s, fault_s - 0.001, 1e-9);
+}
+
+TEST(ControlCycleReplay, MissedCyclesAreNoMissingRecords) {
+  Scene scene = shippedScene("scenario2_estimated");
+  scene.hardware->gpio.emplace();
+  scene.hardware->gpio->enable.emplace();
+  const std::vector<CycleRecord> records = eventfulRun(scene);
+  std::uint64_t missed = 0;
+  double before_s = -scene.period_s;
+  LogContinuity continuity(scene.period_s, true);
+  for (const CycleRecord& record : records) {
+    missed += record.missed_cycles;
+    EXPECT_NEAR(record.t_s - before_s,
+                (1.0 + static_cast<double>(record.missed_cycles)) * scene.period_s, 1e-9);
+    before_s = record.t_s;
+    EXPECT_TRUE(continuity.add(record)) << record.t_s;
+  }
+  EXPECT_EQ(missed, 6u);
+  EXPECT_TRUE(continuity.stretches().empty());
+}
+
 TEST(ControlCycleMissed, TheDrivesAreWhereTheControllerThinksTheyAre) {
   VirtualRobotCell cell(shippedScene("scenario1_null_space"));
   ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));

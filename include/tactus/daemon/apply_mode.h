@@ -5,6 +5,12 @@
 
 namespace tactus {
 
+/// The controller's command moves the arm, or keeps it where it is.
+bool isCommanding(Mode mode) noexcept;
+
+/// Whether the controller begins anew, from the measured arm alone.
+bool resetsController(Mode mode, Mode before) noexcept;
+
 /// How the mode of a cycle and of the one before act on the controller. A function of what the log
 /// holds, so that a replay does the same.
 void applyMode(const Controller& controller, Mode mode, Mode before, const RobotInput& input,

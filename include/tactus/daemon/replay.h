@@ -7,6 +7,7 @@
 
 #include "tactus/control/controller.h"
 #include "tactus/daemon/csv_writer.h"
+#include "tactus/daemon/log_continuity.h"
 #include "tactus/daemon/record_fields.h"
 
 namespace tactus {
@@ -14,17 +15,24 @@ namespace tactus {
 /// Feeds the inputs of a log to a controller.
 class Replayer {
  public:
-  /// `controller` has to outlive this and to have `joints` joints.
-  Replayer(const Controller& controller, int joints, double period_s);
+  /// `controller` has to outlive this and to have `joints` joints. has_missed: see LogContinuity.
+  Replayer(const Controller& controller, int joints, double period_s, bool has_missed = true);
+
+  void beginPart(int part) noexcept { continuity_.beginPart(part); }
 
   /// The next cycle: the recorded inputs and observations with the controller's present outputs.
-  CycleRecord replay(const CycleRecord& recorded) noexcept;
+  CycleRecord replay(const CycleRecord& recorded);
+
+  /// Whether the outputs of that cycle mean something: the controller's state is known.
+  bool isKnown() const noexcept { return is_known_; }
+  const std::vector<UnknownStretch>& unknown() const noexcept { return continuity_.stretches(); }
 
  private:
   const Controller& controller_;
   int joints_;
   double period_s_;
-  double cycle_before_ = -1.0;
+  LogContinuity continuity_;
+  bool is_known_ = true;
   Mode mode_before_ = Mode::kBoot;
   ControllerState state_;
   ControllerOutput output_;
@@ -32,7 +40,7 @@ class Replayer {
 
 /// One number that a log and its replay disagree on.
 struct ReplayDifference {
-  long long cycle = 0;  ///< counts from 0
+  long long cycle = 0;  ///< counts from 0, those that were not compared included
   double t_s = 0.0;
   std::string column;
   double recorded = 0.0, replayed = 0.0;
@@ -45,8 +53,11 @@ class ReplayComparison {
   explicit ReplayComparison(const RecordShape& shape);
 
   void add(const CycleRecord& recorded, const CycleRecord& replayed);
+  /// A cycle that is not compared.
+  void skip() noexcept { ++skipped_; }
 
-  long long cycles() const noexcept { return cycles_; }
+  long long cycles() const noexcept { return cycles_; }  ///< compared
+  long long skipped() const noexcept { return skipped_; }
   long long differingCycles() const noexcept { return differing_cycles_; }
 
   /// The first output that is not equal bit for bit.
@@ -69,7 +80,7 @@ class ReplayComparison {
 
   std::vector<RecordColumn> outputs_;
   std::array<Group, 4> groups_;
-  long long cycles_ = 0;
+  long long cycles_ = 0, skipped_ = 0;
   long long differing_cycles_ = 0;
   std::optional<ReplayDifference> first_;
 };

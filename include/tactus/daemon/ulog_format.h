@@ -11,7 +11,8 @@
 /// A file is a header (magic, version, uint64 start time in us) and messages: uint16 size of the
 /// payload, char type, payload; all little-endian. The files a run was made of are stored as pairs
 /// of multi-informations kSourcePathKey, kSourceTextKey, in the order of Scene::sources; values
-/// given by --set as kOverrideKeyKey, kOverrideValueKey.
+/// given by --set as kOverrideKeyKey, kOverrideValueKey. The logs of one run of the daemon have the
+/// same information kRunKey, and kPartKey counts them from 0.
 namespace tactus {
 
 static_assert(std::endian::native == std::endian::little, "the log is written as memory lies");
@@ -28,5 +29,7 @@ inline constexpr char kSourcePathKey[] = "source_path";
 inline constexpr char kSourceTextKey[] = "source_text";
 inline constexpr char kOverrideKeyKey[] = "override_key";
 inline constexpr char kOverrideValueKey[] = "override_value";
+inline constexpr char kRunKey[] = "run";
+inline constexpr char kPartKey[] = "part";
 
 }  // namespace tactus
