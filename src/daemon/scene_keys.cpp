@@ -223,6 +223,24 @@ KeySpec requirementSection() {
                                  [](Draft& d) -> bool& { return d.real_time.required; }))});
 }
 
+KeySpec logSection() {
+  return section(
+      "log", "how much of a disk the log of tactusd may take; the arm never stops for it",
+      {
+          optional(number("max_bytes", "bytes", within(1e6, 1e15),
+                          "a run.ulg that would grow larger becomes run.1.ulg, what was that "
+                          "run.2.ulg and so on, and a new one is begun; absent: no limit",
+                          [](Draft& d) -> double& { return d.log.max_bytes; })),
+          defaulted("4", integer("keep", within(0, kMaxKeptLogs),
+                                 "how many older files stay besides run.ulg",
+                                 [](Draft& d) -> int& { return d.log.keep; })),
+          defaulted("1e8", number("min_free_bytes", "bytes", within(0, 1e15),
+                                  "the log stops when less of its disk is free; 0: when all of it "
+                                  "is full",
+                                  [](Draft& d) -> double& { return d.log.min_free_bytes; })),
+      });
+}
+
 }  // namespace
 
 const std::vector<std::string>& variantNames() {
@@ -253,6 +271,7 @@ const std::vector<KeySpec>& sceneKeys() {
       optional(stiffnessSection()),
       simulationSection(),
       defaulted("", requirementSection()),
+      defaulted("", logSection()),
   };
   return table;
 }

@@ -11,6 +11,7 @@
 #include "tactus/daemon/scene_checks.h"
 #include "tactus/daemon/source_reader.h"
 #include "tactus/daemon/table_reader.h"
+#include "tactus/daemon/ulog_writer.h"
 
 namespace tactus {
 namespace {
@@ -109,6 +110,20 @@ std::optional<HardwareConfig> chooseHardware(const YamlNode& root, const LoadedR
   return withoutTactileModule(*robot.hardware);
 }
 
+/// A file of the log has to hold its definitions and some cycles.
+void checkLogSize(const YamlNode& root, const Scene& scene) {
+  constexpr std::size_t kMinCycles = 1000;
+  if (scene.log.max_bytes == 0.0) return;
+  const LogDescription description = describeLog(scene);
+  const std::size_t smallest =
+      logDefinitions(description).size() + kMinCycles * logBytesACycle(description.shape);
+  if (scene.log.max_bytes >= static_cast<double>(smallest)) return;
+  failAt(locate(root, "log.max_bytes"), "log.max_bytes",
+         fmt::format("{} is too small", scene.log.max_bytes),
+         fmt::format("expected at least {}, for the scene itself and {} cycles", smallest,
+                     kMinCycles));
+}
+
 /// A scene's name is that of its file, and the name of a folder with its results.
 std::string sceneName(const std::string& path) {
   std::string name = std::filesystem::path(path).stem().string();
@@ -133,21 +148,24 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
   checkScene(root, draft, robot, q_start);
   const std::optional<HardwareConfig> hardware = chooseHardware(root, robot);
   if (hardware && use == SceneUse::kHardware) checkHardware(root, robot.root, draft, *hardware);
-  return Scene{.name = sceneName(path),
-               .controller = makeController(root, draft, robot, q_start),
-               .variant = draft.variant,
-               .period_s = draft.period_s,
-               .duration_s = draft.duration_s,
-               .stiffest_N_per_m = draft.stiffest_N_per_m,
-               .plant = makePlant(root, draft),
-               .robot_name = robot.chain.robot_name,
-               .joint_names = robot.chain.joint_names,
-               .sources = reader.files(),
-               .overrides = overrides,
-               .numbers = std::move(draft.numbers),
-               .hardware = hardware,
-               .troubles = loadTroubles(root, draft, hardware),
-               .tree = std::make_shared<const YamlNode>(root)};
+  Scene scene{.name = sceneName(path),
+              .controller = makeController(root, draft, robot, q_start),
+              .variant = draft.variant,
+              .period_s = draft.period_s,
+              .duration_s = draft.duration_s,
+              .stiffest_N_per_m = draft.stiffest_N_per_m,
+              .plant = makePlant(root, draft),
+              .robot_name = robot.chain.robot_name,
+              .joint_names = robot.chain.joint_names,
+              .sources = reader.files(),
+              .overrides = overrides,
+              .numbers = std::move(draft.numbers),
+              .hardware = hardware,
+              .log = draft.log,
+              .troubles = loadTroubles(root, draft, hardware),
+              .tree = std::make_shared<const YamlNode>(root)};
+  checkLogSize(root, scene);
+  return scene;
 }
 
 /// An error in another file says which scene led there.

@@ -117,6 +117,10 @@ TEST(KeyTable, DefaultsEqualThoseOfTheStructs) {
   EXPECT_EQ(scene.controller.tactile_module->filter_cutoff_hz, module_default.filter_cutoff_hz);
   EXPECT_EQ(scene.controller.drive_lag_s,
             ControllerConfig{.chain = scene.controller.chain}.drive_lag_s);
+  const LogConfig log_default;
+  EXPECT_EQ(scene.log.max_bytes, log_default.max_bytes);
+  EXPECT_EQ(scene.log.keep, log_default.keep);
+  EXPECT_EQ(scene.log.min_free_bytes, log_default.min_free_bytes);
   const PlantConfig plant_default;
   EXPECT_EQ(scene.plant.drive_lag_s, plant_default.drive_lag_s);
   EXPECT_EQ(scene.plant.module.filter_cutoff_hz, plant_default.module.filter_cutoff_hz);

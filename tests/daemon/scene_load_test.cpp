@@ -77,6 +77,24 @@ TEST(SceneLoad, SwingsObstaclesAndLosesSamples) {
   EXPECT_EQ(scene.plant.module.lost_share, 0.25);
 }
 
+TEST(SceneLoad, LimitsTheLog) {
+  const Scene scene = SceneFiles{}.load({{"log", "{max_bytes: 5e6, keep: 2, min_free_bytes: 0}"}});
+  EXPECT_EQ(scene.log.max_bytes, 5e6);
+  EXPECT_EQ(scene.log.keep, 2);
+  EXPECT_EQ(scene.log.min_free_bytes, 0.0);
+}
+
+TEST(SceneLoad, AFileOfTheLogHoldsItsSceneAndSomeCycles) {
+  SceneFiles files;
+  files.urdf += "<!--" + std::string(1'000'000, ' ') + "-->\n";
+  EXPECT_EQ(files.load({{"log.max_bytes", "2e6"}}).log.max_bytes, 2e6);
+  const std::string error = test::loadError(files.sources(), {{"log.max_bytes", "1e6"}});
+  EXPECT_EQ(error.find("--set log.max_bytes:1:1: log.max_bytes: 1000000 is too small, expected at "
+                       "least 1"),
+            0u)
+      << error;
+}
+
 TEST(SceneLoad, LeavesOutWhatNoSectionNames) {
   SceneFiles files;
   files.scene = "robot: robot.yaml\ntask: {trajectory: {hold: {}}}\nsimulation: {duration_s: 1}\n";

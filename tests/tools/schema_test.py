@@ -81,6 +81,7 @@ simulation:
   troubles:
     - {kind: delay, from_s: 1, until_s: 2, interface: can0, id: 0x181, delay_s: 0.01}
 real_time: {required: true}
+log: {max_bytes: 1e9, keep: 4, min_free_bytes: 1e8}
 """
 
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tactus/control/controller_config.h"
+#include "tactus/daemon/log_config.h"
 #include "tactus/io/hardware_config.h"
 #include "tactus/plant/trouble.h"
 #include "tactus/sim/plant_config.h"
@@ -53,6 +54,7 @@ struct ConfigDraft {
   PlantConfig plant;              ///< as robot.yaml describes the arm
   double simulated_drive_lag_s = 0.0, simulated_filter_cutoff_hz = 0.0;  ///< if given, other ones
   std::vector<TroubleDraft> troubles;
+  LogConfig log;
 
   // Robot.
   std::string urdf;  ///< path as written

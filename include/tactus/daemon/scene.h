@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tactus/control/controller_config.h"
+#include "tactus/daemon/log_config.h"
 #include "tactus/io/hardware_config.h"
 #include "tactus/plant/trouble.h"
 #include "tactus/sim/plant_config.h"
@@ -46,6 +47,7 @@ struct Scene {
   /// What this scene needs of the machine, without buses on which nothing of it is; absent: the
   /// robot only simulates.
   std::optional<HardwareConfig> hardware{};
+  LogConfig log{};
   std::vector<Trouble> troubles{};  ///< of the plant on the buses; simulation has none
   /// The scene with all it extends, for errors that are found later; null if it was not read.
   std::shared_ptr<const YamlNode> tree{};
