@@ -77,6 +77,13 @@ std::string motionText(const YAML::Node& motion) {
       1e3 * of("tcp_error_max_m"));
 }
 
+std::string logText(const YAML::Node& log) {
+  const int files = log["files"].as<int>();
+  std::string text = fmt::format("log      {}", escaped(log["state"].as<std::string>()));
+  if (log["reason"]) text += ": " + escaped(log["reason"].as<std::string>());
+  return text + fmt::format("; {} file{}\n", files, files == 1 ? "" : "s");
+}
+
 std::string statusText(const YAML::Node& status) {
   const auto text = [&](const char* name) { return escaped(status[name].as<std::string>()); };
   std::string shown = fmt::format("{} ({}), process {}\n{}\n", text("scene"), text("variant"),
@@ -84,6 +91,7 @@ std::string statusText(const YAML::Node& status) {
   if (status["motion"]) shown += motionText(status["motion"]);
   shown += fmt::format("cycles   {}, {} missed, {} not logged\n", text("cycles"),
                        text("missed_cycles"), text("dropped_records"));
+  if (status["log"]) shown += logText(status["log"]);
   return shown + timesLine("wakes", status["wake_latency_ns"]) +
          timesLine("step", status["control_ns"]);
 }

@@ -150,6 +150,7 @@ LoopFigures loopFigures(const Scene& scene, const HardwareLoop& loop, const Loop
 Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   blockStopSignals();
   signal(SIGPIPE, SIG_IGN);  // whoever reads the messages may leave; the arm still ends at rest
+  signal(SIGXFSZ, SIG_IGN);  // a log beyond the limit of a file's size is an error of write() alone
   const RealTimeConfig& real_time = scene.hardware->real_time;
 
   SystemCallFilter filter(kLoopSystemCalls);
@@ -182,7 +183,7 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   const StopRequests stop_requests(link.stop_requested);
   while (!has_ended.load(std::memory_order_acquire)) {
     std::this_thread::sleep_for(kDrainPeriod);
-    if (!telemetry.drain(link)) link.stop_requested.store(true, std::memory_order_relaxed);
+    telemetry.drain(link);
   }
   thread.join();
   telemetry.drain(link);

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "tactus/daemon/located_error.h"
+#include "tactus/daemon/run_log.h"
 
 namespace tactus {
 namespace {
@@ -18,6 +19,12 @@ constexpr const char* kSummaryName = "summary.json";
 [[noreturn]] void failAtOutput(const fs::path& path, const std::string& problem,
                                const std::string& expectation) {
   failAt({std::make_shared<std::string>(path.string()), 1, 1}, "-o", problem, expectation);
+}
+
+void removeEarlier(const fs::path& path, const std::string& expectation) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) failAtOutput(path, "cannot be replaced: " + error.message(), expectation);
 }
 
 }  // namespace
@@ -34,11 +41,9 @@ fs::path prepareRunFolder(const std::string& directory, const std::string& scene
     failAtOutput(folder, "cannot be written to: " + error.message(),
                  "expected a folder or room to make one");
   }
-  fs::remove(folder / kSummaryName, error);
-  if (error) {
-    failAtOutput(folder / kSummaryName, "cannot be replaced: " + error.message(),
-                 "expected an earlier summary or nothing");
-  }
+  removeEarlier(folder / kSummaryName, "expected an earlier summary or nothing");
+  for (int age = 1; age <= kMaxKeptLogs; ++age)
+    removeEarlier(folder / logName(age), "expected an earlier log or nothing");
   return folder;
 }
 

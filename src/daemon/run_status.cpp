@@ -47,6 +47,7 @@ std::string statusJson(const RunStatus& status, double monotonic_s) {
   writeTimes("wake_latency_ns", timeFigures(status.loop.wake_latency), json);
   writeTimes("control_ns", timeFigures(status.loop.control), json);
   if (status.figures) writeMotion(*status.figures, json);
+  if (status.log) writeLogState(*status.log, "writing", json);
   json.endObject();
   return json.text();
 }

@@ -93,7 +93,7 @@ RunFigures RunSummary::figures() const {
 }
 
 std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
-                        const LoopFigures* loop) {
+                        const LoopFigures* loop, const LogState* log) {
   JsonWriter json;
   json.beginObject();
   json.key("scene").value(scene.name);
@@ -106,6 +106,7 @@ std::string summaryJson(const Scene& scene, const RunFigures& figures, double re
   json.endArray();
   writeFigures(figures, json);
   if (loop) writeLoopFigures(*loop, json);
+  if (log) writeLogState(*log, "complete", json);
   json.key("real_time_factor").value(real_time_factor);
   json.key("outcome").value(figures.fault == Fault::kNone ? "completed" : faultName(figures.fault));
   json.endObject();
@@ -113,9 +114,9 @@ std::string summaryJson(const Scene& scene, const RunFigures& figures, double re
 }
 
 void writeSummary(const std::string& path, const Scene& scene, const RunFigures& figures,
-                  double real_time_factor, const LoopFigures* loop) {
+                  double real_time_factor, const LoopFigures* loop, const LogState* log) {
   OutputFile file(path);
-  file.append(summaryJson(scene, figures, real_time_factor, loop));
+  file.append(summaryJson(scene, figures, real_time_factor, loop, log));
   file.close();
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "tactus/daemon/input_error.h"
 #include "tactus/daemon/run_error.h"
 #include "tactus/daemon/tool_error.h"
 #include "tactus/io/sdo_abort.h"
@@ -55,10 +56,10 @@ std::string describeMode(const ModeReport& report, const Scene& scene) {
 
 Telemetry::Telemetry(const Scene& scene, const std::string& folder)
     : scene_(scene), folder_(folder), summary_(scene.controller, 0) {
-  if (!folder_.empty()) log_.emplace(folder_ + "/run.ulg", describeLog(scene));
+  if (!folder_.empty()) log_.emplace(scene, folder_);
 }
 
-bool Telemetry::drain(LoopLink& link) {
+void Telemetry::drain(LoopLink& link) {
   while (link.records.pop(record_)) {
     CycleRecord& cycle = record_.cycle;
     loop_.wake_latency.add(cycle.wake_latency_ns);
@@ -67,9 +68,10 @@ bool Telemetry::drain(LoopLink& link) {
     loop_.write.add(cycle.write_ns);
     if (!record_.is_in_motion || !(log_ || status_file_.isWanted())) continue;
     fillToolError(scene_.controller, cycle);
-    log(cycle);
+    if (log_) log_->write(cycle);
     log_ ? summary_.add(cycle) : summary_.addFigures(cycle);
   }
+  if (log_) log_->flush();
   while (link.reports.pop(report_)) {
     description_ = describeMode(report_, scene_);
     showStatus(link);  // before the service manager hears of it, and people look
@@ -77,7 +79,6 @@ bool Telemetry::drain(LoopLink& link) {
     std::fputs(fmt::format("tactusd: {}\n", description_).c_str(), stderr);
   }
   if (status_file_.isDue()) showStatus(link);
-  return !error_;
 }
 
 void Telemetry::showStatus(const LoopLink& link) {
@@ -86,20 +87,10 @@ void Telemetry::showStatus(const LoopLink& link) {
   loop_.dropped_records = static_cast<long long>(link.records.dropped());
   const RunFigures& figures = summary_.soFar();
   status_file_.write({scene_, report_.mode, report_.fault, description_, loop_,
-                      figures.cycles > 0 ? &figures : nullptr});
-}
-
-void Telemetry::log(const CycleRecord& cycle) {
-  if (!log_ || error_) return;
-  try {
-    log_->write(cycle);
-  } catch (const RunError&) {
-    error_ = std::current_exception();
-  }
+                      figures.cycles > 0 ? &figures : nullptr, log_ ? &log_->state() : nullptr});
 }
 
 void Telemetry::finish(Fault fault, LoopFigures loop) {
-  if (error_) std::rethrow_exception(error_);
   if (!log_) return;
   log_->close();
   loop.wake_latency = loop_.wake_latency;
@@ -108,7 +99,11 @@ void Telemetry::finish(Fault fault, LoopFigures loop) {
   loop.write = loop_.write;
   RunFigures figures = summary_.figures();
   figures.fault = fault;
-  writeSummary(folder_ + "/summary.json", scene_, figures, 1.0, &loop);
+  try {
+    writeSummary(folder_ + "/summary.json", scene_, figures, 1.0, &loop, &log_->state());
+  } catch (const InputError& error) {  // the arm has moved: no longer a matter of input
+    throw RunError(error.what());
+  }
 }
 
 }  // namespace tactus

@@ -159,6 +159,28 @@ TEST_F(RunStatusFile, AFolderThatCannotBeWrittenEndsNothing) {
   EXPECT_EQ(run(), kExitDone) << "what hindered it has gone";
 }
 
+TEST_F(RunStatusFile, TellsALogThatHasStoppedFromOneThatIsWritten) {
+  Scene scene = test::shippedScene("scenario1_multi_space");
+  const auto show = [&](const std::string& log_folder) {
+    Telemetry telemetry(scene, log_folder);
+    cycle(true, 1.0);
+    telemetry.drain(*link_);
+    EXPECT_EQ(run({"--json"}), kExitDone);
+    const YAML::Node log = YAML::Load(output_)["log"];
+    EXPECT_EQ(run(), kExitDone) << "the arm goes on";
+    return log;
+  };
+  EXPECT_FALSE(show("").IsDefined());
+  EXPECT_EQ(output_.find("\nlog "), std::string::npos) << output_;
+  EXPECT_EQ(show(folder_)["state"].as<std::string>(), "writing");
+  EXPECT_NE(output_.find("\nlog      writing; 1 file\n"), std::string::npos) << output_;
+  scene.log.min_free_bytes = 1e15;
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(show(folder_)["state"].as<std::string>(), "stopped");
+  ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(output_.find("\nlog      stopped: " + folder_ + ": "), std::string::npos) << output_;
+}
+
 TEST_F(RunStatusFile, NoneWithoutAFolder) {
   EXPECT_TRUE(StatusFile().isDue());
   unsetenv("RUNTIME_DIRECTORY");

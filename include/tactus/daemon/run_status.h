@@ -4,6 +4,7 @@
 
 #include "tactus/control/mode.h"
 #include "tactus/daemon/loop_figures.h"
+#include "tactus/daemon/run_log.h"
 #include "tactus/daemon/run_summary.h"
 
 namespace tactus {
@@ -16,6 +17,7 @@ struct RunStatus {
   const std::string& description;  ///< of both, as describeMode()
   const LoopFigures& loop;         ///< cycles, missed and dropped ones, and times
   const RunFigures* figures;       ///< RunSummary::soFar(); nullptr before the arm first moves
+  const LogState* log = nullptr;   ///< nullptr: a run without one
 };
 
 /// With the daemon's process and the machine's monotonic clock, by which a reader sees its age.

@@ -7,6 +7,7 @@
 #include "tactus/daemon/contact_list.h"
 #include "tactus/daemon/cycle_record.h"
 #include "tactus/daemon/loop_figures.h"
+#include "tactus/daemon/run_log.h"
 #include "tactus/daemon/scene.h"
 #include "tactus/daemon/time_figures.h"
 #include "tactus/rt/histogram.h"
@@ -56,13 +57,14 @@ class RunSummary {
   Histogram step_times_;
 };
 
-/// The text of summary.json. real_time_factor: duration of the run over the time it took; loop: of
-/// a run on hardware.
+/// The text of summary.json. real_time_factor: duration of the run over the time it took; loop and
+/// log: of a run on hardware.
 std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
-                        const LoopFigures* loop = nullptr);
+                        const LoopFigures* loop = nullptr, const LogState* log = nullptr);
 
 /// Writes it to a file; throws InputError if that cannot be opened, RunError if not written.
 void writeSummary(const std::string& path, const Scene& scene, const RunFigures& figures,
-                  double real_time_factor, const LoopFigures* loop = nullptr);
+                  double real_time_factor, const LoopFigures* loop = nullptr,
+                  const LogState* log = nullptr);
 
 }  // namespace tactus

@@ -1,16 +1,15 @@
 #pragma once
 
-#include <exception>
 #include <optional>
 #include <string>
 
 #include "tactus/daemon/loop_figures.h"
 #include "tactus/daemon/loop_link.h"
+#include "tactus/daemon/run_log.h"
 #include "tactus/daemon/run_status.h"
 #include "tactus/daemon/run_summary.h"
 #include "tactus/daemon/scene.h"
 #include "tactus/daemon/service_notify.h"
-#include "tactus/daemon/ulog_writer.h"
 
 namespace tactus {
 
@@ -18,20 +17,17 @@ namespace tactus {
 /// each change of mode a line and a word to the service manager.
 class Telemetry {
  public:
-  /// folder: of run.ulg and summary.json, which exists; empty: no files. Throws as UlogWriter.
+  /// folder: of run.ulg and summary.json, which exists; empty: no files. Throws as RunLog.
   Telemetry(const Scene& scene, const std::string& folder);
 
-  /// Takes what the loop has handed over since the last call. False: the log cannot be written, so
-  /// the run should end.
-  bool drain(LoopLink& link);
+  /// Takes what the loop has handed over since the last call, and leaves it with the kernel.
+  void drain(LoopLink& link);
 
   /// After the loop's end: closes the log and writes the summary. `fault` is the run's; `loop` has
-  /// all but the times.
-  /// Throws RunError, also for what drain() met.
+  /// all but the times. Throws RunError if the summary cannot be written.
   void finish(Fault fault, LoopFigures loop);
 
  private:
-  void log(const CycleRecord& cycle);
   void showStatus(const LoopLink& link);
 
   const Scene& scene_;
@@ -40,11 +36,10 @@ class Telemetry {
   StatusFile status_file_;
   ModeReport report_;
   std::string description_;
-  std::optional<UlogWriter> log_;
+  std::optional<RunLog> log_;
   RunSummary summary_;
   LoopFigures loop_;
   LoopRecord record_;
-  std::exception_ptr error_;
 };
 
 /// "fault: drive_silent, drive 2 on can1 (joint j5), no feedback ...: quick stop" and so on.
