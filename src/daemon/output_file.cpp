@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -59,6 +60,12 @@ void OutputFile::flush() {
     next += written;
     left -= static_cast<std::size_t>(written);
   }
+}
+
+void OutputFile::rename(const std::string& from, const std::string& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0)
+    throw RunError(fmt::format("{}: cannot be renamed: {}", escaped(to), std::strerror(errno)));
+  path_ = escaped(to);
 }
 
 void OutputFile::close() {

@@ -116,7 +116,7 @@ void RunLog::beginNextFile() {
     std::unique_ptr<UlogWriter> writer = begin(next);
     writer_->close();
     shiftFiles();
-    rename(next, folder_ + "/" + logName(0));
+    writer->rename(next, folder_ + "/" + logName(0));
     writer_ = std::move(writer);
   } catch (const std::runtime_error&) {
     std::error_code ignored;

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <stdexcept>
 
-#include "tactus/daemon/input_error.h"
 #include "tactus/daemon/run_error.h"
 #include "tactus/daemon/tool_error.h"
 #include "tactus/io/sdo_abort.h"
@@ -99,10 +99,12 @@ void Telemetry::finish(Fault fault, LoopFigures loop) {
   loop.write = loop_.write;
   RunFigures figures = summary_.figures();
   figures.fault = fault;
+  const std::string path = folder_ + "/summary.json";
   try {
-    writeSummary(folder_ + "/summary.json", scene_, figures, 1.0, &loop, &log_->state());
-  } catch (const InputError& error) {  // the arm has moved: no longer a matter of input
-    throw RunError(error.what());
+    writeSummary(path, scene_, figures, 1.0, &loop, &log_->state());
+  } catch (const std::runtime_error& error) {
+    std::remove(path.c_str());     // half of one
+    throw RunError(error.what());  // of input, too: the arm has moved
   }
 }
 

@@ -1,11 +1,13 @@
 #include "tactus/daemon/run_log.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <sys/statvfs.h>
 
 #include <random>
 
+#include "support/child_process.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/daemon/input_error.h"
@@ -161,6 +163,22 @@ TEST_F(RunLogFiles, ANextFileThatCannotBeBegunStopsTheLogBehindACompleteOne) {
   const test::ReadLog read_log = read("run.ulg");
   EXPECT_EQ(read_log.records.size(), 10u);
   EXPECT_FALSE(read_log.cut_off);
+}
+
+TEST_F(RunLogFiles, TheReasonNamesTheFileAsItIsThere) {
+  limitTo(1000);
+  const bool is_so = test::holdsInChild([this] {
+    signal(SIGXFSZ, SIG_IGN);
+    RunLog log(scene_, folder_);
+    writeCycles(log, 1001);
+    test::setLimit(RLIMIT_FSIZE, static_cast<rlim_t>(0.8 * scene_.log.max_bytes));
+    writeCycles(log, 999);
+    log.flush();
+    return log.state().stop_reason == path("run.ulg") + ": cannot be written: File too large";
+  });
+  EXPECT_TRUE(is_so);
+  EXPECT_EQ(read("run.1.ulg").records.size(), 1000u);
+  EXPECT_TRUE(read("run.ulg").cut_off);
 }
 
 TEST_F(RunLogFiles, AFolderThatVanishesStopsTheLog) {

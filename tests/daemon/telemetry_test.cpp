@@ -109,7 +109,7 @@ TEST_F(TelemetryLog, ASummaryThatCannotBeWrittenIsSaidWithTheLogComplete) {
   Telemetry telemetry(scene_, folder_);
   cycle(3);
   telemetry.drain(*link_);
-  std::filesystem::create_directory(path("summary.json"));
+  std::filesystem::create_directories(path("summary.json/in_the_way"));
   try {
     telemetry.finish(Fault::kNone, {});
     ADD_FAILURE();
@@ -117,6 +117,22 @@ TEST_F(TelemetryLog, ASummaryThatCannotBeWrittenIsSaidWithTheLogComplete) {
     EXPECT_NE(std::string(error.what()).find(path("summary.json")), std::string::npos);
   }
   EXPECT_EQ(test::readLog(content("run.ulg")).records.size(), 3u);
+}
+
+TEST_F(TelemetryLog, HalfASummaryIsNone) {
+  const bool has_failed = test::holdsInChild([this] {
+    signal(SIGXFSZ, SIG_IGN);
+    Telemetry telemetry(scene_, folder_);
+    test::setLimit(RLIMIT_FSIZE, 100);
+    try {
+      telemetry.finish(Fault::kNone, {});
+    } catch (const RunError&) {
+      return true;
+    }
+    return false;
+  });
+  EXPECT_TRUE(has_failed);
+  EXPECT_FALSE(std::filesystem::exists(path("summary.json")));
 }
 
 TEST_F(TelemetryLog, OneThatWasWrittenToTheEndIsComplete) {

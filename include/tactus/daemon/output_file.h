@@ -36,6 +36,8 @@ class OutputFile {
 
   /// Hands what is in the buffer to the kernel, from where no end of this process takes it away.
   void flush();
+  /// Gives the file another name, which errors show from then on. Throws RunError.
+  void rename(const std::string& from, const std::string& to);
   void close();
 
   /// What was appended so far, bytes.

@@ -45,6 +45,9 @@ class UlogWriter {
   /// Writes out what is in the buffer; throws RunError.
   void flush() { file_.flush(); }
 
+  /// As OutputFile::rename().
+  void rename(const std::string& from, const std::string& to) { file_.rename(from, to); }
+
   /// Of the log so far, bytes.
   std::uint64_t size() const noexcept { return file_.size(); }
 
