@@ -120,6 +120,10 @@ const char* modeName(Mode mode) noexcept {
   return kNames[static_cast<std::size_t>(mode)];
 }
 
+bool isCommanding(Mode mode) noexcept {
+  return mode == kRunning || mode == kHolding || mode == kStopping;
+}
+
 const std::array<ModeTransition, kModeTransitionCount>& modeTransitions() noexcept {
   return kTransitions;
 }
@@ -131,7 +135,7 @@ bool isLegal(Mode from, Mode to) noexcept {
 
 void updateMode(const ModeConfig& config, const ModeInput& input, ModeState& state) noexcept {
   note(state, input.fault);
-  ++state.cycles_in_mode;
+  state.cycles_in_mode = std::min(state.cycles_in_mode + 1, kMaxCyclesInMode);
   switch (state.mode) {
     case kBoot:
       return boot(config, input, state);

@@ -134,6 +134,11 @@ KeySpec brakeSection() {
       defaulted("0.1", number("switching_s", "s", within(0, 5),
                               "that the brakes take to open or to close; drives hold meanwhile",
                               [](Draft& d) -> double& { return d.gpio->brake_switching_s; })));
+  spec.keys.push_back(defaulted(
+      "0.5", number("deadline_s", "s", above(0, 60),
+                    "after a fault, longer than the longest quick stop: brakes are closed by then, "
+                    "and drives not seen off are cut off from the bus",
+                    [](Draft& d) -> double& { return d.gpio->brake_deadline_s; })));
   return spec;
 }
 

@@ -10,13 +10,16 @@ namespace {
 
 /// A drive that has gone silent cannot be seen to be off: its own heartbeat watch stops it.
 bool isReachable(const DriveReport& report) noexcept {
-  return report.is_configured && !report.is_silent;
+  return (report.is_configured || report.is_restarting) && !report.is_silent;
+}
+
+bool holds(DriveState state) noexcept {
+  return state == DriveState::kOperationEnabled || state == DriveState::kQuickStopActive ||
+         state == DriveState::kFaultReactionActive;
 }
 
 bool mayHold(const DriveReport& report) noexcept {
-  return !report.has_state || report.state == DriveState::kOperationEnabled ||
-         report.state == DriveState::kQuickStopActive ||
-         report.state == DriveState::kFaultReactionActive;
+  return !report.has_state || holds(report.state);
 }
 
 }  // namespace
@@ -30,7 +33,7 @@ CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
       q_commanded_(JointVector::Zero(static_cast<int>(hardware.drives.size()))) {
   drives_.reserve(hardware.drives.size());
   for (const DriveConfig& drive : hardware.drives) {
-    drives_.emplace_back(drive, hardware.canopen, period_s);
+    drives_.emplace_back(drive, hardware.canopen, brakeDeadline_s(hardware), period_s);
     has_drives_[drive.bus] = true;
   }
   if (!hardware.tactile) return;
@@ -49,8 +52,11 @@ void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
 
 void CanRobot::read(RobotInput& input) noexcept {
   input.q_measured.resize(static_cast<int>(drives_.size()));
-  for (std::size_t i = 0; i < drives_.size(); ++i)
-    input.q_measured[static_cast<int>(i)] = drives_[i].report().position;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const int joint = static_cast<int>(i);
+    drives_[i].observe(q_commanded_[joint]);
+    input.q_measured[joint] = drives_[i].report().position;
+  }
   if (tactile_) tactile_->tick();
   if (tactile_) input.tactile = tactile_->sample();
 }
@@ -76,17 +82,19 @@ void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
   for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
     if (has_drives_[bus]) outboxes_[bus].push(syncFrame());
   }
-}
-
-void CanRobot::release() noexcept {
-  for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
-    outboxes_[bus].clear();
-    if (has_drives_[bus]) outboxes_[bus].push(nmtFrame({NmtCommand::kResetCommunication, 0}));
+  for (const Drive& drive : drives_) {
+    if (drive.needsSilence()) outboxes_[drive.bus()].clear();
   }
 }
 
+void CanRobot::release() noexcept {
+  for (FrameBatch& outbox : outboxes_) outbox.clear();
+  for (const Drive& drive : drives_) drive.release(outboxes_[drive.bus()]);
+}
+
 DrivesReport CanRobot::drives() const noexcept {
-  DrivesReport all{true, true, true, false, Fault::kNone, -1};
+  DrivesReport all;
+  all.are_configured = all.are_enabled = true;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveReport& report = drives_[i].report();
     all.are_configured = all.are_configured && report.is_configured;
@@ -96,11 +104,17 @@ DrivesReport CanRobot::drives() const noexcept {
         may_hold || (isReachable(report) && report.state == DriveState::kSwitchedOn);
     all.is_any_holding = all.is_any_holding || may_hold;
     all.are_disabled = all.are_disabled && !has_power;
+    all.is_any_moving_on = all.is_any_moving_on || report.is_moving_on;
     if (report.fault == Fault::kNone || all.fault != Fault::kNone) continue;
     all.fault = report.fault;
     all.joint = static_cast<int>(i);
   }
   return all;
+}
+
+bool CanRobot::isHolding(int joint) const noexcept {
+  const DriveReport& report = drives_[joint].report();
+  return isReachable(report) && report.has_state && holds(report.state) && !report.is_cut_off;
 }
 
 bool CanRobot::hasPositions() const noexcept {

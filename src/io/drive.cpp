@@ -14,6 +14,11 @@ namespace {
 /// and drives may need a cycle more.
 constexpr int kSettledCycles = 3;
 
+bool isWithoutPower(DriveState state) noexcept {
+  return state == DriveState::kNotReady || state == DriveState::kSwitchOnDisabled ||
+         state == DriveState::kReadyToSwitchOn || state == DriveState::kFault;
+}
+
 PowerGoal powerGoal(DriveGoal goal, bool has_fault) noexcept {
   if (has_fault || goal == DriveGoal::kQuickStop) return PowerGoal::kQuickStop;
   return goal == DriveGoal::kEnabled ? PowerGoal::kEnabled : PowerGoal::kDisabled;
@@ -21,12 +26,15 @@ PowerGoal powerGoal(DriveGoal goal, bool has_fault) noexcept {
 
 }  // namespace
 
-Drive::Drive(const DriveConfig& config, const CanopenConfig& canopen, double period_s)
+Drive::Drive(const DriveConfig& config, const CanopenConfig& canopen, double stop_deadline_s,
+             double period_s)
     : config_(config),
       heartbeat_timeout_cycles_(cyclesLasting(canopen.heartbeat_timeout_s, period_s)),
       answer_timeout_cycles_(cyclesLasting(canopen.sdo_timeout_s, period_s)),
+      stop_deadline_cycles_(cyclesLasting(stop_deadline_s, period_s)),
       setup_(config, canopen, period_s),
-      velocity_counts_(config.sign * config.counts_per_unit) {}
+      velocity_counts_(config.sign * config.counts_per_unit),
+      rest_watch_(period_s) {}
 
 void Drive::receive(const CanFrame& frame) noexcept {
   if (frame.kind != FrameKind::kData || frame.extended) return;
@@ -64,13 +72,25 @@ void Drive::receiveHeartbeat(const CanFrame& frame) noexcept {
 void Drive::onBootUp() noexcept {
   if (phase_ == Phase::kConfigured) {
     fail(Fault::kDriveStateLost);
-    phase_ = Phase::kUnconfigured;  // its mapping is gone: setpoints would be misread
-    report_.is_configured = false;
+    report_.is_configured = report_.has_state = false;
     report_.state = DriveState::kNotReady;
+    beginRestart();  // its mapping is gone, if it is true: setpoints would be misread
+  } else if (phase_ == Phase::kRestarting) {
+    if (restart_cycles_ == 0) return;  // the reset has not been sent yet
+    phase_ = Phase::kUnconfigured;
+    report_.is_restarting = report_.is_silent = false;
+    report_.is_off = true;
   } else if (phase_ != Phase::kUnconfigured) {
     phase_ = Phase::kSetup;
     setup_.onBootUp();
   }
+}
+
+void Drive::beginRestart() noexcept {
+  phase_ = Phase::kRestarting;
+  restart_cycles_ = 0;
+  report_.is_restarting = true;
+  report_.is_off = report_.is_silent = false;
 }
 
 void Drive::receiveEmergency(const CanFrame& frame) noexcept {
@@ -84,20 +104,86 @@ void Drive::receiveEmergency(const CanFrame& frame) noexcept {
   if (is_new && emergency->code != 0) fail(Fault::kDriveFault);
 }
 
-void Drive::update(DriveGoal goal, bool restart, double velocity, double position,
-                   FrameBatch& out) noexcept {
-  if (goal == DriveGoal::kConfigure && restart) startSetup();
-  if (goal == DriveGoal::kConfigure) continueSetup(out);
+void Drive::observe(double position) noexcept {
+  if (phase_ == Phase::kStarting) awaitOperation();
+  if (phase_ == Phase::kRestarting || phase_ == Phase::kUnconfigured) watchRestart();
   if (phase_ == Phase::kConfigured) {
+    countSilence();
     takeFeedback();
     watchSilence();
-    watchFault(goal);
-    watchOperation(goal);
-    if (isRunning(goal)) watchPosition(velocity, position);
-    const DriveCommand command{controlWord(goal), velocityCounts(goal, velocity, position)};
-    if (goal != DriveGoal::kSilent) out.push(commandFrame(config_.node_id, command));
+    watchFault();
+    watchOperation();
+    if (isRunning(goal_)) watchPosition(position);
   }
   feedback_.reset();
+}
+
+void Drive::update(DriveGoal goal, bool restart, double velocity, double position,
+                   FrameBatch& out) noexcept {
+  goal_ = goal;
+  watchStop(goal);
+  if (report_.is_cut_off) return cutOff(out);
+  if (goal == DriveGoal::kConfigure && restart) startSetup();
+  if (goal == DriveGoal::kConfigure) continueSetup(out);
+  if (phase_ == Phase::kRestarting && goal != DriveGoal::kSilent) makeRestart(out);
+  if (phase_ != Phase::kConfigured) return;
+  const bool is_finite = std::isfinite(velocity) && std::isfinite(position);
+  if (isRunning(goal) && !is_finite) fail(Fault::kCommandNotFinite);
+  const DriveCommand command{controlWord(goal), velocityCounts(goal, velocity, position)};
+  if (goal != DriveGoal::kSilent) out.push(commandFrame(config_.node_id, command));
+}
+
+void Drive::release(FrameBatch& out) const noexcept {
+  const NmtCommand command =
+      report_.is_off ? NmtCommand::kResetCommunication : NmtCommand::kResetNode;
+  out.push(nmtFrame({command, config_.node_id}));
+}
+
+/// A drive that has started anew sends no feedback before it is told to.
+void Drive::watchRestart() noexcept {
+  countSilence();
+  if (phase_ == Phase::kUnconfigured) {
+    if (report_.is_off && feedback_) beginRestart();
+    return;
+  }
+  report_.is_silent =
+      std::min(cycles_without_feedback_, cycles_without_heartbeat_) > heartbeat_timeout_cycles_;
+}
+
+/// Once, and again where it is heard although it should be booting.
+void Drive::makeRestart(FrameBatch& out) noexcept {
+  const bool is_heard = cycles_without_heartbeat_ <= 1 || cycles_without_feedback_ == 0;
+  const bool has_ignored = restart_cycles_ > answer_timeout_cycles_ && is_heard;
+  if (restart_cycles_ == 0 || has_ignored) {
+    out.push(nmtFrame({NmtCommand::kResetNode, config_.node_id}));
+    restart_cycles_ = 0;
+  }
+  restart_cycles_ = std::min(restart_cycles_, answer_timeout_cycles_) + 1;
+}
+
+void Drive::watchStop(DriveGoal goal) noexcept {
+  const bool ignores = goal == DriveGoal::kDisabled && phase_ == Phase::kConfigured &&
+                       state_ == DriveState::kOperationEnabled;
+  ignored_cycles_ = ignores ? std::min(ignored_cycles_, stop_deadline_cycles_) + 1 : 0;
+  if (ignored_cycles_ > stop_deadline_cycles_) fail(Fault::kDriveStateLost);
+  if (goal != DriveGoal::kQuickStop) {
+    rest_watch_.restart();
+    quick_stop_cycles_ = cut_off_cycles_ = 0;
+    report_.is_moving_on = report_.is_cut_off = false;
+    return;
+  }
+  // What it did while nobody heard of it shows as a jump, which is no motion on.
+  const bool is_unheard = cycles_without_feedback_ > kMaxSilentCycles || !report_.has_position;
+  if (is_unheard) rest_watch_.restart();
+  if (!is_unheard && rest_watch_.update(report_.position)) report_.is_moving_on = true;
+  quick_stop_cycles_ = std::min(quick_stop_cycles_, stop_deadline_cycles_) + 1;
+  const bool is_late = quick_stop_cycles_ > stop_deadline_cycles_ || report_.is_moving_on;
+  if (is_late && !report_.is_off) report_.is_cut_off = true;
+}
+
+void Drive::cutOff(FrameBatch& out) noexcept {
+  if (cut_off_cycles_ % 5 == 0) out.push(nmtFrame({NmtCommand::kStop, config_.node_id}));
+  cut_off_cycles_ = std::min(cut_off_cycles_, kCuttingOffCycles) + 1;
 }
 
 void Drive::startSetup() noexcept {
@@ -109,7 +195,6 @@ void Drive::startSetup() noexcept {
 void Drive::continueSetup(FrameBatch& out) noexcept {
   const bool is_new = phase_ == Phase::kUnconfigured && report_.fault == Fault::kNone;
   if (is_new) startSetup();
-  if (phase_ == Phase::kStarting) return awaitOperation();
   if (phase_ != Phase::kSetup) return;
   setup_.update(out);
   if (setup_.status() == DriveSetup::Status::kDone) {
@@ -139,47 +224,53 @@ void Drive::onConfigured() noexcept {
   reset_cycles_ = 0;
 }
 
+/// Counts as far as it matters: a drive may be silent for months.
+void Drive::countSilence() noexcept {
+  const int most = std::max(kMaxSilentCycles, heartbeat_timeout_cycles_) + 1;
+  cycles_without_feedback_ = feedback_ ? 0 : std::min(cycles_without_feedback_ + 1, most);
+  cycles_without_heartbeat_ = std::min(cycles_without_heartbeat_ + 1, most);
+}
+
 void Drive::takeFeedback() noexcept {
-  ++cycles_without_feedback_;
   if (!feedback_) return;
   cycles_without_feedback_ = 0;
   state_ = decodeStatusWord(feedback_->status_word);
   report_.state = state_.value_or(DriveState::kNotReady);
   report_.has_state = state_.has_value();
+  report_.is_off = state_ && isWithoutPower(*state_);
   report_.has_position = true;
   report_.position =
       feedback_->position / (config_.sign * config_.counts_per_unit) + config_.offset;
 }
 
 void Drive::watchSilence() noexcept {
-  ++cycles_without_heartbeat_;
   const bool is_silent = cycles_without_feedback_ > kMaxSilentCycles ||
                          cycles_without_heartbeat_ > heartbeat_timeout_cycles_;
   report_.is_silent = is_silent;
   if (is_silent) fail(Fault::kDriveSilent);
 }
 
-void Drive::watchFault(DriveGoal goal) noexcept {
+void Drive::watchFault() noexcept {
   const bool is_in_fault =
       state_ == DriveState::kFault || state_ == DriveState::kFaultReactionActive;
   if (state_ && !is_in_fault) has_old_fault_ = false;
   if (!is_in_fault) return;
-  const bool may_reset = goal == DriveGoal::kEnabled && has_old_fault_;
+  const bool may_reset = goal_ == DriveGoal::kEnabled && has_old_fault_;
   if (may_reset) ++reset_cycles_;
   const bool is_given_up = reset_cycles_ > (may_reset ? answer_timeout_cycles_ : 0);
   if (!has_old_fault_ || is_given_up) fail(Fault::kDriveFault);
 }
 
-void Drive::watchOperation(DriveGoal goal) noexcept {
-  const bool is_running = isRunning(goal);
-  const bool is_asked_for = goal == DriveGoal::kEnabled;
+void Drive::watchOperation() noexcept {
+  const bool is_running = isRunning(goal_);
+  const bool is_asked_for = goal_ == DriveGoal::kEnabled;
   if (is_asked_for && !is_running && enabled_cycles_ >= kSettledCycles)
     fail(Fault::kDriveStateLost);
   enabled_cycles_ = is_running ? std::min(enabled_cycles_ + 1, kSettledCycles) : 0;
 }
 
-void Drive::watchPosition(double velocity, double position) noexcept {
-  if (!std::isfinite(velocity) || !std::isfinite(position)) return fail(Fault::kCommandNotFinite);
+void Drive::watchPosition(double position) noexcept {
+  if (!std::isfinite(position)) return fail(Fault::kCommandNotFinite);
   const bool is_far = std::abs(position - report_.position) > config_.max_following_error;
   if (feedback_ && is_far) fail(Fault::kFollowingError);
 }

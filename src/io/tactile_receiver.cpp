@@ -112,7 +112,7 @@ void TactileReceiver::publish(const Wrench& raw) noexcept {
   for (int i = 0; i < 4; ++i) {
     if (filters_[i]) wrench[i] = filters_[i]->update(wrench[i]);
   }
-  ++counters_.samples;
+  if (++counters_.samples == 0) counters_.samples = 1;  // 0 says that there is none
   sample_ = {wrench[0], wrench[1], wrench[2], wrench[3], counters_.samples};
 }
 

@@ -12,6 +12,7 @@
 namespace tactus::test {
 
 inline constexpr int kNode = 5;
+inline constexpr double kStopDeadline_s = 0.5;
 
 inline DriveConfig driveConfig() {
   DriveConfig config;
@@ -26,12 +27,13 @@ inline DriveConfig driveConfig() {
 struct DriveRig {
   explicit DriveRig(const DriveConfig& drive_config = driveConfig(),
                     const CanopenConfig& canopen = {})
-      : config(drive_config), drive(drive_config, canopen, kPeriod_s) {}
+      : config(drive_config), drive(drive_config, canopen, kStopDeadline_s, kPeriod_s) {}
 
   /// The frames that the master sends; the drive answers in the next cycle.
   std::vector<CanFrame> cycle(DriveGoal goal, double velocity = 0.0, bool restart = false) {
     for (const CanFrame& frame : slave.take()) drive.receive(frame);
     FrameBatch out;
+    drive.observe(position);
     drive.update(goal, restart, velocity, position, out);
     position += velocity * kPeriod_s;
     for (const CanFrame& frame : out) slave.hear(frame);

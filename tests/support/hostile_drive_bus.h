@@ -15,7 +15,7 @@ namespace tactus::test {
 class HostileDriveBus {
  public:
   HostileDriveBus(const DriveConfig& config, const CanopenConfig& canopen, double period_s)
-      : config_(config), drive_(config, canopen, period_s) {}
+      : config_(config), drive_(config, canopen, GpioConfig{}.brake_deadline_s, period_s) {}
 
   void receive(const CanFrame& frame) noexcept {
     drive_.receive(frame);
@@ -30,6 +30,7 @@ class HostileDriveBus {
     is_enabled_next_.reset();
     const Fault fault_before = drive_.report().fault;
     sent_.clear();
+    drive_.observe(position);
     drive_.update(goal, restart, velocity, position, sent_);
     const bool is_restart = goal == DriveGoal::kConfigure && restart;
     if (!is_restart && fault_before != Fault::kNone && drive_.report().fault != fault_before)

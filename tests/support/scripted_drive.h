@@ -37,6 +37,8 @@ class ScriptedDrive {
   bool sends_feedback = true;
   bool sends_heartbeat = true;
   bool shows_mode = true;
+  bool ignores_commands = false;  ///< of RPDOs: it goes on with its last velocity
+  bool ignores_nmt = false;
   int quick_stop_cycles = 5;
   int resets_refused = 0;
   std::int32_t position = 0;  ///< counts
@@ -102,6 +104,8 @@ class ScriptedDrive {
   }
 
   void command(int command) {
+    if (ignores_nmt) return;
+    if (command == 2 && power == kEnabled) power = kReaction;  // the reaction of object 6007
     if (command == 1) nmt = 5;
     if (command == 2) nmt = 4;
     if (command == 128) nmt = 127;
@@ -145,7 +149,7 @@ class ScriptedDrive {
     }
     if (nmt == 5 && isOn(0x1800) && sends_feedback) feedback();
     advance();
-    if (nmt != 5 || !latched_) return;
+    if (nmt != 5 || !latched_ || ignores_commands) return;
     drive(latched_->data[0] | latched_->data[1] << 8);
     velocity =
         static_cast<std::int32_t>(latched_->data[2] | latched_->data[3] << 8 |

@@ -21,6 +21,8 @@ enum class Mode : std::uint8_t {
 
 inline constexpr int kModeCount = 8;
 const char* modeName(Mode mode) noexcept;
+/// The controller's command moves the arm, or keeps it where it is.
+bool isCommanding(Mode mode) noexcept;
 
 /// One legal change of mode. Whatever is not in the table does not happen.
 struct ModeTransition {
@@ -43,13 +45,16 @@ struct ModeInput {
   bool is_at_rest = true;        ///< the commanded velocity is zero
 };
 
+/// Far beyond every time limit, and below where a count would overflow: an arm may run for months.
+inline constexpr int kMaxCyclesInMode = 1 << 30;
+
 struct ModeState {
   Mode mode = Mode::kBoot;
   Fault fault = Fault::kNone;           ///< the first one since the last clearing
   Reaction reaction = Reaction::kNone;  ///< the harshest since then
   bool may_clear = false;               ///< the enable line was off since the fault or hold
-  int cycles_in_mode = 0;
-  int enabled_cycles = 0;  ///< in a row, while enabling
+  int cycles_in_mode = 0;               ///< counted up to kMaxCyclesInMode
+  int enabled_cycles = 0;               ///< in a row, while enabling
 };
 
 /// Time limits, in cycles.

@@ -1,0 +1,30 @@
+#pragma once
+
+namespace tactus {
+
+/// Tells an axis that goes on moving from one that slows down, by its measured position alone: it
+/// has moved in two windows in a row, and in the second one as far as in the first.
+class RestWatch {
+ public:
+  static constexpr double kWindow_s = 0.05;
+  static constexpr double kMoved = 1e-3;  ///< m or rad in a window; less is rest
+  /// m or rad: a window must be shorter by so much, which is 0.08 m/s^2 or rad/s^2, to be one of an
+  /// axis that slows down.
+  static constexpr double kSlowing = 2e-4;
+
+  explicit RestWatch(double period_s);
+
+  void restart() noexcept { windows_ = cycles_ = 0; }
+
+  /// Once a cycle; position: m or rad, finite. True: it moves on.
+  bool update(double position) noexcept;
+
+ private:
+  int window_cycles_;
+  int cycles_ = 0;   ///< of the present window
+  int windows_ = 0;  ///< that have ended, as many as matter
+  double begin_ = 0.0;
+  double way_before_ = 0.0;
+};
+
+}  // namespace tactus

@@ -1,0 +1,195 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/drive_rig.h"
+
+/// Drives that do not stop, or lie about it.
+namespace tactus {
+namespace {
+
+using test::DriveRig;
+using test::kNode;
+using test::rawFrame;
+using test::ScriptedDrive;
+
+constexpr int kDeadlineCycles = 500;
+const CanFrame kNmtStop = rawFrame(0, {2, kNode});
+const CanFrame kResetNode = rawFrame(0, {129, kNode});
+const CanFrame kResetCommunication = rawFrame(0, {130, kNode});
+
+/// A drive that moves, and obeys no control word from now on.
+DriveRig deafDrive(double velocity) {
+  DriveRig rig;
+  rig.enable();
+  rig.cycles(30, DriveGoal::kEnabled, velocity);
+  rig.slave.ignores_commands = true;
+  return rig;
+}
+
+bool isAmong(const CanFrame& frame, const std::vector<CanFrame>& frames) {
+  return std::find(frames.begin(), frames.end(), frame) != frames.end();
+}
+
+std::vector<CanFrame> released(const DriveRig& rig) {
+  FrameBatch out;
+  rig.drive.release(out);
+  return {out.begin(), out.end()};
+}
+
+TEST(DriveStop, OneThatMovesOnIsSeenAndStoppedByNmtLongBeforeTheDeadline) {
+  for (const double velocity : {0.05, -0.3, 2.0}) {
+    DriveRig rig = deafDrive(velocity);
+    int cycles = 0;
+    while (!rig.report().is_moving_on && cycles < kDeadlineCycles) {
+      EXPECT_FALSE(isAmong(kNmtStop, rig.cycle(DriveGoal::kQuickStop)) && cycles < 90);
+      ++cycles;
+    }
+    EXPECT_LE(cycles, 110) << velocity;
+    rig.cycles(3, DriveGoal::kQuickStop);
+    EXPECT_EQ(rig.slave.nmt, 4);
+    EXPECT_NE(rig.slave.power, ScriptedDrive::kEnabled);
+  }
+}
+
+TEST(DriveStop, OneThatSlowsDownIsLeftToIt) {
+  for (const double deceleration : {0.2, 1.0, 20.0}) {  // rad/s^2, from 2 rad/s, or from less
+    RestWatch watch(0.001);
+    double speed = std::min(2.0, 0.45 * deceleration);
+    double q = 0.0;
+    for (int i = 0; i < 490; ++i) {
+      EXPECT_FALSE(watch.update(q)) << deceleration << " " << i;
+      q += 0.001 * speed;
+      speed = std::max(0.0, speed - 0.001 * deceleration);
+    }
+  }
+}
+
+TEST(DriveStop, OneThatWasNotHeardOfWhileItSlowedDownDoesNotMoveOn) {
+  DriveRig rig;
+  rig.slave.quick_stop_cycles = 120;
+  rig.enable();
+  rig.cycles(30, DriveGoal::kEnabled, 0.3);
+  rig.slave.sends_feedback = false;
+  rig.cycles(95, DriveGoal::kQuickStop);
+  rig.slave.position -= 4000;  // 20 mrad on
+  rig.slave.sends_feedback = true;
+  for (int i = 0; i < 500; ++i) {
+    ASSERT_FALSE(isAmong(kNmtStop, rig.cycle(DriveGoal::kQuickStop))) << i;
+    ASSERT_FALSE(rig.report().is_moving_on) << i;
+  }
+  EXPECT_TRUE(rig.report().is_off);
+}
+
+TEST(DriveStop, OneThatIsNotSeenOffIsCutOffAtTheDeadline) {
+  DriveRig rig;
+  rig.enable();
+  rig.slave.ignores_commands = rig.slave.ignores_nmt = true;  // at rest, but with power
+  for (int i = 0; i < kDeadlineCycles; ++i) {
+    ASSERT_FALSE(isAmong(kNmtStop, rig.cycle(DriveGoal::kQuickStop))) << i;
+    ASSERT_FALSE(rig.drive.needsSilence()) << i;
+  }
+  EXPECT_EQ(rig.cycle(DriveGoal::kQuickStop), std::vector{kNmtStop});
+  EXPECT_TRUE(rig.report().is_cut_off);
+  int cycles = 0;
+  for (; !rig.drive.needsSilence() && cycles < 100; ++cycles) {
+    for (const CanFrame& frame : rig.cycle(DriveGoal::kQuickStop)) EXPECT_EQ(frame, kNmtStop);
+  }
+  EXPECT_LE(cycles, Drive::kCuttingOffCycles);
+  rig.cycles(1000, DriveGoal::kQuickStop);
+  EXPECT_TRUE(rig.drive.needsSilence());
+  rig.slave.ignores_commands = rig.slave.ignores_nmt = false;
+  rig.enable();  // by a restart all is as before
+  EXPECT_FALSE(rig.drive.needsSilence());
+  EXPECT_FALSE(rig.report().is_cut_off);
+}
+
+TEST(DriveStop, OneThatIsSeenOffIsNeverCutOff) {
+  DriveRig rig;
+  rig.enable();
+  for (int i = 0; i < 3 * kDeadlineCycles; ++i)
+    ASSERT_FALSE(isAmong(kNmtStop, rig.cycle(DriveGoal::kQuickStop))) << i;
+  rig.slave.sends_feedback = false;  // off when last heard of
+  rig.cycles(1000, DriveGoal::kQuickStop);
+  EXPECT_FALSE(rig.report().is_cut_off);
+}
+
+TEST(DriveStop, OneThatStaysEnabledThoughDisabledIsAFault) {
+  DriveRig rig = deafDrive(0.1);
+  int cycles = 0;
+  while (rig.report().fault == Fault::kNone && cycles < 2 * kDeadlineCycles) {
+    rig.cycle(DriveGoal::kDisabled);
+    ++cycles;
+  }
+  EXPECT_EQ(rig.report().fault, Fault::kDriveStateLost);
+  EXPECT_EQ(cycles, kDeadlineCycles + 1);
+}
+
+TEST(DriveStop, OneThatSaysItBootsIsResetAndNotOffBeforeItHasBooted) {
+  DriveRig rig = deafDrive(0.1);
+  rig.slave.ignores_nmt = true;
+  rig.slave.say(0x700, {0});  // and runs on
+  EXPECT_TRUE(isAmong(kResetNode, rig.cycle(DriveGoal::kEnabled)));
+  EXPECT_EQ(rig.report().fault, Fault::kDriveStateLost);
+  int resets = 0;
+  for (int i = 0; i < 300; ++i) {
+    resets += isAmong(kResetNode, rig.cycle(DriveGoal::kQuickStop)) ? 1 : 0;
+    ASSERT_TRUE(rig.report().is_restarting) << i;
+    ASSERT_FALSE(rig.report().is_off) << i;
+    ASSERT_FALSE(rig.report().is_silent) << i;
+  }
+  EXPECT_GE(resets, 1) << "it was heard again, so it had not heard";
+  rig.slave.ignores_nmt = false;
+  rig.cycles(150, DriveGoal::kQuickStop);
+  EXPECT_TRUE(rig.report().is_off);
+  EXPECT_FALSE(rig.report().is_restarting);
+  EXPECT_EQ(rig.slave.power, ScriptedDrive::kDisabled);
+}
+
+TEST(DriveStop, OneThatSaysItBootsTwiceButRunsOnIsResetAgain) {
+  DriveRig rig = deafDrive(0.1);
+  rig.slave.ignores_nmt = true;
+  rig.slave.say(0x700, {0});
+  rig.cycle(DriveGoal::kQuickStop);
+  rig.slave.say(0x700, {0});
+  rig.cycles(2, DriveGoal::kQuickStop);
+  EXPECT_TRUE(rig.report().is_restarting) << "one that has booted sends no feedback";
+  EXPECT_FALSE(rig.report().is_off);
+}
+
+TEST(DriveStop, ARealRestartEndsOff) {
+  DriveRig rig;
+  rig.enable();
+  rig.slave.powerUp();
+  rig.cycles(10, DriveGoal::kQuickStop);
+  EXPECT_TRUE(rig.report().is_off);
+  EXPECT_EQ(rig.report().fault, Fault::kDriveStateLost);
+}
+
+TEST(DriveStop, OnlyWhatWasSeenOffLosesItsWatchAtTheEnd) {
+  DriveRig rig;
+  EXPECT_EQ(released(rig), std::vector{kResetNode}) << "never heard of";
+  rig.configure();
+  rig.cycle(DriveGoal::kDisabled);
+  EXPECT_EQ(released(rig), std::vector{kResetCommunication});
+  rig.enable();
+  EXPECT_EQ(released(rig), std::vector{kResetNode});
+  rig.cycles(20, DriveGoal::kQuickStop);
+  EXPECT_EQ(released(rig), std::vector{kResetCommunication});
+  rig.enable();
+  rig.slave.sends_feedback = false;
+  rig.cycles(20, DriveGoal::kQuickStop);
+  EXPECT_EQ(released(rig), std::vector{kResetNode}) << "out of reach";
+}
+
+TEST(DriveStop, FeedbackIsJudgedInTheCycleInWhichItComes) {
+  DriveRig rig;
+  rig.enable();
+  rig.slave.say(0x180, {0x18, 0x16, 0, 0, 0, 0});
+  for (const CanFrame& frame : rig.slave.take()) rig.drive.receive(frame);
+  rig.drive.observe(rig.position);
+  EXPECT_EQ(rig.report().fault, Fault::kDriveFault) << "before anything is sent";
+}
+
+}  // namespace
+}  // namespace tactus
