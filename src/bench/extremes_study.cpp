@@ -135,7 +135,7 @@ StudyResult studyStability(const BenchOptions& options) {
       "tactus check refuses the gains for this contact, its key is in the table, and the case was "
       "simulated all the same. A fault is named and ends at rest.";
   result.goals = {
-      worst(rows, "cycles of a row with a number that is none", &ExtremeRun::not_finite_cycles),
+      worst(rows, "cycles of a row with NaN or infinity", &ExtremeRun::not_finite_cycles),
       worst(rows, "cycles of a row with a command beyond a limit",
             &ExtremeRun::beyond_limits_cycles),
       worst(rows, "cycles of a row with subnormal numbers", &ExtremeRun::subnormal_cycles)};

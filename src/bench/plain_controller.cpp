@@ -80,6 +80,8 @@ Eigen::VectorXd PlainController::answer(const RobotInput& input, const Eigen::Ve
   law_input.integral_decay =
       transition_->update(law_input.F_p_N, p_BaseContact, period_s, state.transition);
   law_input.x_dot_ff_m_per_s = state.transition.gamma * std::min(0.0, a.dot(q_dot_eff));
+  law_input.cut_m_per_s = state.cut_m_per_s;
+  state.contact_direction = a;
   ControlLawOutput u;
   law_->update(law_input, space, period_s, state.law, u);
   return -(a - Na) * u.u_t - Na * u.u_n - a * u.u_j;
@@ -95,6 +97,7 @@ JointVector PlainController::update(const RobotInput& input, double t_s, double 
   if (law_) q_dot += answer(input, q_dot_eff, period_s, state);
   JointVector velocity = q_dot;
   limiter_.apply(state.q_desired, state.velocity_before, period_s, velocity);
+  if (law_) state.cut_m_per_s = std::max(0.0, state.contact_direction.dot(q_dot - velocity));
   state.velocity_before = velocity;
   state.q_desired = (state.q_desired + period_s * velocity)
                         .cwiseMax(config_.limits.lower)

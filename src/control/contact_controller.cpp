@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "tactus/control/return_speed.h"
+#include "tactus/math/filter.h"
+
 namespace tactus {
 
 /// A contact as the joints see it.
@@ -16,6 +19,7 @@ ContactController::ContactController(const ControllerConfig& config,
     : chain_(config.chain),
       link_(config.tactile_module->link),
       initial_position_m_(0.5 * config.tactile_module->length_m),
+      task_(config.task),
       config_(*config.force_control),
       inv_sqrt_weights_(inv_sqrt_weights),
       law_(config_, config.chain, inv_sqrt_weights) {
@@ -36,6 +40,9 @@ ContactControllerState ContactController::initialState() const {
   state.joint_space_transition.contact.position_m = initial_position_m_;
   state.estimator = {config_.assumed_stiffness_N_per_m, config_.assumed_stiffness_N_per_m};
   if (approach_limit_) state.approach = approach_limit_->initialState();
+  const bool is_multi_space =
+      config_.variant == Variant::kNullTask || config_.variant == Variant::kNullJoint;
+  if (is_multi_space && hasReturnSpeed(task_)) state.push = TaskVector::Zero(task_.size);
   return state;
 }
 
@@ -43,7 +50,7 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
                                const CommandedMotion& commanded, double period_s,
                                ContactControllerState& state, ContactReport& report,
                                Motion& motion) const noexcept {
-  const ContactPointState& point = follow(sensor, kinematics, period_s, state);
+  const ContactPointState& point = follow(sensor, kinematics, commanded, period_s, state);
   const Contact contact = locate(kinematics, point);
 
   ControlLawInput input;
@@ -61,11 +68,17 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
     input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
     report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
   }
-  if (joint_space_transition_) {
+  if (state.is_resting && commanded.is_followed) goOn(contact, point, state);
+  state.is_resting = !commanded.is_followed;
+  if (!commanded.is_followed) {
+    rest(contact, period_s, state, report, input);
+  } else if (joint_space_transition_) {
     passJointSpaceTransition(kinematics, contact, period_s, state, report, input, motion);
   } else {
     passTransition(contact, period_s, state, report, input);
   }
+  input.is_followed = commanded.is_followed;
+  input.cut_m_per_s = state.cut_m_per_s;
   ControlLawOutput u;
   law_.update(input, contact.space, period_s, state.law, u);
   if (approach_limit_) {
@@ -79,6 +92,11 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
   motion.y += (u.u_n - u.u_t) * contact.space.a_task;
   motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
+  motion.a = contact.a;
+
+  if (state.push.size() > 0)
+    state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * contact.space.a_task);
+  if (!commanded.is_followed) state.push.setZero();
 
   report.force_contact_N = input.F_p_N;
   report.stiffness_N_per_m = input.stiffness_N_per_m;
@@ -92,17 +110,36 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
 
 const ContactPointState& ContactController::follow(const ContactPointState& sensor,
                                                    const TaskKinematics& kinematics,
+                                                   const CommandedMotion& commanded,
                                                    double period_s,
                                                    ContactControllerState& state) const noexcept {
   if (joint_space_transition_) {
-    joint_space_transition_->follow(sensor, period_s, state.joint_space_transition);
+    joint_space_transition_->follow(sensor, commanded.is_followed, period_s,
+                                    state.joint_space_transition);
     return state.joint_space_transition.contact;
   }
-  if (!approach_limit_) return sensor;
-  ContactPointState& contact = state.approach.smoother.contact;
-  contact.interval_s = 0.0;
-  if (sensor.isNew())
-    approach_limit_->follow(sensor, framePose(kinematics.pose, link_), state.approach);
+  if (approach_limit_) {
+    ContactPointState& contact = state.approach.smoother.contact;
+    contact.interval_s = 0.0;
+    if (sensor.isNew())
+      approach_limit_->follow(sensor, framePose(kinematics.pose, link_), state.approach);
+    return contact;
+  }
+  return hasReturnSpeed(task_) ? holdLost(sensor, state) : sensor;
+}
+
+/// Below the threshold the reading of a contact that is gone turns with the ringing of the sensor's
+/// filter. What is left of the law's answer would turn with it and push the tool on top of its
+/// return.
+const ContactPointState& ContactController::holdLost(const ContactPointState& sensor,
+                                                     ContactControllerState& state) const noexcept {
+  ContactPointState& contact = state.contact;
+  if (sensor.force_N > config_.contact_threshold_N || !state.transition.touched) {
+    contact = sensor;
+  } else {
+    contact.force_N = sensor.force_N;
+    contact.interval_s = sensor.interval_s;
+  }
   return contact;
 }
 
@@ -119,6 +156,30 @@ ContactController::Contact ContactController::locate(
   computeContactSpace(kinematics.pseudoinverse, contact.a, inv_sqrt_weights_, kinematics.y_eff,
                       contact.space);
   return contact;
+}
+
+/// What the arm feels while it does not move says nothing of how it goes on: only the integral
+/// fades where nothing is felt.
+void ContactController::rest(const Contact& contact, double period_s, ContactControllerState& state,
+                             ContactReport& report, ControlLawInput& input) const noexcept {
+  const double fade = lagShare(period_s, config_.transition.max_time_constant_s);
+  input.integral_decay = input.F_p_N > 0.0 ? 1.0 : 1.0 - fade;
+  if (joint_space_transition_) joint_space_transition_->rest(state.joint_space_transition);
+  report.gamma =
+      joint_space_transition_ ? state.joint_space_transition.gamma : state.transition.gamma;
+  report.x_dot_eff_m_per_s = contact.space.x_dot_eff_m_per_s;
+}
+
+/// By what the sensor says now: an arm that leans on something is in contact, even below F_th; any
+/// other has never touched.
+void ContactController::goOn(const Contact& contact, const ContactPointState& point,
+                             ContactControllerState& state) const noexcept {
+  const bool is_touching = point.force_N > config_.transition.release_force_N;
+  const double gamma = is_touching ? 1.0 : 0.0;
+  state.transition = {is_touching, contact.p_Base, gamma};
+  state.joint_space_transition.touching = is_touching;
+  state.joint_space_transition.gamma = gamma;
+  state.joint_space_transition.p_BaseLost = contact.p_Base;
 }
 
 void ContactController::passTransition(const Contact& contact, double period_s,
@@ -140,7 +201,7 @@ void ContactController::passJointSpaceTransition(const TaskKinematics& kinematic
   JointSpaceTransitionState& transition = state.joint_space_transition;
   const ContactSpace& space = contact.space;
   const double x_free = space.a_task.dot(motion.y) + space.a_scaled.dot(motion.v_scaled);
-  TaskVector y_pull = kinematics.pseudoinverse.solve(config_.pull_gain_per_s * kinematics.error);
+  TaskVector y_pull = kinematics.pseudoinverse.solve(pull(kinematics.error));
   y_pull *= law_.speedShare(kinematics.pseudoinverse.expand(y_pull)) *
             (1.0 - motion.limit_nearness * motion.limit_nearness);
   const double x_pull = space.a_task.dot(y_pull);
@@ -152,6 +213,16 @@ void ContactController::passJointSpaceTransition(const TaskKinematics& kinematic
   motion.y += transition.kappa * y_pull;
   report.gamma = transition.gamma;
   report.x_dot_eff_m_per_s = x_free + transition.kappa * x_pull;
+}
+
+TaskVector ContactController::pull(const TaskVector& error) const noexcept {
+  const TaskVector pull = config_.pull_gain_per_s * error;
+  if (!hasReturnSpeed(task_)) return pull;
+  TaskVector correction = task_.drift_gain_per_s * error;
+  TaskVector both = correction + pull;
+  limitReturnSpeed(task_, {}, correction);
+  limitReturnSpeed(task_, {}, both);
+  return both - correction;
 }
 
 }  // namespace tactus

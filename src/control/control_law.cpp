@@ -80,10 +80,19 @@ void ControlLaw::update(const ControlLawInput& input, const ContactSpace& space,
   if (config_.order == 1) return;
   const double rate =
       period_s / (config_.time_constant_s * config_.time_constant_s * input.stiffness_N_per_m);
-  if (!limited && !input.hold_integral) state.V_m_per_s += rate * input.F_p_N;
-  if (!has_second_space_) return;
-  state.It_m_per_s =
-      std::max(0.0, state.It_m_per_s + rate * (input.F_p_N - config_.activation_force_N));
+  if (!limited && !input.hold_integral)
+    integrate(rate * input.F_p_N, input, period_s, state.V_m_per_s);
+  if (has_second_space_)
+    integrate(rate * (input.F_p_N - config_.activation_force_N), input, period_s, state.It_m_per_s);
+}
+
+void ControlLaw::integrate(double change_m_per_s, const ControlLawInput& input, double period_s,
+                           double& integral_m_per_s) const noexcept {
+  if (input.cut_m_per_s > 0.0)
+    change_m_per_s -= period_s / config_.time_constant_s * input.cut_m_per_s;
+  if (!input.is_followed || input.cut_m_per_s > 0.0) change_m_per_s = std::min(change_m_per_s, 0.0);
+  const double lowest = std::min(0.0, integral_m_per_s);
+  integral_m_per_s = std::max(lowest, integral_m_per_s + change_m_per_s);
 }
 
 }  // namespace tactus

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tactus/control/path_progress.h"
+#include "tactus/control/return_speed.h"
 #include "tactus/math/rotation.h"
 
 namespace tactus {
@@ -18,9 +20,36 @@ Pose toolPose(const SerialChain& chain, const JointVector& q) {
   return framePose(pose, chain.tip());
 }
 
+bool mayMove(const ControllerState& state) {
+  return state.fault == Fault::kNone && !state.is_stopping;
+}
+
+/// a^T v; an array's dot product, without the choice of a way that costs as much.
+double retreat(const JointVector& a, const JointVector& velocity) noexcept {
+  double sum = 0.0;
+  const auto joints = static_cast<int>(velocity.size());
+  for (int i = 0; i < joints; ++i) sum += a.data()[i] * velocity.data()[i];
+  return sum;
+}
+
 bool usesOrientation(const TaskConfig& task) {
   return std::any_of(task.components.begin(), task.components.begin() + task.size,
                      [](int component) { return component >= 3; });
+}
+
+/// The reference's rotation vector in place of a sum of two, which is no rotation.
+void replaceRotation(const TaskConfig& task, const Vector3& rotation_vector,
+                     TaskVector& w) noexcept {
+  for (int i = 0; i < task.size; ++i)
+    if (task.components[i] >= 3) w[i] = rotation_vector[task.components[i] - 3];
+}
+
+/// How far the tool is from its reference, m.
+double lag_m(const TaskConfig& task, const TaskVector& error) noexcept {
+  double squared = 0.0;
+  for (int i = 0; i < task.size; ++i)
+    if (task.components[i] < 3) squared += error[i] * error[i];
+  return std::sqrt(squared);
 }
 
 }  // namespace
@@ -40,40 +69,64 @@ Controller::Controller(const ControllerConfig& config)
 
 ControllerState Controller::initialState(const JointVector& q) const {
   ControllerState state;
-  state.q_desired = q.cwiseMax(config_.limits.lower).cwiseMin(config_.limits.upper);
-  state.velocity_before = JointVector::Zero(config_.chain.size());
+  place(q, state);
   if (config_.tactile_module)
     state.contact_point.position_m = 0.5 * config_.tactile_module->length_m;
   if (contact_controller_) state.contact = contact_controller_->initialState();
   return state;
 }
 
+void Controller::restart(ControllerState& state) const noexcept {
+  if (contact_controller_) state.contact = contact_controller_->initialState();
+}
+
+void Controller::place(const JointVector& q, ControllerState& state) const noexcept {
+  state.q_desired = q.cwiseMax(config_.limits.lower).cwiseMin(config_.limits.upper);
+  state.velocity_before = JointVector::Zero(config_.chain.size());
+  state.fault = Fault::kNone;
+}
+
+void Controller::watchSensor(const RobotInput& input, double period_s,
+                             ControllerState& state) const noexcept {
+  if (config_.tactile_module) readTactileModule(input, period_s, state);
+}
+
+double Controller::sampleAge_s(const RobotInput& input, double period_s,
+                               const ControllerState& state) const noexcept {
+  return input.tactile.sequence == state.sample_sequence ? state.sample_age_s + period_s : 0.0;
+}
+
 void Controller::update(const RobotInput& input, double t_s, double period_s,
                         ControllerState& state, ControllerOutput& output) const noexcept {
   PreparedCycle prepared;
-  computeMotion(t_s, state, prepared);
+  output.path_time_s = t_s - state.waited_s;
+  computeMotion(output.path_time_s, state, prepared);
   respond(input, period_s, prepared, state, output);
 }
 
 void Controller::prepare(double t_s, const ControllerState& state,
                          PreparedCycle& prepared) const noexcept {
-  computeMotion(t_s, state, prepared);
-  prepared.t_s = t_s;
+  prepared.path_time_s = t_s - state.waited_s;
   prepared.q_desired = state.q_desired;
+  prepared.push = state.contact.push;
+  computeMotion(prepared.path_time_s, state, prepared);
 }
 
 void Controller::update(const RobotInput& input, double t_s, double period_s,
                         PreparedCycle& prepared, ControllerState& state,
                         ControllerOutput& output) const noexcept {
-  if (prepared.t_s != t_s || prepared.q_desired != state.q_desired)
-    computeMotion(t_s, state, prepared);
-  prepared.t_s = std::numeric_limits<double>::quiet_NaN();
+  output.path_time_s = t_s - state.waited_s;
+  if (prepared.path_time_s != output.path_time_s || prepared.q_desired != state.q_desired ||
+      prepared.push != state.contact.push)
+    computeMotion(output.path_time_s, state, prepared);
+  prepared.path_time_s = std::numeric_limits<double>::quiet_NaN();
   respond(input, period_s, prepared, state, output);
 }
 
-void Controller::computeMotion(double t_s, const ControllerState& state,
+void Controller::computeMotion(double path_time_s, const ControllerState& state,
                                PreparedCycle& prepared) const noexcept {
-  computeKinematics(t_s, state, prepared);
+  computeKinematics(path_time_s, state, prepared);
+  computeTaskMotion(state, prepared);
   Motion& motion = prepared.motion;
   motion.y = prepared.kinematics.y_eff;
   if (joint_limit_avoidance_) {
@@ -89,7 +142,10 @@ void Controller::respond(const RobotInput& input, double period_s, PreparedCycle
   Motion& motion = prepared.motion;
   output.w = prepared.w;
   output.w_d = prepared.w + kinematics.error;
+  if (uses_orientation_) replaceRotation(config_.task, prepared.rotation_vector_d, output.w_d);
   output.w_d_dot = prepared.w_d_dot;
+  output.error = kinematics.error;
+  state.progress = prepared.progress;
   output.contact = {};
   if (config_.tactile_module) {
     const Fault fault = readTactileModule(input, period_s, state);
@@ -100,37 +156,47 @@ void Controller::respond(const RobotInput& input, double period_s, PreparedCycle
   }
   if (contact_controller_)
     contact_controller_->update(kinematics, state.contact_point,
-                                {state.q_desired, state.velocity_before}, period_s, state.contact,
-                                output.contact, motion);
+                                {state.q_desired, state.velocity_before, mayMove(state)}, period_s,
+                                state.contact, output.contact, motion);
 
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
   output.velocity = motion.v_scaled.head(config_.chain.size());
-  limit(period_s, state, output);
+  limit(motion, period_s, state, output);
 }
 
 void Controller::coast(int missed_cycles, double period_s, ControllerState& state) const noexcept {
-  moveDesired(missed_cycles * period_s, state);
+  passTime(missed_cycles * period_s, state);
+  state.sample_age_s += missed_cycles * period_s;
 }
 
-void Controller::limit(double period_s, ControllerState& state,
+/// What the limits cut from the contact point's motion is told to the law, which must not ask for
+/// more and more of it.
+void Controller::limit(const Motion& motion, double period_s, ControllerState& state,
                        ControllerOutput& output) const noexcept {
-  if (state.fault != Fault::kNone || state.is_stopping) output.velocity.setZero();
+  if (!mayMove(state)) output.velocity.setZero();
+  const double wanted_m_per_s = contact_controller_ ? retreat(motion.a, output.velocity) : 0.0;
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
+  if (contact_controller_) {
+    const double cut_m_per_s = wanted_m_per_s - retreat(motion.a, output.velocity);
+    state.contact.cut_m_per_s = mayMove(state) && cut_m_per_s > 0.0 ? cut_m_per_s : 0.0;
+  }
   if (!finite) state.fault = Fault::kCommandNotFinite;
 
   output.fault = state.fault;
   output.q_desired = state.q_desired;
   state.velocity_before = output.velocity;
-  moveDesired(period_s, state);
+  passTime(period_s, state);
 }
 
-void Controller::moveDesired(double duration_s, ControllerState& state) const noexcept {
+void Controller::passTime(double duration_s, ControllerState& state) const noexcept {
   for (int i = 0; i < config_.chain.size(); ++i) {
     const double q = state.q_desired[i] + duration_s * state.velocity_before[i];
     state.q_desired[i] = std::clamp(q, config_.limits.lower[i], config_.limits.upper[i]);
   }
+  // Else the task's clock, of which waited_s is taken, stands still itself.
+  if (!state.is_stopping) state.waited_s += (1.0 - state.progress) * duration_s;
 }
 
 void Controller::avoidJointLimits(const TaskKinematics& kinematics, const ControllerState& state,
@@ -141,12 +207,12 @@ void Controller::avoidJointLimits(const TaskKinematics& kinematics, const Contro
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 
-void Controller::computeKinematics(double t_s, const ControllerState& state,
+void Controller::computeKinematics(double path_time_s, const ControllerState& state,
                                    PreparedCycle& prepared) const noexcept {
   const TaskConfig& task = config_.task;
   TaskKinematics& kinematics = prepared.kinematics;
   config_.chain.computePose(state.q_desired, kinematics.pose);
-  const ToolReference reference = trajectory_.evaluate(t_s);
+  const ToolReference reference = trajectory_.evaluate(path_time_s);
   Twist w = Twist::Zero();
   Twist w_d_dot;
   Twist error = Twist::Zero();
@@ -157,6 +223,7 @@ void Controller::computeKinematics(double t_s, const ControllerState& state,
     const Matrix3 R_BaseTool = framePose(kinematics.pose, config_.chain.tip()).R_AB;
     w.tail<3>() = rotationVector(R_BaseTool);
     error.tail<3>() = rotationVector(reference.R_BaseTool * R_BaseTool.transpose());
+    prepared.rotation_vector_d = rotationVector(reference.R_BaseTool);
   }
   TaskJacobian J;
   computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
@@ -171,8 +238,23 @@ void Controller::computeKinematics(double t_s, const ControllerState& state,
     prepared.w[i] = w[component];
     prepared.w_d_dot[i] = w_d_dot[component];
   }
-  kinematics.y_eff =
-      kinematics.pseudoinverse.solve(prepared.w_d_dot + task.drift_gain_per_s * kinematics.error);
+}
+
+void Controller::computeTaskMotion(const ControllerState& state,
+                                   PreparedCycle& prepared) const noexcept {
+  const TaskConfig& task = config_.task;
+  TaskKinematics& kinematics = prepared.kinematics;
+  if (task.wait_beyond_m) {
+    prepared.progress = pathProgress(lag_m(task, kinematics.error), *task.wait_beyond_m);
+    prepared.w_d_dot *= prepared.progress;
+  }
+  TaskVector w_d_dot_eff = prepared.w_d_dot + task.drift_gain_per_s * kinematics.error;
+  if (hasReturnSpeed(task)) {
+    TaskVector correction = task.drift_gain_per_s * kinematics.error;
+    limitReturnSpeed(task, state.contact.push, correction);
+    w_d_dot_eff = prepared.w_d_dot + correction;
+  }
+  kinematics.y_eff = kinematics.pseudoinverse.solve(w_d_dot_eff);
 }
 
 Fault Controller::readTactileModule(const RobotInput& input, double period_s,

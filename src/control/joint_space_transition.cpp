@@ -10,12 +10,13 @@ namespace {
 constexpr double kReleased = 1e-6;  ///< a smaller gamma is none
 }
 
-void JointSpaceTransition::follow(const ContactPointState& sensor, double period_s,
+void JointSpaceTransition::follow(const ContactPointState& sensor, bool is_moving, double period_s,
                                   JointSpaceTransitionState& state) const noexcept {
   ContactPointState& contact = state.contact;
   contact.force_N = sensor.force_N;
   if (sensor.force_N <= config_.transition.release_force_N) return;
-  const double share = state.gamma > 0.0 ? lagShare(period_s, config_.time_constant_s) : 1.0;
+  const bool is_smoothed = state.gamma > 0.0 && is_moving;
+  const double share = is_smoothed ? lagShare(period_s, config_.time_constant_s) : 1.0;
   contact.position_m += share * (sensor.position_m - contact.position_m);
   contact.direction += share * (sensor.direction - contact.direction);
   const double length = contact.direction.norm();
@@ -46,10 +47,18 @@ IntegralShare JointSpaceTransition::update(const JointSpaceTransitionInput& inpu
     release(input, period_s, state);
   }
   const double goal = state.touching ? state.gamma : 0.0;
+  constexpr double kRegained = 0.95;
+  if (state.kappa >= kRegained * goal) state.has_rested = false;
+  const bool is_quick = goal > state.kappa && !state.has_rested;
   const double time_constant_s =
-      goal > state.kappa ? config_.time_constant_s : transition.max_time_constant_s;
+      is_quick ? config_.time_constant_s : transition.max_time_constant_s;
   state.kappa = flushed(state.kappa + lagShare(period_s, time_constant_s) * (goal - state.kappa));
   return integral;
+}
+
+void JointSpaceTransition::rest(JointSpaceTransitionState& state) const noexcept {
+  state.kappa = 0.0;
+  state.has_rested = true;
 }
 
 void JointSpaceTransition::engage(double F_p_N, double period_s,

@@ -92,8 +92,10 @@ class LogReplay {
 
   void add(UlogReader& reader, const std::string& path) {
     replayer_.beginPart(logPart(reader.description(), path).part);
+    const bool has_path_time = reader.has("path_time_s");
     CycleRecord recorded;
     while (reader.next(recorded)) {
+      if (!has_path_time) recorded.path_time_s = recorded.task_time_s;  // nothing waited then
       const CycleRecord replayed = replayer_.replay(recorded);
       if (!replayer_.isKnown()) {
         comparison_.skip();

@@ -40,9 +40,25 @@ ModeConfig modeConfig(const Scene& scene) {
   config.brake_cycles = cyclesCovering(brakeTime_s(hardware), period_s);
   config.boot_cycles = cyclesCovering(boot_s, period_s);
   config.enabling_cycles = cyclesCovering(kSwitchingTime_s, period_s) + config.brake_cycles;
-  config.stopping_cycles =
-      config.enabling_cycles + cyclesCovering(rampTime_s(scene.controller.limits), period_s);
+  // Drives that do not switch off are cut off before this time is over.
+  const double stopping_s = rampTime_s(scene.controller.limits) + brakeDeadline_s(hardware);
+  config.stopping_cycles = config.enabling_cycles + cyclesCovering(stopping_s, period_s);
   return config;
+}
+
+BrakeConfig brakeConfig(const Scene& scene) {
+  const HardwareConfig& hardware = *scene.hardware;
+  BrakeConfig config;
+  config.rest_cycles = cyclesCovering(std::max(kRestTime_s, brakeTime_s(hardware)), scene.period_s);
+  config.deadline_cycles = cyclesLasting(brakeDeadline_s(hardware), scene.period_s);
+  return config;
+}
+
+JointVector maxFollowingErrors(const HardwareConfig& hardware) {
+  JointVector errors(static_cast<int>(hardware.drives.size()));
+  for (int joint = 0; joint < errors.size(); ++joint)
+    errors[joint] = hardware.drives[joint].max_following_error;
+  return errors;
 }
 
 }  // namespace
@@ -52,6 +68,9 @@ ControlCycle::ControlCycle(const Scene& scene)
       robot_(*scene.hardware, scene.period_s),
       q_commanded_(scene.controller.q_start),
       q_released_(scene.controller.q_start),
+      max_following_error_(maxFollowingErrors(*scene.hardware)),
+      stop_way_(JointVector::Zero(q_commanded_.size())),
+      stop_deadline_s_(brakeDeadline_s(*scene.hardware)),
       start_tolerance_(scene.hardware->start_tolerance),
       period_s_(scene.period_s),
       max_late_cycles_(scene.hardware->real_time.max_late_cycles),
@@ -59,17 +78,18 @@ ControlCycle::ControlCycle(const Scene& scene)
       max_sample_age_s_(scene.controller.tactile_module
                             ? scene.controller.tactile_module->max_sample_age_s
                             : 0.0),
-      max_rest_cycles_(
-          cyclesCovering(std::max(kRestTime_s, brakeTime_s(*scene.hardware)), scene.period_s)),
       mode_config_(modeConfig(scene)),
+      brake_config_(brakeConfig(scene)),
       state_(controller_.initialState()) {
   output_.velocity = JointVector::Zero(q_commanded_.size());
   output_.q_desired = q_commanded_;
 }
 
 void ControlCycle::update(const CycleInput& input) noexcept {
+  coast(input.missed_cycles);
+  robot_.expect(isCommanding(mode_.mode) ? state_.q_desired : output_.q_desired);
   robot_.read(input_);
-  watchSamples(input.missed_cycles);
+  startTare();
   const Mode before = mode_.mode;
   const Fault fault_before = mode_.fault;
   updateMode(mode_config_, modeInput(input, judge(input)), mode_);
@@ -79,9 +99,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   report_.mode = mode_.mode;
   report_.fault = mode_.fault;
   control(input, before);
-  const bool is_resting = mode_.mode == Mode::kStopping && output_.velocity.isZero(0.0);
-  rest_cycles_ = is_resting ? std::min(rest_cycles_, max_rest_cycles_) + 1 : 0;
-  is_brake_open_ = mayMove();
+  updateBrakes();
   rememberPlace();
   const bool is_boot_new = mode_.mode == Mode::kBoot && mode_.cycles_in_mode == 0;
   if (is_boot_new) repeatRefusedTare();
@@ -121,7 +139,11 @@ Fault ControlCycle::judge(const CycleInput& input) noexcept {
   const bool is_late = mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_;
   if (is_late && found(Fault::kOverrun)) return judged_.fault;
   if (found(judgeTactile())) return judged_.fault;
-  found(is_moving ? output_.fault : Fault::kNone);
+  if (is_moving) {
+    found(output_.fault);
+  } else if (mode_.mode != Mode::kBoot) {
+    found(state_.sample_fault);  // nothing starts on a reading that would stop it
+  }
   return judged_.fault;
 }
 
@@ -155,23 +177,29 @@ Fault ControlCycle::judgeTactile() noexcept {
   return is_late && robot_.drives().are_configured ? Fault::kTactileStale : Fault::kNone;
 }
 
-void ControlCycle::watchSamples(int missed_cycles) noexcept {
-  const bool is_new = input_.tactile.sequence != sample_sequence_;
-  sample_sequence_ = input_.tactile.sequence;
-  sample_age_s_ = is_new ? 0.0 : sample_age_s_ + (1 + missed_cycles) * period_s_;
+/// The drives kept the last command, and the sensor's sample grew older.
+void ControlCycle::coast(int missed_cycles) noexcept {
+  if (missed_cycles > 0) controller_.coast(missed_cycles, period_s_, state_);
 }
 
 bool ControlCycle::hasFreshSample() const noexcept {
-  return sample_sequence_ > 0 && sample_age_s_ <= max_sample_age_s_;
+  return input_.tactile.sequence > 0 &&
+         controller_.sampleAge_s(input_, period_s_, state_) <= max_sample_age_s_;
+}
+
+bool ControlCycle::areConfigured() const noexcept {
+  if (!robot_.drives().are_configured || !robot_.hasPositions()) return false;
+  const TactileReceiver* const tactile = robot_.tactile();
+  return !tactile || (tactile->tareState() == TareState::kDone && hasFreshSample());
 }
 
 /// The tare is taken once, before the arm has ever moved: afterwards it may rest in contact.
-bool ControlCycle::areConfigured() noexcept {
-  if (!robot_.drives().are_configured || !robot_.hasPositions()) return false;
+void ControlCycle::startTare() noexcept {
   TactileReceiver* const tactile = robot_.tactile();
-  if (!tactile) return true;
-  if (tactile->tareState() == TareState::kNone) tactile->startTare();
-  return tactile->tareState() == TareState::kDone && hasFreshSample();
+  const bool is_due = tactile && tactile->tareState() == TareState::kNone &&
+                      mode_.mode == Mode::kBoot && robot_.drives().are_configured &&
+                      robot_.hasPositions();
+  if (is_due) tactile->startTare();
 }
 
 void ControlCycle::repeatRefusedTare() noexcept {
@@ -192,12 +220,23 @@ int ControlCycle::jointOutOfPlace() const noexcept {
   return static_cast<int>(joint);
 }
 
+/// Each joint by its own drive: one that lies says nothing of the others, a joint that was let go
+/// may have been pushed, and one that went further than any stop was not stopped.
 void ControlCycle::rememberPlace() noexcept {
-  const bool is_commanding =
-      mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding || mode_.mode == Mode::kStopping;
+  const bool is_commanding = isCommanding(mode_.mode);
   if (!is_started_) return;
-  if (is_commanding) q_commanded_ = output_.q_desired;
-  if (mode_.mode != Mode::kBoot && robot_.drives().is_any_holding) q_released_ = input_.q_measured;
+  if (is_commanding) {
+    q_commanded_ = output_.q_desired;
+    stop_way_ = stop_deadline_s_ * output_.velocity.cwiseAbs() + max_following_error_;
+  }
+  for (int joint = 0; joint < q_released_.size(); ++joint) {
+    const DriveReport& drive = robot_.drive(joint);
+    const bool is_let_go = drive.is_off || drive.is_cut_off || mode_.mode == Mode::kBoot;
+    is_held_[joint] = is_commanding || (is_held_[joint] && !is_let_go);
+    const double way = std::abs(input_.q_measured[joint] - q_commanded_[joint]);
+    if (is_held_[joint] && robot_.isHolding(joint) && way <= stop_way_[joint])
+      q_released_[joint] = input_.q_measured[joint];
+  }
 }
 
 ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept {
@@ -217,14 +256,15 @@ ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept
 void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   const bool is_running = mode_.mode == Mode::kRunning;
   if (!is_started_ && !is_running) {
+    controller_.watchSensor(input_, period_s_, state_);
     output_.q_desired = robot_.hasPositions() ? input_.q_measured : q_commanded_;
     return;
   }
+  if (!is_started_) state_ = controller_.initialState();  // as a replay begins
   const int missed = is_started_ ? input.missed_cycles : 0;
   cycles_ += is_started_ ? 1 + missed : 0;
   task_cycles_ += is_started_ && before == Mode::kRunning ? 1 + missed : 0;
   is_started_ = true;
-  if (missed > 0) controller_.coast(missed, period_s_, state_);
   applyMode(controller_, mode_.mode, before, input_, state_);
   const double task_time_s = static_cast<double>(task_cycles_) * period_s_;
   controller_.update(input_, task_time_s, period_s_, prepared_, state_, output_);
@@ -244,7 +284,7 @@ DriveGoal ControlCycle::driveGoal() const noexcept {
     case Mode::kHolding:
       return DriveGoal::kEnabled;
     case Mode::kStopping:
-      return rest_cycles_ > max_rest_cycles_ ? DriveGoal::kDisabled : DriveGoal::kEnabled;
+      return mayLetGo(brake_config_, brake_) ? DriveGoal::kDisabled : DriveGoal::kEnabled;
     case Mode::kFault:
       return DriveGoal::kQuickStop;
     case Mode::kReady:
@@ -254,28 +294,19 @@ DriveGoal ControlCycle::driveGoal() const noexcept {
   return DriveGoal::kDisabled;
 }
 
-/// Brakes close before the drives let go, and open before they move; only after a quick stop do
-/// drives switch off by themselves. A fault never opens a brake.
-bool ControlCycle::mayMove() const noexcept {
-  if (mode_.reaction == Reaction::kBrake) return false;
-  switch (mode_.mode) {
-    case Mode::kEnabling:
-      return robot_.drives().are_enabled;
-    case Mode::kRunning:
-    case Mode::kHolding:
-      return true;
-    case Mode::kStopping:
-      return rest_cycles_ == 0;
-    case Mode::kFault:
-      return is_brake_open_ && robot_.drives().is_any_holding;
-    default:
-      return false;
-  }
+void ControlCycle::updateBrakes() noexcept {
+  const DrivesReport drives = robot_.drives();
+  BrakeInput input;
+  input.are_enabled = drives.are_enabled;
+  input.is_any_holding = drives.is_any_holding;
+  input.is_any_moving_on = drives.is_any_moving_on;
+  input.is_at_rest = output_.velocity.isZero(0.0);
+  updateBrake(brake_config_, mode_, input, brake_);
 }
 
 GpioOutputs ControlCycle::lines() const noexcept {
   GpioOutputs outputs;
-  outputs.release_brake = is_brake_open_;
+  outputs.release_brake = brake_.is_open;
   outputs.heartbeat = heartbeat_;
   return outputs;
 }

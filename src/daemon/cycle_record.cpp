@@ -51,6 +51,7 @@ void fillRecord(double t_s, const RobotInput& input, const ControllerOutput& out
   copy(output.w_d_dot, record.wd_dot);
   record.fault = static_cast<std::uint64_t>(output.fault);
   copy(tool_error_m, record.tool_error_m);
+  record.path_time_s = output.path_time_s;
 }
 
 RobotInput recordedInput(const CycleRecord& record, int joints) noexcept {

@@ -31,10 +31,11 @@ bool LogContinuity::add(const CycleRecord& recorded) {
   missed_ = asMissed(has_missed_ ? logged : gap);
   const bool is_gap = is_part_missing_ || (has_missed_ && gap != logged);
   if (is_gap) lose(cycle);
-  // The mode before a gap is unknown, too: one that would reset nothing.
-  if (resetsController(mode, is_gap ? Mode::kRunning : mode_before_)) is_known_ = true;
+  // The mode before a gap is unknown, too: the same, which resets nothing.
+  // A reference that has waited goes on where it was, which no reset tells to the bit.
+  const bool has_waited = recorded.path_time_s != recorded.task_time_s;
+  if (resetsController(mode, is_gap ? mode : mode_before_) && !has_waited) is_known_ = true;
   if (!is_known_) stretches_.back().to_s = recorded.t_s;
-  if (is_gap && is_known_ && is_first_) stretches_.pop_back();  // nothing of these logs
   is_first_ = is_part_missing_ = false;
   cycle_before_ = cycle;
   mode_before_ = mode;

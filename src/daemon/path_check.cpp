@@ -15,8 +15,9 @@ constexpr double kMaxLag = 1e-3;  ///< m or rad; discretisation alone stays far 
 /// So that check stays quick: the first minutes of a path.
 constexpr double kMaxCheckedCycles = 3e5;
 
-/// The motion without a contact.
+/// The motion without a contact, along a path that does not wait.
 ControllerConfig undisturbed(ControllerConfig config) {
+  config.task.wait_beyond_m.reset();
   config.tactile_module.reset();
   config.force_control.reset();
   return config;
@@ -53,7 +54,7 @@ std::string laggingPath(const Scene& scene) {
   for (long long cycle = 0; cycle < cycles; ++cycle) {
     const double t_s = static_cast<double>(cycle) * scene.period_s;
     controller.update(RobotInput{}, t_s, scene.period_s, state, output);
-    const double lag = (output.w_d - output.w).norm();
+    const double lag = output.error.norm();
     if (lag > kMaxLag)
       return fmt::format("path not followed: at {:.3f} s the tool lags by {:g} mm or mrad; {}", t_s,
                          1e3 * kMaxLag, slowestJoint(scene, output.velocity));

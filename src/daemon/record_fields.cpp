@@ -58,6 +58,7 @@ constexpr std::array kFields = {
     RecordField{"read_ns", "ns", kScalar, kInt64, kObservation, AT(read_ns)},
     RecordField{"write_ns", "ns", kScalar, kInt64, kObservation, AT(write_ns)},
     RecordField{"missed_cycles", "", kScalar, kUint64, kInput, AT(missed_cycles), true},
+    RecordField{"path_time_s", "s", kScalar, kDouble, kOutput, AT(path_time_s), true},
 };
 #undef AT
 

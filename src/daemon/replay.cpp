@@ -48,9 +48,11 @@ CycleRecord Replayer::replay(const CycleRecord& recorded) {
   CycleRecord replayed = recorded;
   const RobotInput input = recordedInput(recorded, joints_);
   const Mode mode = static_cast<Mode>(recorded.mode);
+  const bool was_known = is_known_;
   is_known_ = continuity_.add(recorded);
   const int missed = continuity_.missedCycles();
   if (missed > 0) controller_.coast(missed, period_s_, state_);
+  if (is_known_ && !was_known) state_.waited_s = 0.0;
   applyMode(controller_, mode, mode_before_, input, state_);
   controller_.update(input, recorded.task_time_s, period_s_, state_, output_);
   mode_before_ = mode;

@@ -91,7 +91,7 @@ void RunLog::attempt(const Step& step) {
   if (!writer_) return;
   try {
     step();
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
     stop(error.what());
   }
 }
@@ -118,7 +118,7 @@ void RunLog::beginNextFile() {
     shiftFiles();
     writer->rename(next, folder_ + "/" + logName(0));
     writer_ = std::move(writer);
-  } catch (const std::runtime_error&) {
+  } catch (const std::exception&) {
     std::error_code ignored;
     fs::remove(next, ignored);
     throw;

@@ -33,6 +33,12 @@ void checkTask(const Checked& c) {
     c.fail("task.drift_gain_per_s", fmt::format("{} is too high", c.draft.task.drift_gain_per_s),
            fmt::format("at most 1 / period_s = {}", 1.0 / c.draft.period_s));
   }
+  const bool has_position = std::ranges::any_of(
+      c.draft.components, [](const std::string& component) { return component.size() == 1; });
+  if (c.draft.task.wait_beyond_m && !has_position) {
+    c.fail("task.wait_beyond_m", "the task has no position that could lag",
+           "x, y or z among task.components, or no such key");
+  }
 }
 
 /// A sound bound, not a sharp one: how far from the base's origin the tool can ever be.

@@ -51,6 +51,21 @@ KeySpec taskSection() {
           defaulted("5", number("drift_gain_per_s", "1/s", within(0, 1e4),
                                 "beta of (2): pulls the tool back to its reference",
                                 [](Draft& d) -> double& { return d.task.drift_gain_per_s; })),
+          optional(number(
+              "max_return_speed_m_per_s", "m/s", above(0, 10),
+              "largest speed at which beta pulls the position back, as after a contact; "
+              "absent: beta times its error",
+              [](Draft& d) -> double& { return d.task.max_return_speed_m_per_s.emplace(); })),
+          optional(number(
+              "max_return_speed_rad_per_s", "rad/s", above(0, 10),
+              "largest speed at which beta pulls the orientation back; absent: beta "
+              "times its error",
+              [](Draft& d) -> double& { return d.task.max_return_speed_rad_per_s.emplace(); })),
+          optional(number(
+              "wait_beyond_m", "m", above(0, 10),
+              "lag of the tool's position beyond which the reference goes on slower; beyond twice "
+              "that it stands still until the tool has caught up; absent: it never waits",
+              [](Draft& d) -> double& { return d.task.wait_beyond_m.emplace(); })),
           section("trajectory", "the reference w_d; exactly one of line, waypoints, hold",
                   {
                       defaulted("0", number("start_s", "s", within(0, kMaxTime_s),
@@ -116,7 +131,8 @@ KeySpec transitionSection() {
                            [](Draft& d) -> double& { return d.force.transition.engage_force_N; })),
           defaulted("0.3",
                     number("release_force_N", "N", above(0, 1000),
-                           "F_rel, joint_space only: reading below which contact is lost",
+                           "F_rel: reading below which joint_space has lost contact, and above "
+                           "which an arm that goes on after a stop is in contact",
                            [](Draft& d) -> double& { return d.force.transition.release_force_N; })),
           defaulted("0.01", number("search_speed_m_per_s", "m/s", within(0, 10),
                                    "v_search, joint_space only: speed of the return to a lost "

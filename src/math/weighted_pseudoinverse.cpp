@@ -96,6 +96,13 @@ TaskVector WeightedPseudoinverse::solve(const TaskVector& w) const noexcept {
   return y;
 }
 
+TaskVector WeightedPseudoinverse::taskVelocity(const TaskVector& y) const noexcept {
+  TaskVector w = TaskVector::Zero(m_);
+  for (int k = 0; k < m_; ++k)
+    for (int row = k; row < m_; ++row) w[row] += R_[k][row] * y[k];
+  return w;
+}
+
 TaskVector WeightedPseudoinverse::project(const ScaledVector& v_scaled) const noexcept {
   TaskVector y(m_);
   for (int j = 0; j < m_; ++j) y[j] = Q_.col(j).dot(v_scaled);

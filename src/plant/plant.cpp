@@ -73,6 +73,12 @@ void Plant::take(int bus, FrameBatch& frames) noexcept {
   links_[bus].inbox.clear();
 }
 
+void Plant::play(std::vector<Trouble> troubles, std::int64_t t_ns) {
+  script_ = TroubleScript(std::move(troubles));
+  script_.start(t_ns);
+  applyTroubles(t_ns);
+}
+
 std::int64_t Plant::nextEvent_ns() const noexcept {
   std::int64_t next_ns = std::min(next_move_ns_, next_trouble_ns_);
   for (const Link& link : links_)

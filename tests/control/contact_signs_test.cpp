@@ -121,7 +121,7 @@ TEST_P(ContactSigns, CommandIsEquation1WithMatrices) {
     const Eigen::VectorXd gradient =
         3.52 * (output.q_desired.array() + 2.5).matrix().cwiseQuotient(config.weights) /
         22.5;  // linear from the middle, -2.5
-    const Eigen::VectorXd w_eff = output.w_d_dot + 5.0 * (output.w_d - output.w);
+    const Eigen::VectorXd w_eff = output.w_d_dot + 5.0 * output.error;
     const Eigen::MatrixXd I_minus_N = Eigen::MatrixXd::Identity(touched.n, touched.n) - inverse.N;
     const ContactReport& r = output.contact;
     // J# J = I - N holds in every pose; J# J with a damped J# would not.
@@ -149,7 +149,7 @@ TEST(ContactSigns, JointSpaceIsEquation6) {
     if (r.x_dot_eff_m_per_s > 0.0 || r.k_j < 0.01) continue;  // no feedforward against a retreat
     const TaskJacobian J = test::tipJacobian(config.chain, output.q_desired,
                                              config.task.components.data(), config.task.size);
-    const Eigen::VectorXd w_eff = output.w_d_dot + 5.0 * (output.w_d - output.w);
+    const Eigen::VectorXd w_eff = output.w_d_dot + 5.0 * output.error;
     const Eigen::VectorXd a = touched.a();
     const Eigen::MatrixXd S_w =
         Eigen::MatrixXd::Identity(touched.n, touched.n) - a * a.transpose() / a.squaredNorm();

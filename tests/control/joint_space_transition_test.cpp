@@ -30,7 +30,7 @@ class JointSpace : public testing::Test {
 
   /// One cycle at a sensed force, `away_m` from kPoint, x_0 as given.
   IntegralShare update(double F_sen_N, double away_m = 0.0, double x_0 = 0.0) {
-    transition_.follow({F_sen_N, 0.2, Vector3::UnitY()}, kPeriod_s, state_);
+    transition_.follow({F_sen_N, 0.2, Vector3::UnitY()}, true, kPeriod_s, state_);
     const double F_p_N = std::max(0.0, F_sen_N - config_.contact_threshold_N);
     return transition_.update({F_p_N, kPoint + Vector3(away_m, 0.0, 0.0), x_0}, kPeriod_s, state_);
   }
@@ -130,11 +130,12 @@ TEST_F(JointSpace, PullFadesToZeroAndNotToSubnormalNumbers) {
 }
 
 TEST_F(JointSpace, TakesThePointAtOnceFirstAndSmoothlyLater) {
-  transition_.follow({2.0, 0.1, Vector3::UnitY()}, kPeriod_s, state_);
+  transition_.follow({2.0, 0.1, Vector3::UnitY()}, true, kPeriod_s, state_);
   EXPECT_EQ(state_.contact.position_m, 0.1);
   EXPECT_EQ(state_.contact.direction, Vector3(Vector3::UnitY()));
   state_.gamma = 0.5;
-  for (int i = 0; i < 100; ++i) transition_.follow({2.0, 0.2, Vector3::UnitZ()}, kPeriod_s, state_);
+  for (int i = 0; i < 100; ++i)
+    transition_.follow({2.0, 0.2, Vector3::UnitZ()}, true, kPeriod_s, state_);
   EXPECT_NEAR(state_.contact.position_m, 0.2 - 0.1 * std::exp(-1.0), 1e-9);
   EXPECT_NEAR(state_.contact.direction.norm(), 1.0, 1e-12);
   EXPECT_GT(state_.contact.direction.y(), 0.1);
@@ -142,8 +143,8 @@ TEST_F(JointSpace, TakesThePointAtOnceFirstAndSmoothlyLater) {
 }
 
 TEST_F(JointSpace, FreezesThePointWhenNothingIsFelt) {
-  transition_.follow({2.0, 0.1, Vector3::UnitY()}, kPeriod_s, state_);
-  transition_.follow({0.3, 0.3, Vector3::UnitZ()}, kPeriod_s, state_);
+  transition_.follow({2.0, 0.1, Vector3::UnitY()}, true, kPeriod_s, state_);
+  transition_.follow({0.3, 0.3, Vector3::UnitZ()}, true, kPeriod_s, state_);
   EXPECT_EQ(state_.contact.force_N, 0.3);
   EXPECT_EQ(state_.contact.position_m, 0.1);
   EXPECT_EQ(state_.contact.direction, Vector3(Vector3::UnitY()));

@@ -53,10 +53,10 @@ TEST(PreparedCycle, IsUsedOnceOnly) {
   ControllerState state = controller.initialState();
   PreparedCycle prepared;
   controller.prepare(0.25, state, prepared);
-  EXPECT_EQ(prepared.t_s, 0.25);
+  EXPECT_EQ(prepared.path_time_s, 0.25);
   ControllerOutput output;
   controller.update({}, 0.25, 0.001, prepared, state, output);
-  EXPECT_NE(prepared.t_s, prepared.t_s) << "NaN: for no time";
+  EXPECT_NE(prepared.path_time_s, prepared.path_time_s) << "NaN: for no time";
 }
 
 }  // namespace

@@ -135,6 +135,7 @@ struct Cycle {
                       .u_n = 8.14,
                       .u_j = 8.15,
                       .u_t = 8.16};
+    output.path_time_s = 0.25;
     output.fault = Fault::kTactileStale;
   }
 };
@@ -152,7 +153,7 @@ TEST(FillRecord, PutsEveryNumberInItsColumn) {
                                         8.10, 8.11, 8.12, 8.13, 8.14, 8.15, 8.16, 4.1,  4.2,  4.3,
                                         3.1,  3.2,  3.3,  5.1,  5.2,  6.1,  6.2,  7.1,  7.2,  2,
                                         6,    -5,   1.1,  1.2,  1.3,  2.1,  2.2,  2.3,  2.4,  4e9,
-                                        0.91, 0.92, 0.93, 0.5,  3,    7,    8,    9};
+                                        0.91, 0.92, 0.93, 0.5,  3,    7,    8,    9,    0.25};
   const RecordShape shape{3, 2};
   const auto columns = recordColumns(shape);
   const auto words = test::loggedWords(record, shape);

@@ -79,7 +79,7 @@ TEST(Export, HeaderNamesTheColumns) {
   const auto columns = recordColumns(e.shape);
   ASSERT_EQ(header.size(), columns.size());
   EXPECT_EQ(header.front(), "t_s");
-  EXPECT_EQ(header.back(), "missed_cycles");
+  EXPECT_EQ(header.back(), "path_time_s");
 }
 
 TEST(Export, LeavesOutWhatTheLogDoesNotHave) {
@@ -88,7 +88,7 @@ TEST(Export, LeavesOutWhatTheLogDoesNotHave) {
   bytes.replace(bytes.find("missed_cycles"), 13, "something_new");
   e.log.setContent(bytes);
   exportCsv(e.log.path(), e.csv.path());
-  EXPECT_EQ(split(split(e.csv.content(), '\n')[0], ',').back(), "write_ns");
+  EXPECT_EQ(split(split(e.csv.content(), '\n')[0], ',').back(), "path_time_s");
 }
 
 TEST(Export, CommandExportsACutLogUpToTheCut) {

@@ -50,6 +50,26 @@ TEST(PathCheck, WarnsOfASpeedBeyondThatOfAJoint) {
       << warnings[0];
 }
 
+/// By then the rotation vector of the tool has passed half a turn, where it changes its sign.
+TEST(PathCheck, HasNothingAgainstAToolThatTurnsOverHalfATurn) {
+  EXPECT_EQ(
+      checkPath(loadScene(TACTUS_SOURCE_DIR "/config/scenes/robots/kuka_iiwa7_free.yaml",
+                          {{"task.components", "[x, y, z, rx, ry, rz]"},
+                           {"task.trajectory.line", "{rotation_vector_rad: [0.03, 0.3, 0]}"}})),
+      Warnings{});
+}
+
+/// A reference that waits would hide it.
+TEST(PathCheck, WarnsOfASpeedBeyondThatOfAJointThoughThePathWaits) {
+  const std::string line = "task.trajectory.line.";
+  const Warnings warnings = warningsOf({{line + "displacement_m", "[-0.3, 0, 0]"},
+                                        {line + "speed_m_per_s", "0.8"},
+                                        {line + "ramp_s", "0.2"},
+                                        {"task.wait_beyond_m", "0.0001"}});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("path not followed"), std::string::npos) << warnings[0];
+}
+
 TEST(PathCheck, WarnsOfAStretchedArm) {
   const auto warningsAt = [](const std::string& elbow_rad) {
     return warningsOf({{"start", "[0.6, " + elbow_rad + "]"},

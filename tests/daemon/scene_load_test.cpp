@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 
 #include "support/scene_files.h"
@@ -33,6 +34,21 @@ TEST(SceneLoad, PutsEveryValueInItsPlace) {
   EXPECT_EQ(config.task.trajectory.waypoints[0].displacement_m, Vector3(0, 0.1, 0));
   EXPECT_EQ(config.task.trajectory.waypoints[0].speed_m_per_s, 0.05);
   EXPECT_EQ(config.task.trajectory.waypoints[0].ramp_s, 0.5);
+}
+
+TEST(SceneLoad, PutsTheWayBackToThePathInItsPlace) {
+  const TaskConfig without = SceneFiles{}.load().controller.task;
+  EXPECT_FALSE(without.max_return_speed_m_per_s);
+  EXPECT_FALSE(without.max_return_speed_rad_per_s);
+  EXPECT_FALSE(without.wait_beyond_m);
+  const TaskConfig with = SceneFiles{}
+                              .load({{"task.max_return_speed_m_per_s", "0.25"},
+                                     {"task.max_return_speed_rad_per_s", "0.5"},
+                                     {"task.wait_beyond_m", "0.05"}})
+                              .controller.task;
+  EXPECT_EQ(with.max_return_speed_m_per_s, 0.25);
+  EXPECT_EQ(with.max_return_speed_rad_per_s, 0.5);
+  EXPECT_EQ(with.wait_beyond_m, 0.05);
 }
 
 TEST(SceneLoad, PutsTheLawInItsPlace) {
@@ -128,6 +144,24 @@ TEST(SceneLoad, NamesAllStagesInTheOrderOfACycle) {
                                       "joint_limit_avoidance", "tactile_module", "contact_space",
                                       "contact_transition", "control_law", "stiffness_estimator",
                                       "limits", "telemetry"}));
+}
+
+/// As the package installs it, in /etc/tactus.
+TEST(SceneLoad, ExampleOfThePackageReturnsSlowlyAndWaits) {
+  const std::pair<std::string, std::string> installed[] = {
+      {"scene.yaml", "debian/scene.yaml"},
+      {"scenes/base/crops9_contact.yaml", "config/scenes/base/crops9_contact.yaml"},
+      {"scenes/base/crops9_line.yaml", "config/scenes/base/crops9_line.yaml"},
+      {"robots/crops9/robot_with_lines.yaml", "config/robots/crops9/robot_with_lines.yaml"},
+      {"robots/crops9/crops9.urdf", "config/robots/crops9/crops9.urdf"}};
+  std::vector<SourceFile> files;
+  for (const auto& [path, source] : installed) {
+    std::ifstream in(std::string(TACTUS_SOURCE_DIR) + "/" + source);
+    files.push_back({path, {std::istreambuf_iterator<char>(in), {}}});
+  }
+  const Scene scene = loadScene(files, {});
+  EXPECT_EQ(scene.controller.task.max_return_speed_m_per_s, 0.25);
+  EXPECT_EQ(scene.controller.task.wait_beyond_m, 0.05);
 }
 
 TEST(SceneLoad, WaypointsKeepTheirOrder) {

@@ -111,23 +111,24 @@ TEST(Ulog, WritesTheBytesOfTheSpecification) {
       "double tactile_force_z_N;double tactile_moment_y_Nm;double tactile_moment_z_Nm;"
       "uint64_t tactile_sequence;double tool_error_x_m;double tool_error_y_m;"
       "double tool_error_z_m;double task_time_s;uint64_t mode;int64_t read_ns;int64_t write_ns;"
-      "uint64_t missed_cycles;";
+      "uint64_t missed_cycles;"
+      "double path_time_s;";
   const std::string format_size{static_cast<char>(format.size() & 0xff),
                                 static_cast<char>(format.size() >> 8)};
   EXPECT_TRUE(startsAt(59, format_size + "F" + format));
   EXPECT_TRUE(startsAt(62 + format.size(),
                        "\x17\0I\x10"
                        "char[6] sys_nametactus"s));
-  const std::size_t data_size = 2 + 8 + 8 * (17 + 2 + 2 + 3 + 3 + 2 + 5 + 3 + 5);
+  const std::size_t data_size = 2 + 8 + 8 * (17 + 2 + 2 + 3 + 3 + 2 + 5 + 3 + 5 + 1);
   const std::size_t data_start = bytes.size() - data_size - 3;
   EXPECT_TRUE(startsAt(data_start - 11, "\x08\0A\0\0\0cycle"s));
   const std::string timestamp_250000_us = "\x90\xd0\x03\0\0\0\0\0"s;
   const std::string quarter_as_double = "\0\0\0\0\0\0\xd0\x3f"s;
   EXPECT_TRUE(startsAt(data_start,
-                       "\x5a\x01"
+                       "\x62\x01"
                        "D\0\0"s +
                            timestamp_250000_us + quarter_as_double));
-  EXPECT_EQ(data_size, 0x15au);
+  EXPECT_EQ(data_size, 0x162u);
 }
 
 TEST(Ulog, WritesInfoMultiInfoAndParameterAsSpecified) {

@@ -104,6 +104,8 @@ TEST_P(NoAllocation, InSingularPosesOfAnyRobot) {
     ControllerConfig config = test::fullController(random, count, GetParam());
     config.task.components = {0, 1, 2, 3, 4, 5};
     config.task.size = std::min(count, 6);
+    config.task.max_return_speed_m_per_s = config.task.max_return_speed_rad_per_s = 0.1;
+    config.task.wait_beyond_m = 0.01;
     const Controller controller(config);
     for (int pose = 0; pose < 20; ++pose) {
       ControllerState state = controller.initialState();

@@ -41,6 +41,8 @@ inline void expectSameMotion(const ControllerOutput& a, const ControllerOutput& 
   EXPECT_EQ(a.w, b.w);
   EXPECT_EQ(a.w_d, b.w_d);
   EXPECT_EQ(a.w_d_dot, b.w_d_dot);
+  EXPECT_EQ(a.error, b.error);
+  EXPECT_EQ(a.path_time_s, b.path_time_s);
   EXPECT_EQ(a.fault, b.fault);
 }
 

@@ -97,6 +97,7 @@ class VirtualRobotCell {
   ControlCycle cycle;
   Plant plant;
   std::function<void(int bus, CanFrame& frame)> on_frame;    ///< may change what the daemon gets
+  std::function<bool(int bus, CanFrame& frame)> on_send;     ///< and what it sends; false: lost
   std::function<void(int bus, BusMonitor& monitor)> on_bus;  ///< may add to what a bus meets
   std::vector<BusMonitor> monitors;
   CycleInput input;
@@ -129,12 +130,16 @@ class VirtualRobotCell {
     BusMonitor& monitor = monitors[bus];
     const FrameBatch& outbox = cycle.outbox(bus);
     if (monitor.mayProbe()) {
-      plant.send(bus, cycle.probe(), at_ns);
+      send(bus, cycle.probe(), at_ns);
       confirm(monitor, 1);
     }
     if (outbox.empty() || !monitor.maySend()) return;
-    for (const CanFrame& frame : outbox) plant.send(bus, frame, at_ns);
+    for (const CanFrame& frame : outbox) send(bus, frame, at_ns);
     confirm(monitor, static_cast<int>(outbox.size()));
+  }
+
+  void send(int bus, CanFrame frame, std::int64_t at_ns) {
+    if (!on_send || on_send(bus, frame)) plant.send(bus, frame, at_ns);
   }
 
   static void confirm(BusMonitor& monitor, int frames) {

@@ -42,6 +42,8 @@ struct PlainControllerState {
   ContactTransitionState transition;
   StiffnessEstimatorState estimator;
   ControlLawState law;
+  Eigen::VectorXd contact_direction;  ///< J_p^T F^ of the last cycle
+  double cut_m_per_s = 0.0;           ///< of its retreat, by limits
 };
 
 /// The control step of Controller around other kinematics and linear algebra. Laws, estimator and

@@ -20,19 +20,25 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
     visit(position, 0, position_m);
     list(direction_name, direction);
   };
-  const auto& [q_desired, velocity_before, fault, is_stopping, sample_sequence, sample_age_s,
-               sample_fault, contact_point, contact] = state;
+  const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, sample_sequence,
+               sample_age_s, sample_fault, contact_point, contact] = state;
+  visit("waited_s", 0, waited_s);
+  visit("progress", 0, progress);
   list("q_desired", q_desired);
   list("velocity_before", velocity_before);
   visit("sample_age_s", 0, sample_age_s);
   point("force_N", "position_m", "direction", contact_point);
 
-  const auto& [transition, joint_space, estimator, approach, law] = contact;
+  const auto& [held_point, push, transition, joint_space, estimator, approach, law, cut,
+               is_resting] = contact;
+  point("held.force_N", "held.position_m", "held.direction", held_point);
+  list("push", push);
+  visit("cut", 0, cut);
   const auto& [touched, p_lost, gamma] = transition;
   list("transition.p_lost", p_lost);
   visit("transition.gamma", 0, gamma);
 
-  const auto& [touching, joint_gamma, kappa, joint_p_lost, joint_contact] = joint_space;
+  const auto& [touching, joint_gamma, kappa, has_rested, joint_p_lost, joint_contact] = joint_space;
   visit("joint_space.gamma", 0, joint_gamma);
   visit("joint_space.kappa", 0, kappa);
   list("joint_space.p_lost", joint_p_lost);

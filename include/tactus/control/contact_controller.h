@@ -28,17 +28,23 @@ struct ContactReport {
 };
 
 struct ContactControllerState {
+  ContactPointState contact;  ///< with a return speed: held at where it was lost
+  /// With a return speed, multi-space only (else empty): how fast the law moved the tool at last.
+  TaskVector push;
   ContactTransitionState transition;
   JointSpaceTransitionState joint_space_transition;  ///< instead, for joint space
   StiffnessEstimatorState estimator;
   ApproachLimitState approach;  ///< with an estimator of its own, for null_limit
   ControlLawState law;
+  double cut_m_per_s = 0.0;  ///< of the retreat, by the limits of the last cycle
+  bool is_resting = false;   ///< the last cycle's command did not move the arm
 };
 
 /// Where earlier commands have led to.
 struct CommandedMotion {
   const JointVector& q;         ///< desired, at the start of this cycle
   const JointVector& velocity;  ///< the previous command
+  bool is_followed;             ///< this cycle's command moves the arm; false: it stops, or rests
 };
 
 /// The answer to contact: contact space, stiffness estimate, contact transition and law, added to
@@ -60,7 +66,14 @@ class ContactController {
 
   /// The contact that the law uses: as read, or smoothed by a stage.
   const ContactPointState& follow(const ContactPointState& sensor, const TaskKinematics& kinematics,
-                                  double period_s, ContactControllerState& state) const noexcept;
+                                  const CommandedMotion& commanded, double period_s,
+                                  ContactControllerState& state) const noexcept;
+  void rest(const Contact& contact, double period_s, ContactControllerState& state,
+            ContactReport& report, ControlLawInput& input) const noexcept;
+  void goOn(const Contact& contact, const ContactPointState& point,
+            ContactControllerState& state) const noexcept;
+  const ContactPointState& holdLost(const ContactPointState& sensor,
+                                    ContactControllerState& state) const noexcept;
   Contact locate(const TaskKinematics& kinematics, const ContactPointState& point) const noexcept;
   void passTransition(const Contact& contact, double period_s, ContactControllerState& state,
                       ContactReport& report, ControlLawInput& input) const noexcept;
@@ -68,10 +81,13 @@ class ContactController {
                                 double period_s, ContactControllerState& state,
                                 ContactReport& report, ControlLawInput& input,
                                 Motion& motion) const noexcept;
+  /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
+  TaskVector pull(const TaskVector& error) const noexcept;
 
   SerialChain chain_;
   AttachedFrame link_;
   double initial_position_m_;
+  TaskConfig task_;
   ForceControlConfig config_;
   ScaledVector inv_sqrt_weights_;
   ControlLaw law_;

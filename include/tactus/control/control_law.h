@@ -17,6 +17,8 @@ struct ControlLawInput {
   double integral_decay = 1.0;     ///< of V in this cycle, from the contact transition
   double integral_share = 1.0;     ///< of V that acts, likewise
   bool hold_integral = false;      ///< V holds: another space does its work
+  bool is_followed = true;         ///< false: the arm stops or rests, whatever u says
+  double cut_m_per_s = 0.0;        ///< of the contact point's retreat, by limits, a cycle ago
 };
 
 /// Scalar controller outputs, 1/(m s) each: u_q = b u moves the contact point by -k u.
@@ -30,6 +32,11 @@ struct ControlLawOutput {
 ///   u = -max(0, P (F_p - F_act) + I) / k,   dI/dt = (F_p - F_act) / (T^2 c), I >= 0
 /// First-order target dynamics: P = 1 / (T c), no integrals. The null-space output is limited: b
 /// u_n is scaled as a whole so that no component exceeds its speed, and V holds meanwhile.
+/// Integrals remember nothing that would move the arm later:
+///   not followed:  V and I may fall, but not grow; where F_p = 0, V fades with T_t,max
+///   cut:           dV/dt = min(0, F_p / (T^2 c) - x_cut / T) down to V = 0, with x_cut > 0 the part
+///                  of the contact point's retreat that the arm's limits cut off a cycle ago; I
+///                  likewise, with F_p - F_act
 /// kNullLimit: u_n alone; what it lacks is added by approach_limit.h.
 class ControlLaw {
  public:
@@ -49,6 +56,9 @@ class ControlLaw {
   /// -max(0, P (F_p - F_act) + I), m/s.
   double secondSpace(const ControlLawInput& input, const ControlLawState& state) const noexcept;
   double proportionalGain(double stiffness_N_per_m) const noexcept;
+  /// Adds a change to V or I as far as the above lets it.
+  void integrate(double change_m_per_s, const ControlLawInput& input, double period_s,
+                 double& integral_m_per_s) const noexcept;
 
   ForceControlConfig config_;
   bool has_null_space_;

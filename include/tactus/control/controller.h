@@ -20,6 +20,8 @@ struct ControllerOutput {
   JointVector velocity;        ///< the command, m/s or rad/s: finite and within all limits
   JointVector q_desired;       ///< the desired configuration this cycle started from, m or rad
   TaskVector w, w_d, w_d_dot;  ///< of the desired configuration; m, rad, m/s, rad/s
+  TaskVector error;            ///< w_d - w; of rotations the vector of R_d R^T
+  double path_time_s = 0.0;    ///< of the reference: the task's time less the time it waited
   ContactReport contact;
   Fault fault = Fault::kNone;
 };
@@ -30,6 +32,8 @@ struct ControllerState {
   JointVector velocity_before;  ///< previous command
   Fault fault = Fault::kNone;   ///< latched; while it is set the command ramps to rest
   bool is_stopping = false;     ///< set by the caller: ramp to rest and stay there
+  double waited_s = 0.0;        ///< how far the reference is behind the task's time
+  double progress = 1.0;        ///< of the reference in the last cycle: 1 on time, 0 at rest
   std::uint32_t sample_sequence = 0;
   double sample_age_s = 0.0;
   Fault sample_fault = Fault::kNone;  ///< of the newest sample
@@ -40,11 +44,15 @@ struct ControllerState {
 /// The part of a cycle that needs no sensor: kinematics, factorisation and joint-limit cost of the
 /// commanded configuration, computed while the drives still carry out the previous command.
 struct PreparedCycle {
-  double t_s = std::numeric_limits<double>::quiet_NaN();  ///< for this time only; NaN: for none
-  JointVector q_desired;                                  ///< and this configuration
+  /// For this time of the reference only; NaN: for none.
+  double path_time_s = std::numeric_limits<double>::quiet_NaN();
+  JointVector q_desired;  ///< and this configuration
+  TaskVector push;        ///< and this push of the law, see TaskConfig
   TaskKinematics kinematics;
   Motion motion;  ///< of task and joint limits, without contact
   TaskVector w, w_d_dot;
+  Vector3 rotation_vector_d;  ///< of the reference; only for tasks with a rotation, rad
+  double progress = 1.0;      ///< of the reference, by how far the tool lags
 };
 
 /// One cycle of the paper: kinematics of the desired configuration, contact, law and limits. The
@@ -57,10 +65,24 @@ class Controller {
   /// For an arm that stands at q, near the configured start, m or rad.
   ControllerState initialState(const JointVector& q) const;
 
-  /// For cycles that were missed: the drives kept the last command for as long.
+  /// For an arm that its drives stop by themselves: forgets the contact, but neither the sensor's
+  /// newest sample and its age nor where the path has got to.
+  void restart(ControllerState& state) const noexcept;
+  /// For an arm that stands at q, wherever it was commanded to be, m or rad.
+  void place(const JointVector& q, ControllerState& state) const noexcept;
+
+  /// For a cycle in which the controller has nothing to do: only the sample is taken over, or ages.
+  void watchSensor(const RobotInput& input, double period_s, ControllerState& state) const noexcept;
+  /// Of the sample in this input, a period after the last cycle.
+  double sampleAge_s(const RobotInput& input, double period_s,
+                     const ControllerState& state) const noexcept;
+
+  /// For cycles that were missed: the drives kept the last command for as long, and the reference
+  /// its progress.
   void coast(int missed_cycles, double period_s, ControllerState& state) const noexcept;
 
-  /// One cycle. t_s: time since the start of the run; period_s: time to the next cycle, > 0.
+  /// One cycle. t_s: the task's time, which goes on by period_s > 0 to the next cycle, or stands
+  /// still while state.is_stopping.
   void update(const RobotInput& input, double t_s, double period_s, ControllerState& state,
               ControllerOutput& output) const noexcept;
 
@@ -73,18 +95,20 @@ class Controller {
               ControllerState& state, ControllerOutput& output) const noexcept;
 
  private:
-  void computeMotion(double t_s, const ControllerState& state,
+  void computeMotion(double path_time_s, const ControllerState& state,
                      PreparedCycle& prepared) const noexcept;
   void respond(const RobotInput& input, double period_s, PreparedCycle& prepared,
                ControllerState& state, ControllerOutput& output) const noexcept;
-  void computeKinematics(double t_s, const ControllerState& state,
+  void computeKinematics(double path_time_s, const ControllerState& state,
                          PreparedCycle& prepared) const noexcept;
+  void computeTaskMotion(const ControllerState& state, PreparedCycle& prepared) const noexcept;
   void avoidJointLimits(const TaskKinematics& kinematics, const ControllerState& state,
                         Motion& motion) const noexcept;
   Fault readTactileModule(const RobotInput& input, double period_s,
                           ControllerState& state) const noexcept;
-  void limit(double period_s, ControllerState& state, ControllerOutput& output) const noexcept;
-  void moveDesired(double duration_s, ControllerState& state) const noexcept;
+  void limit(const Motion& motion, double period_s, ControllerState& state,
+             ControllerOutput& output) const noexcept;
+  void passTime(double duration_s, ControllerState& state) const noexcept;
 
   ControllerConfig config_;
   Trajectory trajectory_;

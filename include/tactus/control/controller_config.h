@@ -21,10 +21,27 @@ struct JointLimits {
   JointVector max_acceleration;  ///< m/s^2 or rad/s^2, > 0
 };
 
+/// What the tool shall do. After a contact, optional keys say how it gets back to its path; e, v
+/// and p below have the task's components alone.
+///   Return speed, of position and of rotation each by itself: the correction v = beta (w_d - w) of
+///   (2) becomes
+///     v min(1, max(0, v_max - p v / |v|) / |v|)
+///   p = 0 but in the multi-space variants: there it is how fast the law's second space moved the
+///   tool in the cycle before. In contact it holds v off, and a limit of v alone would take the
+///   tool's restoring pull out of that loop, which then bounces off stiff obstacles. What is left
+///   of v_max is the limit of joint space's pull, too. Point and direction of a contact that is
+///   lost stay as they were, so that what is left of the law's answer adds nothing to the return.
+///   Waiting: while the tool lags by e = |p_d - p|, the reference has a slower clock t_path,
+///     dt_path/dt = s(e),   w_dot_d = s(e) dw_d/dt_path
+///     s = 1 - 3 x^2 + 2 x^3 with x = e / wait_beyond_m - 1, clamped to 0..1
+///   so it goes on as planned up to wait_beyond_m and stands still from twice that on.
 struct TaskConfig {
   std::array<int, kMaxTaskSize> components{};  ///< 0..5: x, y, z, rx, ry, rz of the tool
   int size = 0;
-  double drift_gain_per_s = 5.0;  ///< beta in (2)
+  double drift_gain_per_s = 5.0;                     ///< beta in (2)
+  std::optional<double> max_return_speed_m_per_s;    ///< v_max of position, > 0
+  std::optional<double> max_return_speed_rad_per_s;  ///< v_max of rotation, > 0
+  std::optional<double> wait_beyond_m;               ///< > 0
   TrajectoryConfig trajectory;
 };
 
@@ -60,7 +77,9 @@ struct ContactTransitionConfig {
   double max_time_constant_s = 1.0;  ///< T_t,max
   double distance_m = 0.05;          ///< d_t
   double engage_force_N = 0.0;       ///< F_eng: F_p over which the feedforward engages; 0: at once
-  double release_force_N = 0.3;      ///< F_rel: joint space only, F_sen at which contact is lost
+  /// F_rel: F_sen at which contact is lost in joint space, and above which an arm that goes on
+  /// after a stop is in contact.
+  double release_force_N = 0.3;
   double search_speed_m_per_s = 0.01;  ///< v_search: joint space only, speed of the return
 };
 

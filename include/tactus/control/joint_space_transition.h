@@ -9,6 +9,7 @@ struct JointSpaceTransitionState {
   bool touching = false;                 ///< contact, with hysteresis
   double gamma = 0.0;                    ///< share of the feedforward
   double kappa = 0.0;                    ///< share of the pull towards the path
+  bool has_rested = false;               ///< and kappa has not come back to where it goes
   Vector3 p_BaseLost = Vector3::Zero();  ///< where the contact point was last touching, m
   ContactPointState contact;             ///< point and direction that the law uses
 };
@@ -59,12 +60,16 @@ class JointSpaceTransition {
  public:
   explicit JointSpaceTransition(const ForceControlConfig& config) : config_(config) {}
 
-  /// Takes over the sensor's point and direction; call before update().
-  void follow(const ContactPointState& sensor, double period_s,
+  /// Takes over the sensor's point and direction; call before update(). is_moving: false while the
+  /// arm rests whatever the law says; then at once, as there is nothing to be smoothed.
+  void follow(const ContactPointState& sensor, bool is_moving, double period_s,
               JointSpaceTransitionState& state) const noexcept;
 
   IntegralShare update(const JointSpaceTransitionInput& input, double period_s,
                        JointSpaceTransitionState& state) const noexcept;
+
+  /// In place of update(), in a cycle in which the arm rests whatever the law says.
+  void rest(JointSpaceTransitionState& state) const noexcept;
 
  private:
   void engage(double F_p_N, double period_s, JointSpaceTransitionState& state) const noexcept;

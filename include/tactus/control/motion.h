@@ -9,7 +9,7 @@ namespace tactus {
 struct TaskKinematics {
   ChainPose pose;
   WeightedPseudoinverse pseudoinverse;
-  TaskVector error;  ///< w_d - w, m or rad
+  TaskVector error;  ///< w_d - w, m or rad; of rotations the vector of R_d R^T
   TaskVector y_eff;  ///< solve(w_dot_d,eff), (2)
 };
 
@@ -18,6 +18,7 @@ struct TaskKinematics {
 struct Motion {
   TaskVector y;
   ScaledVector v_scaled = ScaledVector::Zero();
+  JointVector a;                ///< J_p^T F^ of the contact, m or m/rad; set by the law
   double limit_nearness = 0.0;  ///< s_max of the joint-limit cost, 0 to 1
 };
 

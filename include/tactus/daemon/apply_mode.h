@@ -5,10 +5,7 @@
 
 namespace tactus {
 
-/// The controller's command moves the arm, or keeps it where it is.
-bool isCommanding(Mode mode) noexcept;
-
-/// Whether the controller begins anew, from the measured arm alone.
+/// Whether the controller forgets what it has commanded, all but the sensor's newest sample.
 bool resetsController(Mode mode, Mode before) noexcept;
 
 /// How the mode of a cycle and of the one before act on the controller. A function of what the log

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "tactus/control/brake.h"
 #include "tactus/control/controller.h"
 #include "tactus/control/mode.h"
 #include "tactus/daemon/cycle_record.h"
@@ -67,16 +68,17 @@ class ControlCycle {
   Fault judgeDrives() noexcept;
   Fault judgeTactile() noexcept;
   ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
-  bool areConfigured() noexcept;
+  bool areConfigured() const noexcept;
   int jointOutOfPlace() const noexcept;
   void rememberPlace() noexcept;
-  void watchSamples(int missed_cycles) noexcept;
+  void coast(int missed_cycles) noexcept;
   bool hasFreshSample() const noexcept;
+  void startTare() noexcept;
   void repeatRefusedTare() noexcept;
   void noteCulprit() noexcept;
   void control(const CycleInput& input, Mode before) noexcept;
   DriveGoal driveGoal() const noexcept;
-  bool mayMove() const noexcept;
+  void updateBrakes() noexcept;
 
   /// What judge() found, and of whom it speaks.
   struct Judged {
@@ -88,15 +90,22 @@ class ControlCycle {
   Controller controller_;
   CanRobot robot_;
   JointVector q_commanded_;  ///< at last, in a mode that commands; at first where the scene starts
-  JointVector q_released_;   ///< measured when a drive may have held at last; likewise
+  JointVector q_released_;   ///< of each joint, where its drive held it at last; likewise
+  JointVector max_following_error_;
+  JointVector
+      stop_way_;  ///< the longest that a stop may take each joint from where it was commanded
+  double stop_deadline_s_;
+  std::array<bool, kMaxJoints>
+      is_held_{};  ///< since the last command its drive was never off or cut off
   double start_tolerance_;
   double period_s_;
   int max_late_cycles_;
   bool has_enable_line_;
   double max_sample_age_s_;
-  int max_rest_cycles_;
   ModeConfig mode_config_;
+  BrakeConfig brake_config_;
   ModeState mode_;
+  BrakeState brake_;
   Judged judged_;
   ModeReport report_;
   ControllerState state_;
@@ -107,10 +116,6 @@ class ControlCycle {
   bool is_started_ = false;  ///< the controller has a state
   bool is_first_ = true;
   bool heartbeat_ = false;
-  bool is_brake_open_ = false;
-  std::uint32_t sample_sequence_ = 0;
-  double sample_age_s_ = 0.0;
-  int rest_cycles_ = 0;        ///< in a row while stopping with zero velocity, as many as matter
   long long cycles_ = 0;       ///< since the first cycle of motion, missed ones included
   long long task_cycles_ = 0;  ///< of these, those in which the task's clock ran
 };

@@ -42,10 +42,12 @@ struct CycleRecord {
   std::int64_t read_ns = 0;   ///< from waking to all frames and lines read; hardware only
   std::int64_t write_ns = 0;  ///< from the set-points to the last frame handed over; hardware only
   std::uint64_t missed_cycles = 0;  ///< skipped by the loop just before this one
+  double path_time_s = 0.0;         ///< the reference's clock: task_time_s less the time it waited
 };
 
 static_assert(std::is_trivially_copyable_v<CycleRecord> && std::is_standard_layout_v<CycleRecord>);
-static_assert(sizeof(CycleRecord) == 8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 5));
+static_assert(sizeof(CycleRecord) ==
+              8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 5 + 1));
 
 /// Copies one cycle into a record; wake_latency_ns and step_ns are left to the caller, who alone
 /// knows a clock. tool_error_m: see CycleRecord. Entries of arrays beyond the robot's joints and

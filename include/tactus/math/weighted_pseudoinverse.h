@@ -29,6 +29,9 @@ class WeightedPseudoinverse {
   /// y = R^-T w (damped near singularities): J# w = W^-1/2 Q y.
   TaskVector solve(const TaskVector& w) const noexcept;
 
+  /// R^T y, the task velocity of the joint velocity W^-1/2 Q y.
+  TaskVector taskVelocity(const TaskVector& y) const noexcept;
+
   /// Q^T v for a scaled joint vector.
   TaskVector project(const ScaledVector& v_scaled) const noexcept;
 

@@ -47,6 +47,9 @@ class Plant {
   /// drives and module, and error frames; not those of the other side. Replaces what `frames` held.
   void take(int bus, FrameBatch& frames) noexcept;
 
+  /// Replaces the script once a drive was enabled; its times count from now, t_ns.
+  void play(std::vector<Trouble> troubles, std::int64_t t_ns);
+
   /// When something next happens: nothing needs advance() before.
   std::int64_t nextEvent_ns() const noexcept;
 

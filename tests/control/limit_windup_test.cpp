@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "support/controller_run.h"
+#include "support/crops9.h"
+#include "tactus/control/controller.h"
+
+/// An arm that its limits hold back while it is pushed: the integrals do not grow meanwhile, and
+/// the way back after minutes is that after a moment.
+namespace tactus {
+namespace {
+
+enum class Gate { kVelocity, kAcceleration, kPosition };
+constexpr const char* kGateNames[] = {"velocity", "acceleration", "position"};
+
+/// The reference arm, which holds its start pose.
+ControllerConfig limitedArm(Variant variant, Gate gate) {
+  ControllerConfig config = test::crops9Controller(variant);
+  config.task.trajectory.waypoints.clear();
+  if (gate == Gate::kVelocity) config.limits.max_velocity.setConstant(5e-4);
+  if (gate == Gate::kAcceleration) config.limits.max_acceleration.setConstant(0.02);
+  if (gate == Gate::kPosition) {
+    config.limits.lower = config.q_start.array() - 0.03;
+    config.limits.upper = config.q_start.array() + 0.03;
+    config.joint_limit_avoidance.reset();  // nothing but the gate keeps joints off their limits
+  }
+  return config;
+}
+
+struct PushedArm {
+  explicit PushedArm(const ControllerConfig& config)
+      : controller(config), state(controller.initialState()) {}
+
+  /// Peak speed of a joint meanwhile.
+  double run(double force_N, double duration_s) {
+    double fastest = 0.0;
+    for (int i = 0; i < std::lround(duration_s / 0.001); ++i) {
+      input.q_measured = state.q_desired;
+      if (cycle++ % 4 == 0)
+        input.tactile = test::touchAt(0.2, force_N, 2.8, input.tactile.sequence + 1);
+      const ContactControllerState before = state.contact;
+      controller.update(input, 1e-3 * static_cast<double>(cycle), 0.001, state, output);
+      fastest = std::max(fastest, output.velocity.cwiseAbs().maxCoeff());
+      if (before.cut_m_per_s <= 0.0) continue;
+      ++cut_cycles;
+      EXPECT_LE(state.contact.law.V_m_per_s, before.law.V_m_per_s);
+      EXPECT_LE(state.contact.law.It_m_per_s, before.law.It_m_per_s);
+    }
+    return fastest;
+  }
+
+  double error_m() const { return (output.w_d - output.w).norm(); }
+
+  Controller controller;
+  ControllerState state;
+  ControllerOutput output;
+  RobotInput input;
+  long cycle = 0;
+  int cut_cycles = 0;
+};
+
+struct WayBack {
+  double time_s = 0.0, peak = 0.0;
+};
+
+WayBack wayBack(PushedArm& arm) {
+  WayBack back;
+  for (int i = 0; i < 100000; ++i) {
+    back.peak = std::max(back.peak, arm.run(0.0, 0.001));
+    if (arm.error_m() > 1e-3) back.time_s = 1e-3 * i;
+  }
+  return back;
+}
+
+constexpr Variant kLaws[] = {Variant::kNullSpace, Variant::kJointSpace, Variant::kTaskSpace,
+                             Variant::kNullTask,  Variant::kNullJoint,  Variant::kNullLimit};
+
+TEST(LimitWindup, TheWayBackAfterMinutesIsThatAfterAMoment) {
+  for (const Variant variant : kLaws) {
+    for (const Gate gate : {Gate::kVelocity, Gate::kPosition}) {
+      SCOPED_TRACE(std::to_string(static_cast<int>(variant)) + kGateNames[static_cast<int>(gate)]);
+      const ControllerConfig config = limitedArm(variant, gate);
+      PushedArm minutes(config);
+      minutes.run(15.0, 60.0);
+      EXPECT_GT(minutes.cut_cycles, 1000);
+      PushedArm moment(config);
+      moment.state = moment.controller.initialState(minutes.state.q_desired);
+      moment.run(15.0, 0.1);
+      const WayBack after_minutes = wayBack(minutes);
+      const WayBack after_moment = wayBack(moment);
+      std::printf("%d %-12s back %.3f s at %.5f, after a moment %.3f s at %.5f\n",
+                  static_cast<int>(variant), kGateNames[static_cast<int>(gate)],
+                  after_minutes.time_s, after_minutes.peak, after_moment.time_s, after_moment.peak);
+      EXPECT_LE(after_minutes.time_s, 1.1 * after_moment.time_s + 0.05);
+      EXPECT_LE(after_minutes.peak, 1.02 * after_moment.peak);
+    }
+  }
+}
+
+TEST(LimitWindup, NothingGrowsWhileAccelerationIsCut) {
+  for (const Variant variant : kLaws) {
+    PushedArm arm(limitedArm(variant, Gate::kAcceleration));
+    arm.run(15.0, 3.0);
+    EXPECT_GT(arm.cut_cycles, 100) << static_cast<int>(variant);
+  }
+}
+
+}  // namespace
+}  // namespace tactus

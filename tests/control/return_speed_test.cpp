@@ -1,0 +1,147 @@
+#include "tactus/control/return_speed.h"
+
+#include <gtest/gtest.h>
+
+#include "support/controller_run.h"
+#include "support/expanded_pseudoinverse.h"
+
+/// The correction of (2) is capped as a whole, position and rotation each by its own key.
+namespace tactus {
+namespace {
+
+/// The components of position, or of rotation, of a vector of the task.
+Eigen::VectorXd partOf(const TaskConfig& task, const TaskVector& v, bool is_position) {
+  Eigen::VectorXd part = Eigen::VectorXd::Zero(6);
+  for (int i = 0; i < task.size; ++i)
+    if ((task.components[i] < 3) == is_position) part[task.components[i]] = v[i];
+  return part;
+}
+
+void expectPart(const Eigen::VectorXd& limited, const Eigen::VectorXd& wanted,
+                const std::optional<double>& cap) {
+  if (!cap || wanted.norm() <= *cap) {
+    EXPECT_EQ(limited, wanted) << "to the bit";
+    return;
+  }
+  EXPECT_NEAR(limited.norm(), *cap, 1e-14 * *cap);
+  EXPECT_LT((limited / *cap - wanted.normalized()).norm(), 1e-14) << "another direction";
+}
+
+TEST(ReturnSpeed, IsCappedWithItsDirectionKept) {
+  test::Random random(261);
+  int capped = 0;
+  for (int i = 0; i < 2000; ++i) {
+    TaskConfig task;
+    task.components = test::randomComponents(random);
+    task.size = random.integer(1, 6);
+    if (random.chance(0.7)) task.max_return_speed_m_per_s = random.logUniform(1e-3, 10.0);
+    if (random.chance(0.7)) task.max_return_speed_rad_per_s = random.logUniform(1e-3, 10.0);
+    const TaskVector wanted = random.vector<TaskVector>(task.size, -2.0, 2.0);
+    TaskVector limited = wanted;
+    limitReturnSpeed(task, {}, limited);
+    expectPart(partOf(task, limited, true), partOf(task, wanted, true),
+               task.max_return_speed_m_per_s);
+    expectPart(partOf(task, limited, false), partOf(task, wanted, false),
+               task.max_return_speed_rad_per_s);
+    capped += limited != wanted;
+  }
+  EXPECT_GT(capped, 500);
+}
+
+/// In contact the law holds the correction off: together they are no faster than the key.
+TEST(ReturnSpeed, IsThatOfTheToolWhichTheLawPushes) {
+  TaskConfig task;
+  task.components = {4, 1, 0};
+  task.size = 3;
+  task.max_return_speed_m_per_s = 0.2;
+  const TaskVector wanted = Vector3(3.0, 0.6, 0.8);
+  const auto limitedWith = [&](const Vector3& push) -> Vector3 {
+    TaskVector correction = wanted;
+    limitReturnSpeed(task, push, correction);
+    return correction;
+  };
+  EXPECT_LT((limitedWith({0, 0, 0}) - Vector3(3.0, 0.12, 0.16)).norm(), 1e-15);
+  EXPECT_LT((limitedWith({9, -0.18, -0.24}) - Vector3(3.0, 0.3, 0.4)).norm(), 1e-15)
+      << "against it";
+  EXPECT_LT((limitedWith({9, 0.06, 0.08}) - Vector3(3.0, 0.06, 0.08)).norm(), 1e-15) << "with it";
+  EXPECT_LT((limitedWith({9, 0.8, -0.6}) - Vector3(3.0, 0.12, 0.16)).norm(), 1e-15) << "across";
+  EXPECT_EQ(limitedWith({0, -0.6, -0.8}), wanted) << "to the bit, where the tool is at rest";
+  EXPECT_EQ(limitedWith({0, 0.6, 0.8}), Vector3(3.0, 0.0, 0.0));
+}
+
+TEST(ReturnSpeed, LeavesRestAndWhatIsNoNumber) {
+  TaskConfig task;
+  task.components = {0, 3};
+  task.size = 2;
+  task.max_return_speed_m_per_s = task.max_return_speed_rad_per_s = 0.1;
+  TaskVector correction = TaskVector::Zero(2);
+  limitReturnSpeed(task, {}, correction);
+  EXPECT_TRUE(correction.isZero(0.0));
+  correction[0] = kNoLimit - kNoLimit;
+  limitReturnSpeed(task, {}, correction);
+  EXPECT_NE(correction[0], correction[0]) << "the command must show that it is broken";
+}
+
+/// An arm of nine joints that has been pushed off its reference, with all six components.
+struct PushedArm {
+  PushedArm(std::uint64_t seed, double size_rad)
+      : random(seed),
+        config(test::randomController(random, 9, 6)),
+        push(random.vector(9, -size_rad, size_rad)) {
+    config.tactile_module.reset();
+  }
+
+  ControllerOutput respond() const {
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    state.q_desired += push;
+    ControllerOutput output;
+    controller.update({}, 0.0, 1e-3, state, output);
+    return output;
+  }
+
+  /// The tool's speed in the components of the task.
+  TaskVector toolSpeed(const ControllerOutput& output) const {
+    return test::tipJacobian(config.chain, output.q_desired, config.task.components.data(),
+                             config.task.size) *
+           output.velocity;
+  }
+
+  test::Random random;
+  ControllerConfig config;
+  JointVector push;
+};
+
+TEST(ReturnSpeed, OfAToolInSpaceIsThatOfItsKeys) {
+  int compared = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    PushedArm arm(seed, 0.2);
+    arm.config.task.max_return_speed_m_per_s = 0.05;
+    arm.config.task.max_return_speed_rad_per_s = 0.1;
+    const ControllerOutput output = arm.respond();
+    const TaskConfig& task = arm.config.task;
+    const TaskVector speed = arm.toolSpeed(output);
+    TaskVector expected = 5.0 * output.error;
+    limitReturnSpeed(task, {}, expected);
+    if ((speed - expected).norm() > 1e-9) continue;  // damped: slower still
+    EXPECT_NEAR(partOf(task, speed, true).norm(), 0.05, 1e-9);
+    EXPECT_NEAR(partOf(task, speed, false).norm(), 0.1, 1e-9);
+    ++compared;
+  }
+  EXPECT_GT(compared, 50);
+}
+
+TEST(ReturnSpeed, ChangesNoBitOfACommandBelowIt) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    PushedArm arm(seed, 0.01);
+    const ControllerOutput free = arm.respond();
+    EXPECT_GT(arm.toolSpeed(free).norm(), 1e-3);
+    arm.config.task.max_return_speed_m_per_s =
+        5.001 * partOf(arm.config.task, free.error, true).norm();
+    arm.config.task.max_return_speed_rad_per_s = 1.0;
+    test::expectSame(arm.respond(), free);
+  }
+}
+
+}  // namespace
+}  // namespace tactus

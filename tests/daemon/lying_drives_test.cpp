@@ -1,0 +1,214 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "support/shipped_scene.h"
+#include "support/virtual_robot_cell.h"
+
+/// Drives that deceive the daemon, one at a time, in a cell whose other drives are honest.
+namespace tactus {
+namespace {
+
+using test::VirtualRobotCell;
+using Kind = Trouble::Kind;
+
+constexpr int kDeadline = 500;  // cycles, the default of brake_deadline_s
+constexpr double kAtRest = 1e-6;
+
+Trouble troubleOf(Kind kind, double from_s, double until_s, int bus, std::uint32_t node) {
+  Trouble trouble;
+  trouble.kind = kind;
+  trouble.from_s = from_s;
+  trouble.until_s = until_s;
+  trouble.bus = bus;
+  trouble.id = node;
+  return trouble;
+}
+
+Scene sceneWith(const std::vector<Trouble>& troubles, bool has_enable_line) {
+  Scene scene = test::shippedScene("scenario1_multi_space");
+  scene.hardware->gpio.emplace();
+  scene.hardware->gpio->brake.emplace();
+  if (has_enable_line) scene.hardware->gpio->enable.emplace();
+  scene.troubles = troubles;
+  return scene;
+}
+
+void step(VirtualRobotCell& cell, int cycles) {
+  for (int i = 0; i < cycles; ++i) cell.step();
+}
+
+double fastest(const VirtualRobotCell& cell) {
+  double speed = 0.0;
+  for (int joint = 0; joint < 9; ++joint)
+    speed = std::max(speed, std::abs(cell.plant.drive(joint).velocity()));
+  return speed;
+}
+
+/// As if somebody had pushed this joint's limp link, of 1e6 counts a rad.
+void pushJoint(VirtualRobotCell& cell, int bus, std::uint32_t id, double angle_rad) {
+  cell.on_frame = [=](int at, CanFrame& frame) {
+    if (at != bus || frame.id != id) return;
+    std::int32_t position = 0;
+    std::memcpy(&position, frame.data.data() + 2, sizeof(position));
+    position += static_cast<std::int32_t>(1e6 * angle_rad);
+    std::memcpy(frame.data.data() + 2, &position, sizeof(position));
+  };
+}
+
+/// E-stop while joint 1's drive deceives; joint 5 is pushed; the trouble goes; off and on again.
+TEST(LyingDrive, DoesNotVouchForTheOthers) {
+  for (const Kind kind : {Kind::kNonsenseStatus, Kind::kFreezeFeedback, Kind::kIgnoreCommands}) {
+    for (const double angle_rad : {0.3, -0.3, 0.03}) {
+      SCOPED_TRACE(std::to_string(static_cast<int>(kind)));
+      VirtualRobotCell cell(sceneWith({troubleOf(kind, 6.0, 8.0, 0, 1)}, true));
+      ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+      while (!cell.plant.wasEnabled()) cell.step();
+      step(cell, 6100);
+      cell.input.lines.emergency_stop = true;
+      step(cell, 700);
+      pushJoint(cell, 1, 0x182, angle_rad);
+      step(cell, 2500);
+      cell.input.lines.emergency_stop = false;
+      cell.switchEnable();
+      for (int i = 0; i < 4000; ++i) {
+        cell.step();
+        ASSERT_EQ(cell.largestSetpoint(), 0) << i;
+        ASSERT_NE(cell.cycle.report().mode, Mode::kEnabling) << i;
+      }
+      EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart)
+          << faultName(cell.cycle.report().fault);
+      EXPECT_EQ(cell.cycle.report().joint, 4);
+      cell.on_frame = nullptr;  // and is put back
+      cell.switchEnable();
+      EXPECT_TRUE(cell.runUntil(Mode::kRunning, 4000)) << faultName(cell.cycle.report().fault);
+    }
+  }
+}
+
+/// A spoilt setpoint throws a joint far beyond any stop: its place is none to start from, though
+/// its drive has held it all the time.
+TEST(LyingDrive, ThatWentFurtherThanAnyStopIsNotInPlace) {
+  VirtualRobotCell cell(sceneWith({}, true));
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  step(cell, 1000);
+  int spoilt = 0;
+  cell.on_send = [&spoilt](int bus, CanFrame& frame) {
+    if (bus == 1 && frame.id == 0x202 && spoilt < 100) {
+      const std::int32_t counts = 5'000'000;  // 5 rad/s
+      std::memcpy(frame.data.data() + 2, &counts, sizeof(counts));
+      ++spoilt;
+    }
+    return true;
+  };
+  step(cell, 1500);
+  ASSERT_EQ(cell.cycle.report().fault, Fault::kFollowingError);
+  cell.switchEnable();
+  for (int i = 0; i < 3000; ++i) {
+    cell.step();
+    ASSERT_EQ(cell.largestSetpoint(), 0) << i;
+  }
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart);
+  EXPECT_EQ(cell.cycle.report().joint, 4);
+}
+
+/// A fault of another drive while this one ignores what it is told, and moves on.
+TEST(LyingDrive, ThatMovesOnIsBrakedAndStoppedInTime) {
+  for (const int joint : {0, 3, 8}) {
+    const int bus = joint / 3;
+    const auto node = static_cast<std::uint32_t>(joint % 3 + 1);
+    VirtualRobotCell cell(sceneWith({troubleOf(Kind::kIgnoreCommands, 3.0, 60.0, bus, node),
+                                     troubleOf(Kind::kDriveFault, 3.05, 3.1, (bus + 1) % 3, 1)},
+                                    true));
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+    ASSERT_TRUE(cell.runUntil(Mode::kFault, 4000));
+    const double speed = std::abs(cell.plant.drive(joint).velocity());
+    ASSERT_GT(speed, 1e-3) << "it has something to go on with";
+    ASSERT_TRUE(cell.cycle.lines().release_brake);
+    int brake_cycles = 0;
+    while (cell.cycle.lines().release_brake && brake_cycles < 2 * kDeadline) {
+      cell.step();
+      ++brake_cycles;
+    }
+    EXPECT_LE(brake_cycles, speed > 0.025 ? 130 : kDeadline) << joint;  // 0.02 in two windows
+    step(cell, 250);
+    EXPECT_LE(fastest(cell), kAtRest) << joint;
+    for (int i = 0; i < 3000; ++i) {
+      cell.step();
+      ASSERT_FALSE(cell.cycle.lines().release_brake);
+      ASSERT_LE(fastest(cell), kAtRest);
+    }
+  }
+}
+
+/// It rests with power, and says so: nothing is seen off, and the brake may not wait for it.
+TEST(LyingDrive, ThatNeverSwitchesOffKeepsNoBrakeOpen) {
+  for (const bool has_enable_line : {false, true}) {
+    VirtualRobotCell cell(
+        sceneWith({troubleOf(Kind::kIgnoreCommands, 0.1, 1e3, 1, 2)}, has_enable_line));
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+    step(cell, 200);
+    cell.input.are_lines_lost = true;  // a quick stop
+    step(cell, kDeadline + 1);
+    EXPECT_FALSE(cell.cycle.lines().release_brake);
+    step(cell, 200);
+    EXPECT_LE(fastest(cell), kAtRest);
+    EXPECT_NE(cell.plant.drive(4).powerState(), PowerState::kOperationEnabled) << "cut off";
+    if (!has_enable_line) {
+      EXPECT_TRUE(cell.cycle.isFinished());
+    }
+  }
+}
+
+TEST(LyingDrive, ThatSaysItBootsIsResetAndDoesNotRunAgainstTheBrake) {
+  for (const int joint : {1, 5}) {
+    VirtualRobotCell cell(sceneWith(
+        {troubleOf(Kind::kBootUp, 5.0, 5.1, joint / 3, static_cast<std::uint32_t>(joint % 3 + 1))},
+        true));
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+    ASSERT_TRUE(cell.runUntil(Mode::kFault, 6000));
+    EXPECT_EQ(cell.cycle.report().fault, Fault::kDriveStateLost);
+    EXPECT_EQ(cell.cycle.report().joint, joint);
+    step(cell, 5);
+    EXPECT_NE(cell.plant.drive(joint).powerState(), PowerState::kOperationEnabled);
+    step(cell, 400);
+    EXPECT_LE(fastest(cell), kAtRest);
+    EXPECT_FALSE(cell.cycle.lines().release_brake);
+    cell.switchEnable();
+    EXPECT_TRUE(cell.runUntil(Mode::kRunning, 4000)) << faultName(cell.cycle.report().fault);
+  }
+}
+
+/// Off is reached by time while a drive still moves; nothing but its heartbeat watch stops it.
+TEST(LyingDrive, KeepsItsOwnWatchBeyondTheEnd) {
+  for (const bool is_stopped : {false, true}) {
+    VirtualRobotCell cell(sceneWith({troubleOf(Kind::kIgnoreCommands, 5.0, 1e3, 1, 2),
+                                     troubleOf(Kind::kHeartbeatOnly, 0.0, 1e3, 1, 2)},
+                                    false));
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+    step(cell, 5200);
+    ASSERT_GT(std::abs(cell.plant.drive(4).velocity()), 1e-3);
+    bool is_disarmed = false;
+    cell.on_send = [&is_disarmed](int bus, CanFrame& frame) {  // NMT does not get through
+      const bool is_nmt = bus == 1 && frame.id == 0;
+      const bool is_its = frame.data[1] == 0 || frame.data[1] == 2;
+      is_disarmed = is_disarmed || (is_nmt && is_its && frame.data[0] == 130);
+      return !is_nmt;
+    };
+    if (is_stopped) {
+      cell.input.stop_requested = true;
+    } else {
+      cell.input.are_lines_lost = true;
+    }
+    for (int i = 0; i < 8000 && !cell.cycle.isFinished(); ++i) cell.step();
+    ASSERT_TRUE(cell.cycle.isFinished());
+    for (int i = 0; i < 500; ++i) cell.plant.advance(cell.t_ns += 1'000'000);
+    EXPECT_LE(fastest(cell), kAtRest) << is_stopped;
+    EXPECT_FALSE(is_disarmed) << "reset communication would end its heartbeat watch";
+  }
+}
+
+}  // namespace
+}  // namespace tactus
