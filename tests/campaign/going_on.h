@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "campaign/judges.h"
+#include "campaign/plan.h"
+#include "campaign/stage.h"
+
+namespace tactus::campaign {
+
+/// Notes where the arm goes on, and how fast it is then: the run compares with one that was not
+/// disturbed.
+struct GoingOn {
+  int stop_ms = 0;    ///< when it last stopped running
+  int return_ms = 0;  ///< and ran again
+  int end_ms = 0;     ///< of what was looked at: 3 s, or the next stop
+  double peak = 0.0;  ///< of commands and drives, m/s or rad/s
+};
+
+struct GoingOnJudge {
+  static constexpr int kWindow_ms = 3000;
+  std::vector<GoingOn> all;
+  std::vector<bool> is_calm;  ///< of each
+  int stop_ms = -1;
+  void look(const Look& look);
+  void end(int now_ms);  ///< of the run
+  double peak() const;   ///< the largest while nothing was at work but hands
+};
+
+/// Complains of what was faster than in the same run without a trouble; adds the cycles that this
+/// takes.
+void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& judge,
+                    std::vector<Violation>& found, long long& cycles);
+
+}  // namespace tactus::campaign

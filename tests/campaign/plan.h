@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "campaign/injection.h"
+#include "support/random.h"
+#include "tactus/daemon/scene.h"
+
+namespace tactus::campaign {
+
+inline constexpr std::array<const char*, 6> kVariants = {"null_space", "joint_space", "task_space",
+                                                         "null_task",  "null_joint",  "null_limit"};
+
+enum class Moment : std::uint8_t { kEnabling, kFree, kTouch, kFirm };  ///< when a run begins
+inline constexpr std::array<const char*, 4> kMoments = {"enabling", "free", "touch", "firm"};
+
+enum class Ending : std::uint8_t {
+  kGoOn,      ///< the enable line off and on, as documented, and some seconds of motion
+  kGoOnStop,  ///< the same, then a stop request
+  kStop,      ///< a stop request
+  kLeave,     ///< nobody does anything
+};
+inline constexpr std::array<const char*, 4> kEndings = {"go on", "go on and stop", "stop", "leave"};
+
+/// One run, drawn from its seed.
+struct Plan {
+  int variant = 0;
+  Moment moment = Moment::kFree;
+  std::vector<Injection> injections;
+  Ending ending = Ending::kGoOn;
+  int clear_ms = 0;   ///< when the user begins: when all is over and quiet, or before that
+  int off_ms = 50;    ///< for which the user switches the enable line off
+  int bounce_ms = 0;  ///< for which the line bounces when it is switched on
+  std::string text() const;
+};
+
+/// Of this kind, at whom and how by chance.
+Injection drawInjection(test::Random& random, const Scene& scene, const InjectionKind& kind,
+                        int from_ms);
+Plan drawPlan(std::uint64_t seed, std::uint64_t index, const Scene& scene);
+
+}  // namespace tactus::campaign

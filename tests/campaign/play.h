@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "campaign/observation.h"
+#include "campaign/plan.h"
+#include "campaign/stage.h"
+
+namespace tactus::campaign {
+
+/// The cell with the hooks of its injections.
+class Play {
+ public:
+  Play(const Stage& stage, const Plan& plan);
+
+  int now_ms() const { return static_cast<int>((cell_.t_ns - start_ns_) / 1'000'000); }
+  const VirtualRobotCell& cell() const { return cell_; }
+  const Observation& now() const { return now_; }
+
+  CycleInput input();           ///< what injections tell the daemon by its inputs
+  void step(CycleInput input);  ///< a cycle, and those that are missed before it
+  void stepAlone();             ///< a ms of the plant; the daemon has gone
+  void setForces(bool are_there) { are_forces_there_ = are_there; }
+
+ private:
+  template <typename Do>
+  void forActive(const Do& act);
+  void act();
+  void changeReceived(int bus, CanFrame& frame);
+  bool changeSent(int bus, CanFrame& frame);
+  void changeBus(int bus, BusMonitor& monitor);
+  std::vector<Trouble> script() const;
+  void observe();
+  void observeSetpoints();
+  void observePlant();
+  void observeInjections();
+
+  const Stage& stage_;
+  VirtualRobotCell cell_;
+  std::int64_t start_ns_;
+  std::vector<Injection> injections_;
+  Observation now_;
+  bool are_forces_there_ = true;
+  bool has_stopped_ = false, has_forbidden_ = false;
+};
+
+}  // namespace tactus::campaign
