@@ -4,6 +4,10 @@ import re
 from dataclasses import dataclass
 
 SYNC, EMERGENCY, TPDO, RPDO, HEARTBEAT = 0x080, 0x080, 0x180, 0x200, 0x700
+SDO_REQUEST, SDO_ANSWER = 0x600, 0x580
+NMT, MASTER_HEARTBEAT = 0x000, 0x77F
+NMT_STOP, NMT_PRE_OPERATIONAL, NMT_RESET_NODE, NMT_RESET_COMMUNICATION = 0x02, 0x80, 0x81, 0x82
+POSITION_IS = bytes([0x43, 0x64, 0x60, 0x00])  # an SDO answer: four bytes of object 6064:00
 QUICK_STOP, ENABLE_OPERATION = 0x02, 0x0F
 # Error frames and extended frames have eight digits.
 LINE = re.compile(r"\((\d+)\.(\d{6})\) (\w+) ([0-9A-F]{8}|[0-9A-F]{3})#([0-9A-F]*|R\d?)$")
@@ -94,6 +98,33 @@ def positions(frames):
         node: [(f.t_us, f.number(2, 4, signed=True)) for f in own]
         for node, own in _of_nodes(frames, TPDO, 6).items()
     }
+
+
+def asked_positions(frames):
+    """Counts, by drive that was asked by SDO: (time, position)."""
+    return {
+        node: [(f.t_us, f.number(4, 4, signed=True)) for f in own if f.data[:4] == POSITION_IS]
+        for node, own in _of_nodes(frames, SDO_ANSWER, 8).items()
+    }
+
+
+def boot_ups(frames, node):
+    """When this drive said that it has started anew."""
+    return [f.t_us for f in frames
+            if f.node == node and f.id > HEARTBEAT and f.data == b"\0"]  # fmt: skip
+
+
+def nmt(frames, node):
+    """What this drive alone was told: (time, command)."""
+    return [(f.t_us, f.data[0]) for f in frames
+            if f.bus == node[0] and f.id == NMT and f.data[1:] == bytes([node[1]])]  # fmt: skip
+
+
+def of_master(frames, bus):
+    """All that it sends there."""
+    functions = {RPDO, SDO_REQUEST}
+    return [f for f in frames if f.bus == bus and f.is_standard and (
+        f.id in (NMT, SYNC, MASTER_HEARTBEAT) or f.id & ~0x7F in functions)]  # fmt: skip
 
 
 def emergencies(frames):

@@ -79,6 +79,11 @@ class FaultCase:
         """All drives without power."""
         return self._last(self.statuses, lambda status: status.is_off)
 
+    def brake_us(self):
+        """The brake line; None: not before the restart, or there is none."""
+        closed_us = self.marks.get("brake", 0)
+        return closed_us - self.fault_us if self.fault_us < closed_us < self.restart_us else None
+
     def quick_stop_us(self):
         """A quick stop for all drives. To one that is off already the same word means less."""
         times = []

@@ -10,6 +10,13 @@ import unittest
 from dataclasses import dataclass
 
 import candump_log
+from candump_log import (
+    NMT_PRE_OPERATIONAL,
+    NMT_RESET_COMMUNICATION,
+    NMT_RESET_NODE,
+    NMT_STOP,
+    SYNC,
+)
 from fault_case import CYCLE_US, FaultCase
 from machine import Build
 
@@ -20,8 +27,8 @@ POWER_RETURNS_US = 5_000_000
 
 @dataclass(frozen=True)
 class Expected:
-    """Limits are cycles from the fault to zero setpoints, to a quick stop, to all drives off; None:
-    does not come to that."""
+    """Limits are cycles from the fault to zero setpoints, to a quick stop, to all drives off, to
+    closed brakes; None: does not come to that."""
 
     mode: str
     fault: str
@@ -29,6 +36,7 @@ class Expected:
     zero: int
     quick_stop: int | None = None
     off: int | None = None
+    brake: int | None = None
     lost: tuple = ()  # buses and drives out of reach
     faulty: tuple = ()  # drives that stop by themselves, maybe before they are told
     restarts: bool = True
@@ -38,26 +46,42 @@ class Expected:
 QUICK_STOP_LASTS = 130
 # The setpoint is zero at once; drives lag behind it, and the brake takes switching_s, 0.1 s, to hold.
 RAMP_LASTS = 150
+DEADLINE = 500  # gpio.brake.deadline_s
+MOVES_ON = 100  # two windows in which a drive has to slow down
 EXPECTED = {
-    "e_stop": Expected("fault", "emergency_stop", "quick stop and brake", 2, 2, QUICK_STOP_LASTS),
+    "e_stop": Expected("fault", "emergency_stop", "quick stop and brake", 2, 2, QUICK_STOP_LASTS, 2),
     "enable_off": Expected("holding", "", "", 5),
-    "sigterm": Expected("stopping", "", "", 5, None, RAMP_LASTS, restarts=False),
+    "sigterm": Expected("stopping", "", "", 5, None, RAMP_LASTS, 5, restarts=False),
     "forbidden_call": Expected("stopping", "forbidden_system_call", "ramp", 4, None, RAMP_LASTS,
                                restarts=False),
     # The kernel empties the queue first and lets some cycles pass until it says that it is down.
-    "interface_down": Expected("fault", "bus_stalled", "quick stop", 6, 6, QUICK_STOP_LASTS, ("can1",)),
+    "interface_down": Expected("fault", "bus_stalled", "quick stop", 6, 6, QUICK_STOP_LASTS,
+                               QUICK_STOP_LASTS, lost=("can1",)),
     # Feedback is missing for more than five cycles.
-    "node_reset": Expected("fault", "drive_silent", "quick stop", 10, 10, 10 + QUICK_STOP_LASTS,
-                           (("can0", 2),)),
-    "drive_silent": Expected("fault", "drive_silent", "quick stop", 8, 8, 8 + QUICK_STOP_LASTS),
-    "overrun": Expected("stopping", "overrun", "ramp", 6, None, RAMP_LASTS),
-    "bus_off": Expected("fault", "bus_off", "quick stop", 3, 3, QUICK_STOP_LASTS, ("can2",)),
-    "drive_fault": Expected("fault", "drive_fault", "quick stop", 3, 3, QUICK_STOP_LASTS,
-                            faulty=(("can0", 2),)),
+    "node_reset": Expected("fault", "drive_silent", "quick stop", 8, 8, 8 + QUICK_STOP_LASTS,
+                           8 + QUICK_STOP_LASTS, lost=(("can0", 2),)),
+    "drive_silent": Expected("fault", "drive_silent", "quick stop", 7, 7, 7 + QUICK_STOP_LASTS,
+                             7 + QUICK_STOP_LASTS),
+    "overrun": Expected("stopping", "overrun", "ramp", 6, None, RAMP_LASTS, 6),
+    "bus_off": Expected("fault", "bus_off", "quick stop", 3, 3, QUICK_STOP_LASTS, QUICK_STOP_LASTS,
+                        lost=("can2",)),
+    "drive_fault": Expected("fault", "drive_fault", "quick stop", 2, 2, QUICK_STOP_LASTS,
+                            QUICK_STOP_LASTS, faulty=(("can0", 2),)),
     "tactile_stale": Expected("holding", "tactile_stale", "hold", 26),  # max_sample_age_s: 20 ms
     # Sixteen attempts without acknowledgement, and the controller is error-passive.
     "power_cut": Expected("fault", "bus_unacknowledged", "quick stop", 5, 5, QUICK_STOP_LASTS,
-                          ("can1",)),
+                          QUICK_STOP_LASTS, lost=("can1",)),
+    "boot_up": Expected("fault", "drive_state_lost", "quick stop", 2, 2, QUICK_STOP_LASTS,
+                        QUICK_STOP_LASTS, lost=(("can0", 2),)),
+    # The one that moves on is not seen off. Nor are the next two, whatever their truth is.
+    "ignore_commands": Expected("fault", "drive_fault", "quick stop", 2, 2, QUICK_STOP_LASTS,
+                                MOVES_ON + 5, lost=(("can2", 2),), faulty=(("can0", 2),)),
+    "nonsense_status": Expected("fault", "drive_state_lost", "quick stop", 2, 2, QUICK_STOP_LASTS,
+                                DEADLINE + 5, lost=(("can1", 3),)),
+    "freeze_feedback": Expected("fault", "emergency_stop", "quick stop and brake", 2, 2,
+                                QUICK_STOP_LASTS, 2, lost=(("can0", 2),)),
+    "never_off": Expected("stopping", "", "", 5, None, RAMP_LASTS, 5, lost=(("can1", 3),),
+                          restarts=False),
 }  # fmt: skip
 
 
@@ -96,7 +120,7 @@ class Faults(unittest.TestCase):
 
     def is_in_time(self, case, expected):
         measured = {"zero": case.zero_us(), "quick_stop": case.quick_stop_us(),
-                    "off": case.off_us()}  # fmt: skip
+                    "off": case.off_us(), "brake": case.brake_us()}  # fmt: skip
         for what, time_us in measured.items():
             limit = getattr(expected, what)
             if limit is None:
@@ -119,16 +143,19 @@ class Faults(unittest.TestCase):
             moves = any(c.velocity != 0 for c in own if c.t_us > case.restart_us)
             self.assertEqual(moves, expected.restarts, node)
 
-    def ends_at_rest(self, case, _):
+    def ends_at_rest(self, case, expected):
         for node, own in case.commands.items():
             self.assertEqual(own[-1].velocity, 0, node)
         for node, own in case.statuses.items():
-            self.assertTrue(own[-1].is_off, node)
+            is_never_seen_off = not expected.restarts and node in expected.lost
+            self.assertEqual(own[-1].is_off, not is_never_seen_off, node)
 
-    def test_brake_falls_with_the_e_stop(self):
-        marks = (results / "e_stop" / "marks.txt").read_text()
-        self.assertRegex(marks, r"(?m)^brake_before .* out=1 driven=1$")
-        self.assertRegex(marks, r"(?m)^brake .* out=0 driven=1$")
+    def test_brakes_were_open(self):
+        for name, expected in EXPECTED.items():
+            marks = (results / name / "marks.txt").read_text()
+            if expected.brake is not None:
+                self.assertRegex(marks, r"(?m)^brake_before .* out=1 driven=1$", name)
+                self.assertRegex(marks, r"(?m)^brake .* out=0 driven=1$", name)
 
     def test_nothing_waits_for_power_to_return(self):
         """From a cut bus on, no setpoint goes to it; the drives come back before the restart."""
@@ -138,10 +165,11 @@ class Faults(unittest.TestCase):
         for node, own in case.commands.items():
             if node[0] == "can1":
                 self.assertEqual([c for c in own if cut_us < c.t_us < return_us], [])
-        boots = [f.t_us for f in case.until_restart(case.frames) if f.bus == "can1"
-                 and f.id > candump_log.HEARTBEAT and f.data == b"\0"]  # fmt: skip
-        self.assertEqual(len(boots), 3)
-        self.assertTrue(all(t > return_us for t in boots))
+        frames = case.until_restart(case.frames)
+        for node in (1, 2, 3):
+            boots = candump_log.boot_ups(frames, ("can1", node))
+            self.assertEqual(len(boots), 1)
+            self.assertGreater(boots[0], return_us)
 
     def test_second_daemon_says_why_it_refuses(self):
         text = (results / "enable_off" / "second.txt").read_text()
@@ -150,6 +178,95 @@ class Faults(unittest.TestCase):
     def test_forbidden_call_is_named(self):
         text = (results / "forbidden_call" / "stdout.txt").read_text()
         self.assertIn(" 1 forbidden calls, first: getpid\n", text)
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A drive that is not seen off, and when its master loses patience with it."""
+
+    node: tuple
+    cut_off: int  # that many cycles after the fault
+    moves_on: bool = False
+
+
+SUSPECTS = {
+    "ignore_commands": Suspect(("can2", 2), MOVES_ON, moves_on=True),
+    "nonsense_status": Suspect(("can1", 3), DEADLINE),
+    "freeze_feedback": Suspect(("can0", 2), DEADLINE),
+}
+NMT_STOP_LASTS = 20
+
+
+class NotSeenOff(unittest.TestCase):
+    """Drives that lie or do not obey are stopped by NMT, then by silence on their bus."""
+
+    def test_each_suspect(self):
+        for name, suspect in SUSPECTS.items():
+            case = FaultCase(results / name)
+            told = candump_log.nmt(case.until_restart(case.frames), suspect.node)
+            stops_us = [t for t, command in told if command == NMT_STOP]
+            for check in [self.is_told_to_stop, self.loses_its_bus, self.stands_still]:
+                with self.subTest(name, check=check.__name__):
+                    check(case, suspect, stops_us)
+
+    def is_told_to_stop(self, case, suspect, stops_us):
+        self.assertEqual(len(stops_us), 4)
+        cut_off_us = stops_us[0] - case.fault_us
+        self.assertGreaterEqual(cut_off_us, suspect.cut_off * CYCLE_US)
+        self.assertLessEqual(cut_off_us, (suspect.cut_off + 5) * CYCLE_US)
+        own = case.until_restart(case.commands[suspect.node])
+        self.assertEqual([c for c in own if c.t_us > stops_us[0]], [])
+
+    def loses_its_bus(self, case, suspect, stops_us):
+        silent_us = stops_us[0] + NMT_STOP_LASTS * CYCLE_US
+        bus, number = suspect.node
+        sent = case.until_restart(candump_log.of_master(case.frames, bus))
+        question = [bytes([NMT_PRE_OPERATIONAL, number]), bytes.fromhex("4064600000000000")]
+        self.assertEqual([f.data for f in sent if f.t_us > silent_us], question)
+        for other in {"can0", "can1", "can2"} - {bus}:
+            sent = case.until_restart(candump_log.of_master(case.frames, other))
+            syncs = [f for f in sent if f.id == SYNC and f.t_us > silent_us]
+            self.assertGreater(len(syncs), 100)
+
+    def stands_still(self, case, suspect, stops_us):
+        ((asked_us, place),) = candump_log.asked_positions(case.frames)[suspect.node]
+        told = candump_log.positions(case.frames)[suspect.node]
+        again_us, again = next(p for p in told if p[0] > case.restart_us)
+        self.assertGreater(again_us - asked_us, 100 * CYCLE_US)
+        self.assertEqual(place, again)
+        if suspect.moves_on:  # until it was told by NMT
+            before = [position for t, position in told if t < case.fault_us][-1]
+            last = [position for t, position in told if t < stops_us[0]][-1]
+            self.assertGreater(abs(last - before), 20_000)  # 20 mrad
+            self.assertLess(abs(place - last), 5_000)
+
+    def test_keeps_its_watch_at_the_end(self):
+        suspect = ("can1", 3)
+        case = FaultCase(results / "never_off")
+        for node in case.commands:
+            told = [command for _, command in candump_log.nmt(case.frames, node)]
+            last = [NMT_RESET_COMMUNICATION]
+            if node == suspect:  # and asked twice
+                last = [NMT_RESET_NODE, NMT_PRE_OPERATIONAL, NMT_PRE_OPERATIONAL]
+            self.assertEqual([command for command in told if command != NMT_STOP], last, node)
+        (_, place), (_, again) = candump_log.asked_positions(case.frames)[suspect]
+        self.assertEqual(place, again)
+
+
+class Restarted(unittest.TestCase):
+    def test_who_says_that_it_boots_is_made_to(self):
+        """It may run on, so all it said before it has booted once more is worth nothing."""
+        node = ("can0", 2)
+        case = FaultCase(results / "boot_up")
+        frames = [f for f in case.frames if case.fault_us - CYCLE_US < f.t_us < case.restart_us]
+        claim_us, boot_us = candump_log.boot_ups(frames, node)
+        ((reset_us, command),) = candump_log.nmt(frames, node)
+        self.assertEqual(command, NMT_RESET_NODE)
+        self.assertLess(claim_us, reset_us)
+        self.assertLess(reset_us - claim_us, 2 * CYCLE_US)
+        self.assertLess(reset_us, boot_us)
+        late = [c for c in case.until_restart(case.commands[node]) if c.t_us > reset_us]
+        self.assertEqual(late, [])
 
 
 class Killed(unittest.TestCase):
@@ -175,7 +292,7 @@ class Killed(unittest.TestCase):
 
 
 TITLE = (f"{'injected':16}{'fault':24}{'reaction':22}{'zero':>8}{'quick stop':>12}{'off':>8}"
-         "   cycles after the fault")  # fmt: skip
+         f"{'brake':>8}   cycles after the fault")  # fmt: skip
 
 
 def row(case):
@@ -185,7 +302,7 @@ def row(case):
     expected = EXPECTED[case.name]
     return (f"{case.name:16}{expected.fault or expected.mode:24}{expected.reaction:22}"
             f"{cycles(case.zero_us()):>8}{cycles(case.quick_stop_us()):>12}"
-            f"{cycles(case.off_us()):>8}")  # fmt: skip
+            f"{cycles(case.off_us()):>8}{cycles(case.brake_us()):>8}")  # fmt: skip
 
 
 if __name__ == "__main__":

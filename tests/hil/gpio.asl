@@ -1,5 +1,6 @@
 // Two GPIO controllers that exist only as tables: their registers are plain RAM, which the kernel's
-// command line keeps free (memmap) and which guest/gpio_poke.c changes from the other side.
+// command line keeps free (memmap) and which guest/gpio_poke.c changes from the other side. In the
+// middle of the RAM, since QEMU puts the initramfs at its end, which would leave its bytes in them.
 DefinitionBlock ("", "SSDT", 2, "TACTUS", "HILGPIO", 1)
 {
     External (\_SB, DeviceObj)
@@ -12,7 +13,7 @@ DefinitionBlock ("", "SSDT", 2, "TACTUS", "HILGPIO", 1)
         Name (_UID, Zero)
         Name (_CRS, ResourceTemplate ()
         {
-            Memory32Fixed (ReadWrite, 0x3F000000, 0x400)
+            Memory32Fixed (ReadWrite, 0x20000000, 0x400)
             Interrupt (ResourceConsumer, Edge, ActiveHigh, Shared) { 3 }
         })
     }
@@ -24,7 +25,7 @@ DefinitionBlock ("", "SSDT", 2, "TACTUS", "HILGPIO", 1)
         Name (_UID, One)
         Name (_CRS, ResourceTemplate ()
         {
-            Memory32Fixed (ReadWrite, 0x3F001000, 0x100)
+            Memory32Fixed (ReadWrite, 0x20001000, 0x100)
         })
     }
 }

@@ -11,6 +11,10 @@ import unittest
 from machine import SCENES, TIMEOUT_S, Build, summary
 
 CYCLES = 13000
+# Samples of the module meet the arm's motion in one of four phases, as chance started the daemon.
+# Those that `simulate` does not have change its peak by less than 0.6 %, but by up to 3.31 % where the
+# paper's law estimates the stiffness while the force rises.
+DEVIATION, DEVIATION_ESTIMATED_PEAK = 0.01, 0.035
 STOPPING_CYCLES = 40  # until the drives have followed the last setpoint and are off
 
 
@@ -24,7 +28,7 @@ class Scenes(unittest.TestCase):
                 daemon, simulated = summary(run), build.simulate(run.name)
                 table.append(row(run.name, daemon, simulated))
                 self.check_loop(daemon)
-                self.check_motion(daemon, simulated)
+                self.check_motion(run.name, daemon, simulated)
                 self.assertIn("equal to the bit", build.call("replay", run / "run.ulg"))
         print("\n".join([row_of_names(), *table]))
 
@@ -44,9 +48,10 @@ class Scenes(unittest.TestCase):
             for counter in ["refused", "held_back", "error_frames", "foreign"]:
                 self.assertEqual(bus[counter], 0, f"{bus['interface']}: {counter}")
 
-    def check_motion(self, daemon, simulated):
-        for force in ["peak_force_N", "final_force_N"]:
-            self.assertAlmostEqual(daemon[force] / simulated[force], 1.0, delta=0.02, msg=force)
+    def check_motion(self, name, daemon, simulated):
+        peak = DEVIATION_ESTIMATED_PEAK if "_estimated" in name else DEVIATION
+        for force, limit in {"peak_force_N": peak, "final_force_N": DEVIATION}.items():
+            self.assertAlmostEqual(daemon[force] / simulated[force], 1.0, delta=limit, msg=force)
         self.assertEqual(len(daemon["contacts"]), len(simulated["contacts"]))
 
 

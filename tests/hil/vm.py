@@ -32,7 +32,7 @@ def _command(folder, test, shift):
     # The kernel's tests of its own ciphers take half of its start. RCU callbacks keep a socket waiting
     # for up to 2 ms unless a thread of their own runs them, as nohz_full has it on a robot's machine.
     options = ("console=ttyS0 quiet panic=-1 cryptomgr.notests rcu_nocbs=0 iomem=relaxed "
-               f"memmap=64K$0x3f000000 test={test}")  # fmt: skip
+               f"memmap=64K$0x20000000 test={test}")  # fmt: skip
     return [
         "setpriv", "--pdeathsig", "KILL",  # whoever kills this script kills the machine
         installed("qemu-system-x86_64"), "-M", "pc", "-cpu", "max", "-m", "1024", "-smp", "1",

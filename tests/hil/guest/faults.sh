@@ -12,13 +12,16 @@ mark() {
   echo "$1 $2" >>"$out/marks.txt"
 }
 
-# scene NAME [TROUBLE]: the path of a scene with this trouble, times since the drives' enabling.
+# scene NAME [TROUBLE]...: the path of a scene with these troubles, times since drives are enabled.
 scene() {
+  troubled=/tmp/$1.yaml
+  shift
   {
     echo "extends: $base"
-    [ -z "$2" ] || printf 'simulation:\n  troubles:\n    - {%s}\n' "$2"
-  } >"/tmp/$1.yaml"
-  echo "/tmp/$1.yaml"
+    [ $# -eq 0 ] || printf 'simulation:\n  troubles:\n'
+    [ $# -eq 0 ] || printf '    - {%s}\n' "$@"
+  } >"$troubled"
+  echo "$troubled"
 }
 
 # prepare NAME SCENE: all but the daemon.
@@ -33,10 +36,12 @@ record() {
   start_candump "$out" can0,0:0,#FFFFFFFF can1,0:0,#FFFFFFFF can2,0:0,#FFFFFFFF
 }
 
-# begin SCENE [PROGRAM]: until the arm moves.
+# begin SCENE [PROGRAM]: until the arm moves. Somebody watches when its brakes close.
 begin() {
   "${2:-tactusd}" "$1" >"$out/stdout.txt" 2>"$out/tactusd.txt" & daemon=$!
   wait_for running "$out/tactusd.txt"
+  mark brake_before "$(line $brake)"
+  line $brake falls >"$out/brake.txt" & watcher=$!
 }
 
 # Recorded from just before the fault on: to write a frame down takes the machine as long as to send
@@ -49,13 +54,25 @@ begin_in_contact() {
   sleep 0.05
 }
 
-# finish STATUS: the daemon is expected to end with it by itself.
-finish() {
+# ends STATUS: the daemon is expected to end with it by itself.
+ends() {
   wait "$daemon"
   equal "exit status of the daemon" $? "$1"
+  kill $watcher 2>/dev/null
+  mark brake "$(cat "$out/brake.txt")"
   sleep 0.05
+}
+
+finish() {
+  ends "$1"
   stop_candump
   stop_plant
+}
+
+# where_is BUS NODE: asks a drive of which nothing is heard any more, also one in state stopped.
+where_is() {
+  cansend "$1" "000#800$2"
+  cansend "$1" "60$2#4064600000000000"
 }
 
 terminate() {
@@ -73,14 +90,19 @@ restart() {
   sleep 0.1
 }
 
-# by_plant NAME FAULT TROUBLE: what the plant does by itself, as its script says.
-by_plant() {
-  troubled=$(scene "$1" "$3")
+# begin_with NAME TROUBLE...: what the plant does by itself, as its script says.
+begin_with() {
+  troubled=$(scene "$@")
   prepare "$1" "$troubled"
   record
   begin "$troubled"
+}
+
+# by_plant NAME FAULT SECONDS TROUBLE: with a restart so long after the fault.
+by_plant() {
+  begin_with "$1" "$4"
   wait_for "$2" "$out/tactusd.txt"
-  sleep "${4:-0.2}"
+  sleep "$3"
   restart
   terminate
 }
@@ -88,9 +110,7 @@ by_plant() {
 start_buses
 
 begin_in_contact e_stop "$base"
-mark brake_before "$(line $brake)"
 mark fault "$(line $e_stop 0)"
-mark brake "$(line $brake)"
 sleep 0.1
 mark released "$(line $e_stop 1)"
 restart
@@ -149,11 +169,56 @@ restart
 terminate
 
 from="from_s: $contact_s"
-by_plant bus_off 'fault:' "kind: bus_off, interface: can2, $from, until_s: 0.7"
-by_plant drive_fault 'fault:' "kind: drive_fault, interface: can0, id: 2, $from, until_s: 0.7"
-by_plant drive_silent 'fault:' "kind: drop, interface: can0, id: 0x181, $from, until_s: 0.7"
-by_plant tactile_stale 'holding:' "kind: drop, interface: can3, id: 0x100, $from, until_s: 0.7"
-by_plant power_cut 'fault:' "kind: power_cut, interface: can1, $from, until_s: 5.6" 5.2
+by_plant bus_off 'fault:' 0.2 "kind: bus_off, interface: can2, $from, until_s: 0.7"
+by_plant drive_fault 'fault:' 0.2 "kind: drive_fault, interface: can0, id: 2, $from, until_s: 0.7"
+by_plant drive_silent 'fault:' 0.2 "kind: drop, interface: can0, id: 0x181, $from, until_s: 0.7"
+by_plant tactile_stale 'holding:' 0.2 "kind: drop, interface: can3, id: 0x100, $from, until_s: 0.7"
+by_plant power_cut 'fault:' 5.2 "kind: power_cut, interface: can1, $from, until_s: 5.6"
+
+# Drives that do not obey, or lie about their state.
+by_plant boot_up 'fault:' 0.2 "kind: boot_up, interface: can0, id: 2, $from, until_s: 0.7"
+
+begin_with ignore_commands \
+  'kind: ignore_commands, interface: can2, id: 2, from_s: 0.55, until_s: 0.9' \
+  "kind: drive_fault, interface: can0, id: 2, $from, until_s: 0.7"
+wait_for 'fault:' "$out/tactusd.txt"
+sleep 0.2
+where_is can2 2
+sleep 0.1
+restart
+terminate
+
+begin_with nonsense_status "kind: nonsense_status, interface: can1, id: 3, $from, until_s: 1.3"
+wait_for 'fault:' "$out/tactusd.txt"
+sleep 0.6
+where_is can1 3
+sleep 0.1
+restart
+terminate
+
+frozen=$(scene freeze_feedback \
+  'kind: freeze_feedback, interface: can0, id: 2, from_s: 0.7, until_s: 1.4')
+begin_in_contact freeze_feedback "$frozen"
+mark fault "$(line $e_stop 0)"
+sleep 0.6
+where_is can0 2
+mark released "$(line $e_stop 1)"
+sleep 0.1
+restart
+terminate
+
+# A drive that is not off needs its watch over the heartbeat, also when the daemon ends.
+deaf='interface: can1, id: 3, from_s: 0.7, until_s: 100'
+begin_in_contact never_off \
+  "$(scene never_off "kind: ignore_commands, $deaf" "kind: heartbeat_only, $deaf")"
+mark fault "$(send_signal $daemon 15)"
+ends 3
+where_is can1 3
+sleep 0.1
+where_is can1 3
+sleep 0.05
+stop_candump
+stop_plant
 
 # Nothing clears this one; a robot without enable line ends by itself.
 no_lines=$(scene forbidden_call)

@@ -2,6 +2,7 @@
 // kernel drives it to.
 //
 // usage: gpio_poke CHIP LINE [LEVEL]     CHIP: gpiochip0 (edge events) or gpiochip1 (polled)
+//        gpio_poke gpiochip0 LINE falls  waits until the kernel drives it low
 //
 // Prints the wall clock's time of the change, to be compared with candump's. On gpiochip0 only one
 // line in each group of four may be armed for edges: RAM keeps the flags of all four.
@@ -39,7 +40,7 @@ enum { kDirection = 0, kInputs = 1, kOutputs = 2, kLinesOfPolledChip = 24 };
 // The second serial port, whose "transmitter empty" is an interrupt that can be had at any time.
 enum { kInterruptEnable = 0x2F9, kTransmitterEmpty = 0x02 };
 
-static const off_t kRegisters = 0x3F000000;
+static const off_t kRegisters = 0x20000000;
 static const size_t kPolledChipOffset = 0x1000;
 
 static void fail(const char* what) {
@@ -100,8 +101,16 @@ static void raise_interrupt(Register* chip, int line) {
   }
 }
 
+static void wait_until_low(const Register* chip, int line) {
+  while (chip[line] & kOutput) nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
+}
+
 static void poke_edge_chip(Register* chip, const char* line_text, const char* level_text) {
   const int line = number(line_text, kLinesOfEdgeChip);
+  if (level_text && strcmp(level_text, "falls") == 0) {
+    wait_until_low(chip, line);
+    level_text = NULL;
+  }
   const uint32_t before = chip[line];
   const bool was = before & kInput;
   const bool level = level_text ? number(level_text, 2) : was;
@@ -126,7 +135,7 @@ int main(int count, char** arguments) {
   const bool is_edge_chip = count > 1 && strcmp(arguments[1], "gpiochip0") == 0;
   const bool is_polled_chip = count > 1 && strcmp(arguments[1], "gpiochip1") == 0;
   if (count < 3 || count > 4 || (!is_edge_chip && !is_polled_chip)) {
-    fprintf(stderr, "usage: gpio_poke gpiochip0|gpiochip1 LINE [LEVEL]\n");
+    fprintf(stderr, "usage: gpio_poke gpiochip0|gpiochip1 LINE [LEVEL|falls]\n");
     return 2;
   }
   const char* level = count == 4 ? arguments[3] : NULL;
