@@ -248,13 +248,9 @@ void Controller::computeTaskMotion(const ControllerState& state,
     prepared.progress = pathProgress(lag_m(task, kinematics.error), *task.wait_beyond_m);
     prepared.w_d_dot *= prepared.progress;
   }
-  TaskVector w_d_dot_eff = prepared.w_d_dot + task.drift_gain_per_s * kinematics.error;
-  if (hasReturnSpeed(task)) {
-    TaskVector correction = task.drift_gain_per_s * kinematics.error;
-    limitReturnSpeed(task, state.contact.push, correction);
-    w_d_dot_eff = prepared.w_d_dot + correction;
-  }
-  kinematics.y_eff = kinematics.pseudoinverse.solve(w_d_dot_eff);
+  TaskVector correction = task.drift_gain_per_s * kinematics.error;
+  limitReturnSpeed(task, state.contact.push, correction);
+  kinematics.y_eff = kinematics.pseudoinverse.solve(prepared.w_d_dot + correction);
 }
 
 Fault Controller::readTactileModule(const RobotInput& input, double period_s,

@@ -92,11 +92,10 @@ class ControlCycle {
   JointVector q_commanded_;  ///< at last, in a mode that commands; at first where the scene starts
   JointVector q_released_;   ///< of each joint, where its drive held it at last; likewise
   JointVector max_following_error_;
-  JointVector
-      stop_way_;  ///< the longest that a stop may take each joint from where it was commanded
+  JointVector stop_way_;  ///< the longest of a stop, from where each joint was commanded
   double stop_deadline_s_;
-  std::array<bool, kMaxJoints>
-      is_held_{};  ///< since the last command its drive was never off or cut off
+  /// Since the last command each joint's drive was neither off nor cut off.
+  std::array<bool, kMaxJoints> is_held_{};
   double start_tolerance_;
   double period_s_;
   int max_late_cycles_;

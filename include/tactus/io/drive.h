@@ -34,8 +34,8 @@ struct DriveReport {
   bool is_off = false;
   bool is_restarting = false;  ///< it said that it boots, and was reset to make sure of that
   bool is_moving_on = false;   ///< in its quick stop it goes on as fast as before
-  bool is_cut_off =
-      false;  ///< not seen off in time, or moving on: NMT stop, and then silence on its bus
+  /// Not seen off in time, or moving on: it gets NMT stop, and then silence on its bus.
+  bool is_cut_off = false;
   bool has_position = false;
   double position = 0.0;  ///< m or rad
   /// kDriveSilent, kDriveFault, kDriveStateLost, kFollowingError, kDriveSetupRefused, or
