@@ -12,11 +12,11 @@
 #include "tactus/bench/instruction_count.h"
 #include "tactus/bench/step_study.h"
 #include "tactus/bench/study.h"
-#include "tactus/daemon/commands.h"
-#include "tactus/daemon/json.h"
-#include "tactus/daemon/located_error.h"
-#include "tactus/daemon/output_file.h"
-#include "tactus/daemon/run_error.h"
+#include "tactus/cli/commands.h"
+#include "tactus/record/output_file.h"
+#include "tactus/record/run_error.h"
+#include "tactus/scene/json.h"
+#include "tactus/scene/located_error.h"
 
 namespace tactus {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "tactus/bench/study.h"
-#include "tactus/daemon/scene_loader.h"
+#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "tactus/bench/spread.h"
 #include "tactus/bench/state_numbers.h"
-#include "tactus/daemon/scene_loader.h"
-#include "tactus/daemon/stability_check.h"
-#include "tactus/daemon/tool_error.h"
+#include "tactus/record/tool_error.h"
+#include "tactus/scene/scene_loader.h"
+#include "tactus/scene/stability_check.h"
 #include "tactus/sim/simulated_robot.h"
 
 namespace tactus {

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "tactus/bench/study.h"
-#include "tactus/daemon/scene_loader.h"
+#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tactus/daemon/run_error.h"
+#include "tactus/record/run_error.h"
 
 namespace tactus {
 namespace {

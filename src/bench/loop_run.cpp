@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "tactus/bench/closed_loop_study.h"
-#include "tactus/daemon/scene_loader.h"
-#include "tactus/daemon/simulation.h"
+#include "tactus/cli/simulation.h"
+#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {

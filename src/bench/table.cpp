@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tactus/daemon/json.h"
+#include "tactus/scene/json.h"
 
 namespace tactus {
 namespace {

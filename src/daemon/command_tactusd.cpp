@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "tactus/daemon/command_scene.h"
-#include "tactus/daemon/commands.h"
+#include "tactus/daemon/daemon_program.h"
 #include "tactus/daemon/daemon_run.h"
-#include "tactus/daemon/input_error.h"
-#include "tactus/daemon/programs.h"
-#include "tactus/daemon/stability_check.h"
+#include "tactus/record/log_size.h"
+#include "tactus/scene/command_scene.h"
+#include "tactus/scene/exit_code.h"
+#include "tactus/scene/input_error.h"
+#include "tactus/scene/stability_check.h"
 
 namespace tactus {
 namespace {
@@ -23,6 +24,7 @@ struct DaemonArguments {
 int runScene(const DaemonArguments& options) {
   const Scene scene = loadHardwareScene(options.scene, options.settings, "to run on");
   checkStability(scene);
+  checkLogSize(scene);
   DaemonOptions run;
   run.duration_s = options.duration_s;
   run.folder = options.folder;

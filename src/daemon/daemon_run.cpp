@@ -13,10 +13,10 @@
 #include <thread>
 
 #include "tactus/daemon/hardware_loop.h"
-#include "tactus/daemon/run_error.h"
-#include "tactus/daemon/run_folder.h"
 #include "tactus/daemon/service_watchdog.h"
 #include "tactus/daemon/telemetry.h"
+#include "tactus/record/run_error.h"
+#include "tactus/record/run_folder.h"
 #include "tactus/rt/memory.h"
 #include "tactus/rt/periodic_thread.h"
 #include "tactus/rt/scheduling.h"

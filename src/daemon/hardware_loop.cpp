@@ -28,7 +28,10 @@ HardwareLoop::Bus::Bus(const HardwareConfig& hardware, int index)
 
 HardwareLoop::HardwareLoop(const Scene& scene, long long max_task_cycles,
                            const SystemCallFilter& filter, LoopLink& link)
-    : link_(link), filter_(filter), max_task_cycles_(max_task_cycles), cycle_(scene) {
+    : link_(link),
+      filter_(filter),
+      max_task_cycles_(max_task_cycles),
+      cycle_(scene.controller, *scene.hardware, scene.period_s) {
   const HardwareConfig& hardware = *scene.hardware;
   for (std::size_t i = 0; i < hardware.buses.size(); ++i)
     buses_.push_back(std::make_unique<Bus>(hardware, static_cast<int>(i)));

@@ -1,6 +1,6 @@
 #include "tactus/daemon/loop_figures.h"
 
-#include "tactus/daemon/time_figures.h"
+#include "tactus/record/time_figures.h"
 
 namespace tactus {
 namespace {

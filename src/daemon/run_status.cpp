@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "tactus/daemon/output_file.h"
-#include "tactus/daemon/time_figures.h"
+#include "tactus/record/output_file.h"
+#include "tactus/record/time_figures.h"
 #include "tactus/rt/periodic_timer.h"
 
 namespace tactus {

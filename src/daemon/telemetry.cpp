@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "tactus/daemon/run_error.h"
-#include "tactus/daemon/tool_error.h"
-#include "tactus/io/sdo_abort.h"
+#include "tactus/canopen/sdo_abort.h"
+#include "tactus/record/run_error.h"
+#include "tactus/record/tool_error.h"
 
 namespace tactus {
 namespace {
@@ -101,7 +101,9 @@ void Telemetry::finish(Fault fault, LoopFigures loop) {
   figures.fault = fault;
   const std::string path = folder_ + "/summary.json";
   try {
-    writeSummary(path, scene_, figures, 1.0, &loop, &log_->state());
+    const HardwareFigures hardware{log_->state(),
+                                   [&](JsonWriter& json) { writeLoopFigures(loop, json); }};
+    writeSummary(path, scene_, figures, 1.0, &hardware);
   } catch (const std::runtime_error& error) {
     std::remove(path.c_str());     // half of one
     throw RunError(error.what());  // of input, too: the arm has moved

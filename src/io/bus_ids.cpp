@@ -1,6 +1,6 @@
 #include "tactus/io/bus_ids.h"
 
-#include "tactus/io/canopen.h"
+#include "tactus/canopen/canopen.h"
 
 namespace tactus {
 

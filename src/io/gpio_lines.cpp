@@ -7,7 +7,7 @@
 #include <string>
 
 #include "gpio_chip.h"
-#include "tactus/io/cycle_count.h"
+#include "tactus/canopen/cycle_count.h"
 #include "tactus/io/debounce.h"
 
 namespace tactus {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tactus/daemon/scene_loader.h"
+#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {

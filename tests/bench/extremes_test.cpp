@@ -8,7 +8,7 @@
 #include "tactus/bench/extremes_study.h"
 #include "tactus/bench/state_numbers.h"
 #include "tactus/bench/study.h"
-#include "tactus/daemon/input_error.h"
+#include "tactus/scene/input_error.h"
 
 namespace tactus {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "tactus/bench/plain_controller.h"
 #include "tactus/control/controller.h"
-#include "tactus/daemon/path_check.h"
 #include "tactus/math/weighted_pseudoinverse.h"
+#include "tactus/scene/path_check.h"
 
 namespace tactus {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "support/virtual_robot_cell.h"
-#include "tactus/io/canopen.h"
+#include "tactus/canopen/canopen.h"
 
 namespace tactus::campaign {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "tactus/control/fault.h"
-#include "tactus/control/mode.h"
 #include "tactus/math/types.h"
+#include "tactus/supervisor/mode.h"
 
 namespace tactus::campaign {
 

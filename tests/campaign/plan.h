@@ -7,7 +7,7 @@
 
 #include "campaign/injection.h"
 #include "support/random.h"
-#include "tactus/daemon/scene.h"
+#include "tactus/scene/scene.h"
 
 namespace tactus::campaign {
 

@@ -5,7 +5,7 @@
 
 #include "campaign/judges.h"
 #include "support/virtual_robot_cell.h"
-#include "tactus/daemon/scene.h"
+#include "tactus/scene/scene.h"
 
 namespace tactus::campaign {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "campaign/plan.h"
-#include "tactus/control/mode.h"
+#include "tactus/supervisor/mode.h"
 
 namespace tactus::campaign {
 

@@ -11,7 +11,7 @@
 #include "support/child_process.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
-#include "tactus/daemon/run_error.h"
+#include "tactus/record/run_error.h"
 
 namespace tactus {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "support/hostile_drive_bus.h"
 #include "support/scripted_drive.h"
-#include "tactus/io/canopen.h"
-#include "tactus/io/sdo_client.h"
+#include "tactus/canopen/canopen.h"
+#include "tactus/canopen/sdo_client.h"
 
 /// A drive, and an SDO client, under any sequence of frames: no velocity but the one that was asked
 /// for, and none unless the drive is enabled (tests/support/hostile_drive_bus.h).

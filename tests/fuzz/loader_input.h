@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "tactus/canopen/bus_load.h"
 #include "tactus/control/controller.h"
-#include "tactus/daemon/input_error.h"
-#include "tactus/daemon/scene_loader.h"
-#include "tactus/io/bus_load.h"
+#include "tactus/scene/input_error.h"
+#include "tactus/scene/scene_loader.h"
 #include "tactus/sim/simulated_robot.h"
 
 /// One input of the loader's fuzzer: the files of a scene in one text, each behind a line

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "tactus/io/tactile_receiver.h"
+#include "tactus/canopen/tactile_receiver.h"
 
 namespace {
 

@@ -3,8 +3,8 @@
 #include <sstream>
 #include <string>
 
-#include "tactus/daemon/input_error.h"
-#include "tactus/daemon/ulog_reader.h"
+#include "tactus/record/ulog_reader.h"
+#include "tactus/scene/input_error.h"
 
 /// A log of whatever bytes is read or refused.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

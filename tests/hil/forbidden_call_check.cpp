@@ -15,10 +15,10 @@
 #include <stdexcept>
 
 #include "tactus/daemon/hardware_loop.h"
-#include "tactus/daemon/scene_loader.h"
 #include "tactus/daemon/telemetry.h"
 #include "tactus/rt/memory.h"
 #include "tactus/rt/periodic_thread.h"
+#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "tactus/io/cycle_count.h"
+#include "tactus/canopen/cycle_count.h"
 
 namespace tactus {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <initializer_list>
 
-#include "tactus/io/can_frame.h"
+#include "tactus/canopen/can_frame.h"
 
 namespace tactus::test {
 

@@ -4,7 +4,7 @@
 
 #include "plant/scripted_master.h"
 #include "support/random.h"
-#include "tactus/io/cia402.h"
+#include "tactus/canopen/cia402.h"
 #include "tactus/plant/plant.h"
 
 /// Scripted troubles of the whole plant. All last from 0.1 to 0.2 s after enabling.

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tactus/daemon/commands.h"
+#include "tactus/cli/commands.h"
 
 namespace tactus::test {
 

@@ -6,8 +6,8 @@
 
 #include "support/period.h"
 #include "support/scripted_drive.h"
-#include "tactus/io/canopen.h"
-#include "tactus/io/drive.h"
+#include "tactus/canopen/canopen.h"
+#include "tactus/canopen/drive.h"
 
 namespace tactus::test {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "tactus/io/can_frame.h"
+#include "tactus/canopen/can_frame.h"
 
 namespace tactus::test {
 

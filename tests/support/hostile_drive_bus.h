@@ -5,7 +5,7 @@
 #include <cstring>
 #include <optional>
 
-#include "tactus/io/drive.h"
+#include "tactus/canopen/drive.h"
 
 /// What must hold whatever a bus brings, for tests with random and with searched frames.
 namespace tactus::test {

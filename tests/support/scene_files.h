@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "tactus/daemon/input_error.h"
-#include "tactus/daemon/scene_loader.h"
+#include "tactus/scene/input_error.h"
+#include "tactus/scene/scene_loader.h"
 
 /// A small scene, its robot and its URDF as texts, to be broken in one place at a time.
 namespace tactus::test {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tactus/io/can_frame.h"
+#include "tactus/canopen/can_frame.h"
 
 namespace tactus::test {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tactus/daemon/scene_loader.h"
+#include "tactus/scene/scene_loader.h"
 
 namespace tactus::test {
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "tactus/daemon/record_fields.h"
-#include "tactus/daemon/ulog_reader.h"
-#include "tactus/daemon/ulog_writer.h"
+#include "tactus/record/record_fields.h"
+#include "tactus/record/ulog_reader.h"
+#include "tactus/record/ulog_writer.h"
 
 /// Records, logs and files for the tests of telemetry.
 namespace tactus::test {

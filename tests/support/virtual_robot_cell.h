@@ -10,10 +10,10 @@
 #include <functional>
 #include <vector>
 
-#include "tactus/daemon/control_cycle.h"
-#include "tactus/daemon/scene.h"
 #include "tactus/io/bus_monitor.h"
 #include "tactus/plant/plant.h"
+#include "tactus/scene/scene.h"
+#include "tactus/supervisor/control_cycle.h"
 
 namespace tactus::test {
 
@@ -22,7 +22,7 @@ namespace tactus::test {
 class VirtualRobotCell {
  public:
   explicit VirtualRobotCell(const Scene& scene)
-      : cycle(scene),
+      : cycle(scene.controller, *scene.hardware, scene.period_s),
         plant(scene.controller, scene.plant, *scene.hardware, scene.period_s, scene.troubles),
         monitors(scene.hardware->buses.size()),
         joints_(scene.controller.chain.size()),

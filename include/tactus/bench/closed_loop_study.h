@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "tactus/bench/table.h"
-#include "tactus/daemon/run_summary.h"
-#include "tactus/daemon/scene.h"
+#include "tactus/record/run_summary.h"
+#include "tactus/scene/scene.h"
 
 namespace tactus {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tactus/control/robot.h"
-#include "tactus/daemon/scene.h"
+#include "tactus/scene/scene.h"
 
 namespace tactus {
 

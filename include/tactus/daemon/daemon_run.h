@@ -3,7 +3,7 @@
 #include <string>
 
 #include "tactus/control/fault.h"
-#include "tactus/daemon/scene.h"
+#include "tactus/scene/scene.h"
 
 namespace tactus {
 

@@ -4,12 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include "tactus/daemon/control_cycle.h"
 #include "tactus/daemon/loop_link.h"
 #include "tactus/io/can_socket.h"
 #include "tactus/io/gpio_lines.h"
 #include "tactus/rt/periodic_schedule.h"
 #include "tactus/rt/system_call_filter.h"
+#include "tactus/scene/scene.h"
+#include "tactus/supervisor/control_cycle.h"
 
 namespace tactus {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "tactus/daemon/json.h"
+#include "tactus/canopen/tactile_receiver.h"
 #include "tactus/io/bus_monitor.h"
-#include "tactus/io/tactile_receiver.h"
-#include "tactus/rt/histogram.h"
+#include "tactus/math/histogram.h"
+#include "tactus/scene/json.h"
 
 namespace tactus {
 

@@ -3,9 +3,9 @@
 #include <atomic>
 #include <cstdint>
 
-#include "tactus/daemon/control_cycle.h"
-#include "tactus/daemon/cycle_record.h"
 #include "tactus/rt/spsc_queue.h"
+#include "tactus/supervisor/control_cycle.h"
+#include "tactus/supervisor/cycle_record.h"
 
 namespace tactus {
 

@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "tactus/control/mode.h"
 #include "tactus/daemon/loop_figures.h"
-#include "tactus/daemon/run_log.h"
-#include "tactus/daemon/run_summary.h"
+#include "tactus/record/run_log.h"
+#include "tactus/record/run_summary.h"
+#include "tactus/supervisor/mode.h"
 
 namespace tactus {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tactus/control/mode.h"
+#include "tactus/supervisor/mode.h"
 
 namespace tactus {
 

@@ -5,11 +5,11 @@
 
 #include "tactus/daemon/loop_figures.h"
 #include "tactus/daemon/loop_link.h"
-#include "tactus/daemon/run_log.h"
 #include "tactus/daemon/run_status.h"
-#include "tactus/daemon/run_summary.h"
-#include "tactus/daemon/scene.h"
 #include "tactus/daemon/service_notify.h"
+#include "tactus/record/run_log.h"
+#include "tactus/record/run_summary.h"
+#include "tactus/scene/scene.h"
 
 namespace tactus {
 

@@ -3,10 +3,10 @@
 #include <optional>
 #include <vector>
 
+#include "tactus/canopen/hardware_config.h"
 #include "tactus/doctor/finding.h"
 #include "tactus/doctor/machine_files.h"
 #include "tactus/io/can_link.h"
-#include "tactus/io/hardware_config.h"
 
 namespace tactus {
 

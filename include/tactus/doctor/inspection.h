@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "tactus/canopen/hardware_config.h"
 #include "tactus/doctor/finding.h"
 #include "tactus/doctor/machine_files.h"
-#include "tactus/io/hardware_config.h"
 
 namespace tactus {
 

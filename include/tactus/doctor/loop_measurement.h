@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
+#include "tactus/canopen/hardware_config.h"
 #include "tactus/doctor/finding.h"
-#include "tactus/io/hardware_config.h"
-#include "tactus/rt/histogram.h"
+#include "tactus/math/histogram.h"
 
 namespace tactus {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "tactus/canopen/hardware_config.h"
 #include "tactus/io/can_socket.h"
-#include "tactus/io/hardware_config.h"
 
 namespace tactus {
 

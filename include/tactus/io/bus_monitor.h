@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
+#include "tactus/canopen/can_frame.h"
 #include "tactus/control/fault.h"
-#include "tactus/io/can_frame.h"
 
 namespace tactus {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "tactus/canopen/can_frame.h"
 #include "tactus/io/bus_monitor.h"
-#include "tactus/io/can_frame.h"
 
 namespace tactus {
 

@@ -2,21 +2,10 @@
 
 #include <memory>
 
-#include "tactus/io/hardware_config.h"
+#include "tactus/canopen/hardware_config.h"
+#include "tactus/supervisor/line_states.h"
 
 namespace tactus {
-
-/// Inputs after polarity and debounce. Lines that the robot does not have read as here.
-struct GpioInputs {
-  bool emergency_stop = false;
-  bool enable = true;
-  bool is_valid = true;  ///< false: the chip could not be read
-};
-
-struct GpioOutputs {
-  bool release_brake = false;
-  bool heartbeat = false;
-};
 
 /// The robot's GPIO lines, through libgpiod. All requested together; outputs start inactive and are
 /// made inactive when the object goes. What a line does once its owner has gone is up to the chip:

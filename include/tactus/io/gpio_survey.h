@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tactus/io/hardware_config.h"
+#include "tactus/canopen/hardware_config.h"
 
 namespace tactus {
 

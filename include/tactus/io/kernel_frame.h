@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tactus/io/can_frame.h"
+#include "tactus/canopen/can_frame.h"
 
 namespace tactus {
 

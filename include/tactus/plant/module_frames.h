@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "tactus/io/can_frame.h"
+#include "tactus/canopen/can_frame.h"
 
 namespace tactus {
 

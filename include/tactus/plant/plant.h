@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "tactus/canopen/can_frame.h"
+#include "tactus/canopen/hardware_config.h"
 #include "tactus/control/controller_config.h"
-#include "tactus/io/can_frame.h"
-#include "tactus/io/hardware_config.h"
 #include "tactus/plant/plant_bus.h"
 #include "tactus/plant/slave_drive.h"
 #include "tactus/plant/trouble.h"

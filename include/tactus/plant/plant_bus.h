@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "tactus/io/can_frame.h"
+#include "tactus/canopen/can_frame.h"
 
 namespace tactus {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tactus/io/can_frame.h"
+#include "tactus/canopen/can_frame.h"
 #include "tactus/plant/object_dictionary.h"
 
 namespace tactus {

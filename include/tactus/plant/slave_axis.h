@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "tactus/io/hardware_config.h"
+#include "tactus/canopen/hardware_config.h"
 #include "tactus/plant/object_dictionary.h"
 #include "tactus/plant/power_state.h"
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "tactus/io/can_frame.h"
-#include "tactus/io/hardware_config.h"
+#include "tactus/canopen/can_frame.h"
+#include "tactus/canopen/hardware_config.h"
 #include "tactus/plant/object_dictionary.h"
 #include "tactus/plant/plant_bus.h"
 #include "tactus/plant/slave_axis.h"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "tactus/io/can_frame.h"
+#include "tactus/canopen/can_frame.h"
 #include "tactus/plant/object_dictionary.h"
 
 namespace tactus {

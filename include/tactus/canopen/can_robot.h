@@ -1,0 +1,79 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tactus/canopen/can_frame.h"
+#include "tactus/canopen/drive.h"
+#include "tactus/canopen/hardware_config.h"
+#include "tactus/canopen/tactile_receiver.h"
+#include "tactus/control/robot.h"
+
+namespace tactus {
+
+/// What is known of all drives together.
+struct DrivesReport {
+  bool are_configured = false;
+  bool are_enabled = false;
+  bool are_disabled = true;     ///< none that can be reached has power
+  bool is_any_holding = false;  ///< one may yet hold its joint: power alone has no torque
+  bool is_any_moving_on = false;
+  Fault fault = Fault::kNone;
+  int joint = -1;  ///< of that fault
+};
+
+/// The robot interface over CAN: one drive a joint and the tactile module, in frames. Knows no
+/// socket and no clock. A cycle: receive() for each bus, expect(), read(), command(), write(), then
+/// the outboxes.
+class CanRobot final : public Robot {
+ public:
+  CanRobot(const HardwareConfig& hardware, double period_s);
+
+  void receive(int bus, std::span<const CanFrame> frames) noexcept;
+  /// Where the arm is commanded to be now, m or rad, for what read() judges.
+  void expect(const JointVector& q) noexcept { q_commanded_ = q; }
+  void read(RobotInput& input) noexcept override;  ///< a drive without feedback so far reads as 0
+
+  /// What the drives shall do from the next write() on. is_restart: with kConfigure, begin anew.
+  /// q: where the arm is commanded to be now, m or rad.
+  void command(DriveGoal goal, bool is_restart, const JointVector& q) noexcept;
+  void write(const JointVector& velocity_setpoint) noexcept override;
+
+  /// In place of write(), when all is over; see Drive::release().
+  void release() noexcept;
+
+  /// What write() wants on the bus, in this order: the master's heartbeat, which behind SYNC
+  /// would wait for all feedback; setpoints; SYNC. Nothing on a bus with a drive that only silence
+  /// stops.
+  const FrameBatch& outbox(int bus) const noexcept { return outboxes_[bus]; }
+
+  /// A frame that tells a dead bus's return and moves nothing; on such a bus only, each 100 cycles.
+  const CanFrame& probe() const noexcept { return heartbeat_; }
+
+  DrivesReport drives() const noexcept;
+  const DriveReport& drive(int joint) const noexcept { return drives_[joint].report(); }
+  /// By what this joint's own drive says: known, in reach, and holding it or slowing it down.
+  bool isHolding(int joint) const noexcept;
+  bool hasPositions() const noexcept;
+  /// Of all drives: frames of wrong size.
+  long long malformedFrames() const noexcept;
+  /// nullptr on a robot without tactile module.
+  const TactileReceiver* tactile() const noexcept { return tactile_ ? &*tactile_ : nullptr; }
+  TactileReceiver* tactile() noexcept { return tactile_ ? &*tactile_ : nullptr; }
+
+ private:
+  std::vector<Drive> drives_;
+  std::optional<TactileReceiver> tactile_;
+  int tactile_bus_ = -1;
+  std::vector<FrameBatch> outboxes_;  ///< one a bus
+  std::vector<bool> has_drives_;      ///< one a bus
+  CanFrame heartbeat_;
+  int cycles_a_heartbeat_;
+  int cycles_to_heartbeat_ = 0;
+  DriveGoal goal_ = DriveGoal::kSilent;
+  bool is_restart_ = false;
+  JointVector q_commanded_;
+};
+
+}  // namespace tactus

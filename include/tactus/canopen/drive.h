@@ -1,0 +1,162 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "tactus/canopen/can_frame.h"
+#include "tactus/canopen/cia402.h"
+#include "tactus/canopen/drive_setup.h"
+#include "tactus/canopen/hardware_config.h"
+#include "tactus/canopen/pdo.h"
+#include "tactus/canopen/rest_watch.h"
+#include "tactus/canopen/velocity_counts.h"
+#include "tactus/control/fault.h"
+
+namespace tactus {
+
+/// What the daemon wants of a drive this cycle.
+enum class DriveGoal : std::uint8_t {
+  kSilent,     ///< send nothing to it
+  kConfigure,  ///< NMT pre-operational, write the set-up by SDO, NMT start; then as kDisabled
+  kDisabled,   ///< configured, power off
+  kEnabled,    ///< operation enabled, following the velocity setpoint
+  kQuickStop,  ///< stop by itself, then switch on disabled
+};
+
+/// What is known of a drive after a cycle's frames.
+struct DriveReport {
+  bool is_configured = false;
+  DriveState state = DriveState::kNotReady;
+  bool has_state = false;  ///< the last status word was one that the standard knows
+  bool is_silent = false;  ///< now: out of reach, so that `state` is an old one
+  /// When last heard of it had no power: its status word said so, or it has started anew. What is
+  /// not seen off is dealt with as if it moved.
+  bool is_off = false;
+  bool is_restarting = false;  ///< it said that it boots, and was reset to make sure of that
+  bool is_moving_on = false;   ///< in its quick stop it goes on as fast as before
+  /// Not seen off in time, or moving on: it gets NMT stop, and then silence on its bus.
+  bool is_cut_off = false;
+  bool has_position = false;
+  double position = 0.0;  ///< m or rad
+  /// kDriveSilent, kDriveFault, kDriveStateLost, kFollowingError, kDriveSetupRefused, or
+  /// kCommandNotFinite if a setpoint was NaN or infinite; the first one stays until kConfigure
+  /// starts anew.
+  Fault fault = Fault::kNone;
+  std::uint16_t emergency_code = 0;  ///< of the last EMCY, 0: none
+  SetupFailure setup_failure;
+};
+
+/// The master's side of one CiA 402 drive in cyclic synchronous velocity mode (9). Knows no socket
+/// and no clock: time is counted in cycles. RPDO1 (0x200 + id): 6040 and 60FF; TPDO1 (0x180 + id):
+/// 6041 and 6064, both synchronous. SYNC and the master's heartbeat are the bus's, not the drive's,
+/// and have to go out in every phase, also while drives are configured.
+///
+/// A drive with a fault gets no velocity but 0, and a quick stop whatever is asked for. One that is
+/// in fault when it is configured is reset once, on its way to kEnabled; a fault that comes later
+/// is never cleared but by a restart.
+///
+/// A drive may lie, or not hear. One that says that it boots while it is configured gets NMT reset
+/// node, and is not off before it has booted once more: it may have run on. One that is not seen
+/// off stop_deadline_s after a quick stop began, or that moves on meanwhile, is cut off: it gets
+/// NMT stop instead of setpoints, and then its bus has to fall silent, for the drive's own watch
+/// over SYNC and heartbeat to stop it.
+class Drive {
+ public:
+  /// Feedback missing for more cycles than this is kDriveSilent.
+  static constexpr int kMaxSilentCycles = 5;
+  /// In which NMT stop is sent before the bus falls silent.
+  static constexpr int kCuttingOffCycles = 20;
+
+  /// stop_deadline_s: for a quick stop. Throws std::invalid_argument with one line for settings
+  /// that no drive can be given.
+  Drive(const DriveConfig& config, const CanopenConfig& canopen, double stop_deadline_s,
+        double period_s);
+
+  /// A data frame of this drive's bus; ids that are not its own are ignored. Frames of wrong size
+  /// are counted and ignored.
+  void receive(const CanFrame& frame) noexcept;
+
+  /// Once a cycle, after all frames: judges what came, by what update() asked for last. position:
+  /// where the drive is commanded to be at the start of this cycle, m or rad, for the following
+  /// error.
+  void observe(double position) noexcept;
+
+  /// Then: sets what is to be sent. velocity: m/s or rad/s at the joint, used while kEnabled and
+  /// enabled; position: as above, for the tracking gain. restart: with kConfigure, start the set-up
+  /// anew and forget all faults; for one cycle only.
+  void update(DriveGoal goal, bool restart, double velocity, double position,
+              FrameBatch& out) noexcept;
+
+  /// At the end, in place of update(): a drive that was seen off forgets mapping, heartbeat watch
+  /// and setpoints, so that the end of the master's heartbeat is no fault to it. Any other keeps
+  /// its watch, which stops it, and starts anew if it hears that.
+  void release(FrameBatch& out) const noexcept;
+
+  const DriveReport& report() const noexcept { return report_; }
+  /// Cut off, and NMT stop has had its time: nothing may go to this drive's bus any more.
+  bool needsSilence() const noexcept { return cut_off_cycles_ > kCuttingOffCycles; }
+  int bus() const noexcept { return config_.bus; }
+  std::uint32_t malformedFrames() const noexcept { return malformed_frames_; }
+
+ private:
+  enum class Phase : std::uint8_t {
+    kUnconfigured,
+    kSetup,     ///< objects are written
+    kStarting,  ///< NMT start sent; waiting for its operational heartbeat and its feedback
+    kConfigured,
+    kRestarting,  ///< NMT reset node sent; waiting for its boot-up
+  };
+
+  void receiveFeedback(const CanFrame& frame) noexcept;
+  void receiveHeartbeat(const CanFrame& frame) noexcept;
+  void receiveEmergency(const CanFrame& frame) noexcept;
+  void onBootUp() noexcept;
+  void beginRestart() noexcept;
+
+  void startSetup() noexcept;
+  void continueSetup(FrameBatch& out) noexcept;
+  void awaitOperation() noexcept;
+  void onConfigured() noexcept;
+  void watchRestart() noexcept;
+  void makeRestart(FrameBatch& out) noexcept;
+  void watchStop(DriveGoal goal) noexcept;
+  void cutOff(FrameBatch& out) noexcept;
+
+  void countSilence() noexcept;
+  void takeFeedback() noexcept;
+  void watchSilence() noexcept;
+  void watchFault() noexcept;
+  void watchOperation() noexcept;
+  void watchPosition(double position) noexcept;
+  bool isRunning(DriveGoal goal) const noexcept;
+  std::uint16_t controlWord(DriveGoal goal) const noexcept;
+  std::int32_t velocityCounts(DriveGoal goal, double velocity, double position) noexcept;
+  void fail(Fault fault) noexcept;
+
+  DriveConfig config_;
+  int heartbeat_timeout_cycles_;
+  int answer_timeout_cycles_;
+  int stop_deadline_cycles_;
+  DriveSetup setup_;
+  VelocityCounts velocity_counts_;
+  RestWatch rest_watch_;
+  DriveGoal goal_ = DriveGoal::kSilent;  ///< of the last update()
+  DriveReport report_;
+  Phase phase_ = Phase::kUnconfigured;
+  std::optional<DriveFeedback> feedback_;  ///< that has come since the last cycle
+  std::optional<DriveState> state_;        ///< none: a status word that the standard does not know
+  bool is_operational_ = false;            ///< by its last heartbeat
+  int starting_cycles_ = 0;                ///< since NMT start
+  int cycles_without_feedback_ = 0;
+  int cycles_without_heartbeat_ = 0;
+  bool has_old_fault_ = false;  ///< in fault without a break since it was configured
+  int reset_cycles_ = 0;        ///< since the reset of an old fault began
+  int enabled_cycles_ = 0;      ///< in a row, counted up to where operation is settled
+  int restart_cycles_ = 0;      ///< since NMT reset node was sent; 0: it has to be
+  int ignored_cycles_ = 0;      ///< in a row enabled though kDisabled, counted up to the deadline
+  int quick_stop_cycles_ = 0;   ///< in a row, likewise
+  int cut_off_cycles_ = 0;      ///< up to silence
+  std::uint32_t malformed_frames_ = 0;
+};
+
+}  // namespace tactus

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tactus/record/ulog_reader.h"
+#include "tactus/record/ulog_writer.h"
+
+namespace tactus {
+
+/// Which part of which run a log is.
+struct LogPart {
+  std::string run;  ///< empty: of a run with one log, by tactus simulate or an older version
+  int part = 0;     ///< counts from 0
+};
+
+/// `path` is what errors call the log. Throws InputError.
+LogPart logPart(const LogDescription& description, const std::string& path);
+
+/// Reads logs to their ends, so that damaged ones, and such as are not the parts of one run in
+/// their order, are refused before anything else happens. Throws InputError, also if no log has a
+/// cycle.
+std::vector<LogExtent> checkParts(const std::vector<std::string>& paths);
+
+}  // namespace tactus

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tactus/supervisor/cycle_record.h"
+
+/// The one table of what a CycleRecord holds. The format of the log, the header of the CSV and the
+/// comparison of a replay are all derived from it.
+namespace tactus {
+
+enum class FieldShape : std::uint8_t { kScalar, kPerJoint, kPerTaskComponent };
+enum class FieldType : std::uint8_t { kDouble, kInt64, kUint64 };
+
+/// What a field is to the controller; only outputs must come out of a replay again.
+enum class FieldRole : std::uint8_t { kInput, kOutput, kObservation };
+
+struct RecordField {
+  const char* name;
+  const char* unit;  ///< "" for a number without one
+  FieldShape shape;
+  FieldType type;
+  FieldRole role;
+  std::size_t offset;          ///< of the first word in a CycleRecord, bytes
+  bool may_be_absent = false;  ///< from logs of older versions
+};
+
+/// All fields, in the order of the CSV's columns and of CycleRecord's members.
+std::span<const RecordField> recordFields() noexcept;
+
+/// How many entries the arrays of a record have.
+struct RecordShape {
+  int joints = 0;
+  int task_size = 0;
+
+  std::size_t entries(const RecordField& field) const noexcept;
+  bool operator==(const RecordShape&) const = default;
+};
+
+/// The type's name in a log: "double", "int64_t", "uint64_t".
+const char* typeName(FieldType type) noexcept;
+
+/// A column of the CSV: one word of a record.
+struct RecordColumn {
+  std::string name;        ///< "q_1" for the first entry of q
+  std::string_view field;  ///< "q"
+  FieldType type;
+  FieldRole role;
+  std::size_t offset;
+};
+
+std::vector<RecordColumn> recordColumns(const RecordShape& shape);
+
+/// A stretch of bytes that lies in one piece both in a CycleRecord and in a message of the log.
+struct CopyRun {
+  std::size_t record_offset;
+  std::size_t message_offset;
+  std::size_t size;
+};
+
+/// Appends a run, joined to the last one where both sides continue it.
+void appendRun(const CopyRun& run, std::vector<CopyRun>& runs);
+
+}  // namespace tactus

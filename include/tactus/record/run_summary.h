@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tactus/math/histogram.h"
+#include "tactus/record/contact_list.h"
+#include "tactus/record/run_log.h"
+#include "tactus/record/time_figures.h"
+#include "tactus/scene/scene.h"
+#include "tactus/supervisor/cycle_record.h"
+
+namespace tactus {
+
+/// The figures of a run that its summary.json holds. Forces are the sensor's, F_sen; the tool's
+/// error is that of the measured arm.
+struct RunFigures {
+  long long cycles = 0;
+  double peak_force_N = 0.0;
+  double final_force_N = 0.0;
+  double tcp_error_max_m = 0.0;
+  double tcp_error_rms_m = 0.0;
+  double tcp_error_final_m = 0.0;
+  double peak_joint_speed_squared = 0.0;  ///< largest sum of squares of the command; m/s, rad/s
+  /// Cycles with a desired joint within 0.1 mm or 0.1 mrad of a position limit, or beyond it.
+  long long joints_at_limit_cycles = 0;
+  double stiffness_final_N_per_m = 0.0;
+  double stiffness_at_peak_N_per_m = 0.0;  ///< in the (first) cycle of the peak force
+  std::vector<ContactSummary> contacts;
+  TimeFigures step_time_ns;
+  Fault fault = Fault::kNone;  ///< of the last cycle; a fault stays until the end
+};
+
+/// Collects the figures of a run, cycle by cycle.
+class RunSummary {
+ public:
+  /// `expected_cycles` is only used to allocate in advance.
+  RunSummary(const ControllerConfig& config, std::size_t expected_cycles);
+
+  void add(const CycleRecord& record);
+  /// All but contacts, so that memory does not grow.
+  void addFigures(const CycleRecord& record) noexcept;
+
+  RunFigures figures() const;
+  /// At any time, at no cost: without contacts, times and tcp_error_rms_m.
+  const RunFigures& soFar() const noexcept { return figures_; }
+
+ private:
+  void addJoints(const CycleRecord& record) noexcept;
+
+  JointLimits limits_;
+  RunFigures figures_;
+  ContactList contacts_;
+  double squared_error_sum_m2_ = 0.0;
+  Histogram step_times_;
+};
+
+/// What only a run on hardware has.
+struct HardwareFigures {
+  const LogState& log;
+  std::function<void(JsonWriter& json)> write_loop;  ///< the member "loop"
+};
+
+/// The text of summary.json. real_time_factor: duration of the run over the time it took.
+std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
+                        const HardwareFigures* hardware = nullptr);
+
+/// Writes it to a file; throws InputError if that cannot be opened, RunError if not written.
+void writeSummary(const std::string& path, const Scene& scene, const RunFigures& figures,
+                  double real_time_factor, const HardwareFigures* hardware = nullptr);
+
+}  // namespace tactus

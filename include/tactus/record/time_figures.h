@@ -1,0 +1,18 @@
+#pragma once
+
+#include "tactus/math/histogram.h"
+#include "tactus/scene/json.h"
+
+namespace tactus {
+
+/// Order statistics of durations, ns; median and p99 to 1/16.
+struct TimeFigures {
+  long long min = 0, median = 0, p99 = 0, max = 0;
+};
+
+TimeFigures timeFigures(const Histogram& times) noexcept;
+
+/// A member `name` of the open object, with the four figures as its members.
+void writeTimes(const char* name, const TimeFigures& times, JsonWriter& json);
+
+}  // namespace tactus

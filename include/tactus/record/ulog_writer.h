@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tactus/record/output_file.h"
+#include "tactus/record/record_fields.h"
+#include "tactus/scene/scene.h"
+
+namespace tactus {
+
+/// What a log says before its first cycle.
+struct LogDescription {
+  RecordShape shape;
+  /// Names of a-z A-Z 0-9 _ - / only, each once.
+  std::vector<std::pair<std::string, std::string>> infos;
+  /// For the reader at a plot: the format holds them as float, and a.b[0] as a/b/0. The exact
+  /// values are in `sources`.
+  std::vector<std::pair<std::string, double>> parameters;
+  std::vector<SourceFile> sources;
+  std::vector<Override> overrides;
+};
+
+LogDescription describeLog(const Scene& scene);
+
+/// What a log begins with, up to its first cycle.
+std::string logDefinitions(const LogDescription& description);
+
+/// What a log grows by each cycle.
+std::size_t logBytesACycle(const RecordShape& shape);
+
+/// Writes cycles to a ULog file. A log cut off anywhere is readable up to the cut.
+class UlogWriter {
+ public:
+  /// Throws InputError if `path` cannot be opened, RunError if it cannot be written.
+  UlogWriter(const std::string& path, const LogDescription& description);
+
+  /// Copies the record into a buffer and writes that out when it is full, about every 500 cycles.
+  /// Throws RunError if it cannot be written.
+  void write(const CycleRecord& record);
+
+  /// Writes out what is in the buffer; throws RunError.
+  void flush() { file_.flush(); }
+
+  /// As OutputFile::rename().
+  void rename(const std::string& from, const std::string& to) { file_.rename(from, to); }
+
+  /// Of the log so far, bytes.
+  std::uint64_t size() const noexcept { return file_.size(); }
+
+  /// Writes what is left; throws RunError. A log that was not closed may have lost its end.
+  void close() { file_.close(); }
+
+ private:
+  OutputFile file_;
+  std::vector<CopyRun> runs_;  ///< from a record to a data message, header included
+  std::size_t data_size_;      ///< of a data message, header included, bytes
+};
+
+}  // namespace tactus

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tactus/analysis/stability_margins.h"
+#include "tactus/scene/scene.h"
+
+namespace tactus {
+
+inline constexpr double kMinPhaseMargin_deg = 30.0;  ///< below: a warning
+
+struct LoopReport {
+  std::string name;
+  StabilityMargins margins;
+
+  double phaseMargin_deg() const { return margins.phase_margin_rad * 180.0 / std::numbers::pi; }
+};
+
+/// How stable a scene's force control is in its stiffest contact.
+struct StabilityReport {
+  double stiffest_N_per_m = 0.0;   ///< c_e: declared or assumed, or of a stiffer simulated obstacle
+  double stiffness_N_per_m = 0.0;  ///< c: assumed, or where the estimate of c_e ends
+  std::vector<LoopReport> loops;   ///< empty where the margins can't be computed; then a warning
+  std::vector<std::string> warnings;
+
+  double ratio() const { return stiffest_N_per_m / stiffness_N_per_m; }
+};
+
+/// Absent for a scene without force control. Throws InputError if one of its loops is unstable in
+/// that contact. Not a part of loading: simulations and replays of unstable gains are of use.
+std::optional<StabilityReport> checkStability(const Scene& scene);
+
+}  // namespace tactus

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tactus/control/controller_config.h"
+#include "tactus/scene/urdf_tree.h"
+
+namespace tactus {
+
+/// A frame by its URDF name, and where the name was given.
+struct NamedFrame {
+  std::string link;
+  std::string key;
+  SourcePosition at;
+};
+
+/// What a controller needs of a URDF: the moving joints from the root to the tip, fixed joints
+/// merged, everything beside them ignored.
+struct UrdfChain {
+  std::string robot_name;
+  std::vector<std::string> joint_names;
+  std::vector<Joint> joints;
+  AttachedFrame tip;
+  std::optional<AttachedFrame> module_link;
+  JointLimits limits;  ///< accelerations unlimited; positions of continuous joints too
+};
+
+/// Throws InputError. `module_link` is a link of the chain or one fixed to it, moved by at least
+/// one joint.
+UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
+                        const std::optional<NamedFrame>& module_link);
+
+}  // namespace tactus

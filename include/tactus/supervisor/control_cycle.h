@@ -1,0 +1,120 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "tactus/canopen/can_robot.h"
+#include "tactus/control/controller.h"
+#include "tactus/supervisor/brake.h"
+#include "tactus/supervisor/cycle_record.h"
+#include "tactus/supervisor/line_states.h"
+#include "tactus/supervisor/mode.h"
+
+namespace tactus {
+
+/// What the world outside the frames says to a cycle.
+struct CycleInput {
+  bool stop_requested = false;
+  GpioInputs lines;
+  bool are_lines_lost = false;                ///< a GPIO line could not be read or written
+  std::array<Fault, kMaxBuses> bus_faults{};  ///< of each bus's monitor
+  int missed_cycles = 0;                      ///< skipped just before this one
+  int late_in_a_row = 0;                      ///< this one included
+  bool has_forbidden_call = false;            ///< the loop left its list of system calls
+};
+
+/// Where the loop is and why; `joint` or `bus` tells of whom the fault speaks, -1: of nobody.
+struct ModeReport {
+  Mode mode = Mode::kBoot;
+  Fault fault = Fault::kNone;
+  int joint = -1;
+  int bus = -1;
+  DriveReport drive;        ///< of that joint, as it was
+  double q_measured = 0.0;  ///< of that joint, m or rad
+  double q_expected = 0.0;  ///< where it was commanded to be at last, or where the scene starts
+};
+
+/// One cycle of the daemon between frames in and frames out: read - judge - control - limit -
+/// write, and between cycles prepare. Knows no socket, no line and no clock, so that the whole of
+/// it runs in virtual time, too.
+class ControlCycle {
+ public:
+  ControlCycle(const ControllerConfig& controller, const HardwareConfig& hardware, double period_s);
+
+  void receive(int bus, std::span<const CanFrame> frames) noexcept { robot_.receive(bus, frames); }
+  void update(const CycleInput& input) noexcept;
+  /// Does ahead, while frames travel and drives move, what the next cycle needs and already can
+  /// know. May be left out.
+  void prepare() noexcept;
+  const FrameBatch& outbox(int bus) const noexcept { return robot_.outbox(bus); }
+  const CanFrame& probe() const noexcept { return robot_.probe(); }
+  GpioOutputs lines() const noexcept;
+
+  const CanRobot& robot() const noexcept { return robot_; }
+  const ModeReport& report() const noexcept { return report_; }
+  bool isFinished() const noexcept { return mode_.mode == Mode::kOff; }
+  /// From the first cycle of motion on, every cycle is recorded.
+  bool isRecorded() const noexcept { return is_started_; }
+  /// Of this cycle; the times of its phases are the caller's to fill in.
+  const CycleRecord& record() const noexcept { return record_; }
+  /// Cycles in which the task went on.
+  long long taskCycles() const noexcept { return task_cycles_; }
+
+ private:
+  Fault judge(const CycleInput& input) noexcept;
+  Fault judgeBuses(const CycleInput& input) noexcept;
+  Fault judgeDrives() noexcept;
+  Fault judgeTactile() noexcept;
+  ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
+  bool areConfigured() const noexcept;
+  int jointOutOfPlace() const noexcept;
+  void rememberPlace() noexcept;
+  void coast(int missed_cycles) noexcept;
+  bool hasFreshSample() const noexcept;
+  void startTare() noexcept;
+  void repeatRefusedTare() noexcept;
+  void noteCulprit() noexcept;
+  void control(const CycleInput& input, Mode before) noexcept;
+  DriveGoal driveGoal() const noexcept;
+  void updateBrakes() noexcept;
+
+  /// What judge() found, and of whom it speaks.
+  struct Judged {
+    Fault fault = Fault::kNone;
+    int joint = -1;
+    int bus = -1;
+  };
+
+  Controller controller_;
+  CanRobot robot_;
+  JointVector q_commanded_;  ///< at last, in a mode that commands; at first where the scene starts
+  JointVector q_released_;   ///< of each joint, where its drive held it at last; likewise
+  JointVector max_following_error_;
+  JointVector stop_way_;  ///< the longest of a stop, from where each joint was commanded
+  double stop_deadline_s_;
+  /// Since the last command each joint's drive was neither off nor cut off.
+  std::array<bool, kMaxJoints> is_held_{};
+  double start_tolerance_;
+  double period_s_;
+  int max_late_cycles_;
+  bool has_enable_line_;
+  double max_sample_age_s_;
+  ModeConfig mode_config_;
+  BrakeConfig brake_config_;
+  ModeState mode_;
+  BrakeState brake_;
+  Judged judged_;
+  ModeReport report_;
+  ControllerState state_;
+  PreparedCycle prepared_;
+  RobotInput input_;
+  ControllerOutput output_;
+  CycleRecord record_;
+  bool is_started_ = false;  ///< the controller has a state
+  bool is_first_ = true;
+  bool heartbeat_ = false;
+  long long cycles_ = 0;       ///< since the first cycle of motion, missed ones included
+  long long task_cycles_ = 0;  ///< of these, those in which the task's clock ran
+};
+
+}  // namespace tactus

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "tactus/control/controller.h"
+#include "tactus/control/robot.h"
+#include "tactus/math/types.h"
+#include "tactus/supervisor/mode.h"
+
+namespace tactus {
+
+/// Everything the log holds of one cycle, in the order of the columns of `tactus export`. Every
+/// member is made of 8-byte words, so that the record has no padding and is copied as it lies;
+/// of the arrays only as many entries count as the robot has joints and the task components.
+/// record_fields.h names the members; a member without an entry there is not logged.
+struct CycleRecord {
+  double t_s = 0.0;
+  double force_sensor_N = 0.0;
+  double contact_position_m = 0.0;
+  double contact_direction[3] = {};  ///< unit force on the robot, module frame
+  double force_contact_N = 0.0;
+  double stiffness_N_per_m = 0.0;
+  double stiffness_raw_N_per_m = 0.0;
+  double gamma = 0.0;
+  double k_n = 0.0, k_j = 0.0, k_t = 0.0;
+  double x_dot_eff_m_per_s = 0.0;
+  double u_n = 0.0, u_j = 0.0, u_t = 0.0;
+  double q[kMaxJoints] = {};   ///< desired configuration at the start of the cycle, m or rad
+  double dq[kMaxJoints] = {};  ///< the command, m/s or rad/s
+  double w[kMaxTaskSize] = {}, wd[kMaxTaskSize] = {}, wd_dot[kMaxTaskSize] = {};
+  std::uint64_t fault = 0;  ///< the number of a Fault
+  std::int64_t wake_latency_ns = 0;
+  std::int64_t step_ns = 0;
+  double q_measured[kMaxJoints] = {};
+  double tactile_force_y_N = 0.0, tactile_force_z_N = 0.0;
+  double tactile_moment_y_Nm = 0.0, tactile_moment_z_Nm = 0.0;
+  std::uint64_t tactile_sequence = 0;
+  double tool_error_m[3] = {};  ///< desired minus actual position of the measured arm, base frame
+  double task_time_s = 0.0;     ///< the task's clock, which stands still while the arm holds
+  std::uint64_t mode = static_cast<std::uint64_t>(Mode::kRunning);  ///< the number of a Mode
+  std::int64_t read_ns = 0;   ///< from waking to all frames and lines read; hardware only
+  std::int64_t write_ns = 0;  ///< from the set-points to the last frame handed over; hardware only
+  std::uint64_t missed_cycles = 0;  ///< skipped by the loop just before this one
+  double path_time_s = 0.0;         ///< the reference's clock: task_time_s less the time it waited
+};
+
+static_assert(std::is_trivially_copyable_v<CycleRecord> && std::is_standard_layout_v<CycleRecord>);
+static_assert(sizeof(CycleRecord) ==
+              8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 5 + 1));
+
+/// Copies one cycle into a record; wake_latency_ns and step_ns are left to the caller, who alone
+/// knows a clock. tool_error_m: see CycleRecord. Entries of arrays beyond the robot's joints and
+/// the task's components keep what they held.
+void fillRecord(double t_s, const RobotInput& input, const ControllerOutput& output,
+                const Vector3& tool_error_m, CycleRecord& record) noexcept;
+
+/// The controller's input of a logged cycle; `joints` entries of q_measured.
+RobotInput recordedInput(const CycleRecord& record, int joints) noexcept;
+
+}  // namespace tactus

@@ -1,0 +1,17 @@
+#pragma once
+
+namespace tactus {
+
+/// Inputs after polarity and debounce. Lines that the robot does not have read as here.
+struct GpioInputs {
+  bool emergency_stop = false;
+  bool enable = true;
+  bool is_valid = true;  ///< false: the chip could not be read
+};
+
+struct GpioOutputs {
+  bool release_brake = false;
+  bool heartbeat = false;
+};
+
+}  // namespace tactus

@@ -1,0 +1,131 @@
+#include "tactus/canopen/can_robot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/canopen/canopen.h"
+
+namespace tactus {
+namespace {
+
+/// A drive that has gone silent cannot be seen to be off: its own heartbeat watch stops it.
+bool isReachable(const DriveReport& report) noexcept {
+  return (report.is_configured || report.is_restarting) && !report.is_silent;
+}
+
+bool holds(DriveState state) noexcept {
+  return state == DriveState::kOperationEnabled || state == DriveState::kQuickStopActive ||
+         state == DriveState::kFaultReactionActive;
+}
+
+bool mayHold(const DriveReport& report) noexcept {
+  return !report.has_state || holds(report.state);
+}
+
+}  // namespace
+
+CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
+    : outboxes_(hardware.buses.size()),
+      has_drives_(hardware.buses.size(), false),
+      heartbeat_(heartbeatFrame(hardware.canopen.master_node_id, NmtState::kOperational)),
+      cycles_a_heartbeat_(
+          std::max(1, static_cast<int>(hardware.canopen.heartbeat_period_s / period_s + 0.5))),
+      q_commanded_(JointVector::Zero(static_cast<int>(hardware.drives.size()))) {
+  drives_.reserve(hardware.drives.size());
+  for (const DriveConfig& drive : hardware.drives) {
+    drives_.emplace_back(drive, hardware.canopen, brakeDeadline_s(hardware), period_s);
+    has_drives_[drive.bus] = true;
+  }
+  if (!hardware.tactile) return;
+  tactile_.emplace(*hardware.tactile, period_s);
+  tactile_bus_ = hardware.tactile->bus;
+}
+
+void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
+  for (const CanFrame& frame : frames) {
+    for (Drive& drive : drives_) {
+      if (drive.bus() == bus) drive.receive(frame);
+    }
+    if (bus == tactile_bus_) tactile_->receive(frame);
+  }
+}
+
+void CanRobot::read(RobotInput& input) noexcept {
+  input.q_measured.resize(static_cast<int>(drives_.size()));
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const int joint = static_cast<int>(i);
+    drives_[i].observe(q_commanded_[joint]);
+    input.q_measured[joint] = drives_[i].report().position;
+  }
+  if (tactile_) tactile_->tick();
+  if (tactile_) input.tactile = tactile_->sample();
+}
+
+void CanRobot::command(DriveGoal goal, bool is_restart, const JointVector& q) noexcept {
+  goal_ = goal;
+  is_restart_ = is_restart;
+  q_commanded_ = q;
+}
+
+void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
+  const bool is_heartbeat_due = cycles_to_heartbeat_ == 0;
+  cycles_to_heartbeat_ = (is_heartbeat_due ? cycles_a_heartbeat_ : cycles_to_heartbeat_) - 1;
+  for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
+    outboxes_[bus].clear();
+    if (has_drives_[bus] && is_heartbeat_due) outboxes_[bus].push(heartbeat_);
+  }
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const int joint = static_cast<int>(i);
+    drives_[i].update(goal_, is_restart_, velocity_setpoint[joint], q_commanded_[joint],
+                      outboxes_[drives_[i].bus()]);
+  }
+  for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
+    if (has_drives_[bus]) outboxes_[bus].push(syncFrame());
+  }
+  for (const Drive& drive : drives_) {
+    if (drive.needsSilence()) outboxes_[drive.bus()].clear();
+  }
+}
+
+void CanRobot::release() noexcept {
+  for (FrameBatch& outbox : outboxes_) outbox.clear();
+  for (const Drive& drive : drives_) drive.release(outboxes_[drive.bus()]);
+}
+
+DrivesReport CanRobot::drives() const noexcept {
+  DrivesReport all;
+  all.are_configured = all.are_enabled = true;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const DriveReport& report = drives_[i].report();
+    all.are_configured = all.are_configured && report.is_configured;
+    all.are_enabled = all.are_enabled && report.state == DriveState::kOperationEnabled;
+    const bool may_hold = isReachable(report) && mayHold(report);
+    const bool has_power =
+        may_hold || (isReachable(report) && report.state == DriveState::kSwitchedOn);
+    all.is_any_holding = all.is_any_holding || may_hold;
+    all.are_disabled = all.are_disabled && !has_power;
+    all.is_any_moving_on = all.is_any_moving_on || report.is_moving_on;
+    if (report.fault == Fault::kNone || all.fault != Fault::kNone) continue;
+    all.fault = report.fault;
+    all.joint = static_cast<int>(i);
+  }
+  return all;
+}
+
+bool CanRobot::isHolding(int joint) const noexcept {
+  const DriveReport& report = drives_[joint].report();
+  return isReachable(report) && report.has_state && holds(report.state) && !report.is_cut_off;
+}
+
+bool CanRobot::hasPositions() const noexcept {
+  return std::all_of(drives_.begin(), drives_.end(),
+                     [](const Drive& drive) { return drive.report().has_position; });
+}
+
+long long CanRobot::malformedFrames() const noexcept {
+  long long frames = 0;
+  for (const Drive& drive : drives_) frames += drive.malformedFrames();
+  return frames;
+}
+
+}  // namespace tactus

@@ -1,0 +1,306 @@
+#include "tactus/canopen/drive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/canopen/canopen.h"
+#include "tactus/canopen/cycle_count.h"
+
+namespace tactus {
+namespace {
+
+/// Operation enabled that was seen for so many cycles is not left but by a command of ours: a
+/// control word takes effect with the SYNC after it, is seen in the feedback after the next one,
+/// and drives may need a cycle more.
+constexpr int kSettledCycles = 3;
+
+bool isWithoutPower(DriveState state) noexcept {
+  return state == DriveState::kNotReady || state == DriveState::kSwitchOnDisabled ||
+         state == DriveState::kReadyToSwitchOn || state == DriveState::kFault;
+}
+
+PowerGoal powerGoal(DriveGoal goal, bool has_fault) noexcept {
+  if (has_fault || goal == DriveGoal::kQuickStop) return PowerGoal::kQuickStop;
+  return goal == DriveGoal::kEnabled ? PowerGoal::kEnabled : PowerGoal::kDisabled;
+}
+
+}  // namespace
+
+Drive::Drive(const DriveConfig& config, const CanopenConfig& canopen, double stop_deadline_s,
+             double period_s)
+    : config_(config),
+      heartbeat_timeout_cycles_(cyclesLasting(canopen.heartbeat_timeout_s, period_s)),
+      answer_timeout_cycles_(cyclesLasting(canopen.sdo_timeout_s, period_s)),
+      stop_deadline_cycles_(cyclesLasting(stop_deadline_s, period_s)),
+      setup_(config, canopen, period_s),
+      velocity_counts_(config.sign * config.counts_per_unit),
+      rest_watch_(period_s) {}
+
+void Drive::receive(const CanFrame& frame) noexcept {
+  if (frame.kind != FrameKind::kData || frame.extended) return;
+  switch (frame.id - static_cast<std::uint32_t>(config_.node_id)) {
+    case cob_id::kTpdo1:
+      return receiveFeedback(frame);
+    case cob_id::kHeartbeat:
+      return receiveHeartbeat(frame);
+    case cob_id::kEmergency:
+      return receiveEmergency(frame);
+    case cob_id::kSdoAnswer:
+      if (frame.size != 8) ++malformed_frames_;
+      return setup_.receive(frame);
+  }
+}
+
+void Drive::receiveFeedback(const CanFrame& frame) noexcept {
+  const auto feedback = decodeFeedback(frame, config_.node_id);
+  if (!feedback) ++malformed_frames_;
+  if (feedback) feedback_ = feedback;
+}
+
+void Drive::receiveHeartbeat(const CanFrame& frame) noexcept {
+  const auto state = decodeHeartbeat(frame, config_.node_id);
+  if (!state) {
+    ++malformed_frames_;
+    return;
+  }
+  cycles_without_heartbeat_ = 0;
+  is_operational_ = state == NmtState::kOperational;
+  if (state == NmtState::kBootUp) return onBootUp();
+  if (phase_ == Phase::kConfigured && !is_operational_) fail(Fault::kDriveStateLost);
+}
+
+void Drive::onBootUp() noexcept {
+  if (phase_ == Phase::kConfigured) {
+    fail(Fault::kDriveStateLost);
+    report_.is_configured = report_.has_state = false;
+    report_.state = DriveState::kNotReady;
+    beginRestart();  // its mapping is gone, if it is true: setpoints would be misread
+  } else if (phase_ == Phase::kRestarting) {
+    if (restart_cycles_ == 0) return;  // the reset has not been sent yet
+    phase_ = Phase::kUnconfigured;
+    report_.is_restarting = report_.is_silent = false;
+    report_.is_off = true;
+  } else if (phase_ != Phase::kUnconfigured) {
+    phase_ = Phase::kSetup;
+    setup_.onBootUp();
+  }
+}
+
+void Drive::beginRestart() noexcept {
+  phase_ = Phase::kRestarting;
+  restart_cycles_ = 0;
+  report_.is_restarting = true;
+  report_.is_off = report_.is_silent = false;
+}
+
+void Drive::receiveEmergency(const CanFrame& frame) noexcept {
+  const auto emergency = decodeEmergency(frame, config_.node_id);
+  if (!emergency) {
+    ++malformed_frames_;
+    return;
+  }
+  report_.emergency_code = emergency->code;
+  const bool is_new = phase_ == Phase::kConfigured && !has_old_fault_;
+  if (is_new && emergency->code != 0) fail(Fault::kDriveFault);
+}
+
+void Drive::observe(double position) noexcept {
+  if (phase_ == Phase::kStarting) awaitOperation();
+  if (phase_ == Phase::kRestarting || phase_ == Phase::kUnconfigured) watchRestart();
+  if (phase_ == Phase::kConfigured) {
+    countSilence();
+    takeFeedback();
+    watchSilence();
+    watchFault();
+    watchOperation();
+    if (isRunning(goal_)) watchPosition(position);
+  }
+  feedback_.reset();
+}
+
+void Drive::update(DriveGoal goal, bool restart, double velocity, double position,
+                   FrameBatch& out) noexcept {
+  goal_ = goal;
+  watchStop(goal);
+  if (report_.is_cut_off) return cutOff(out);
+  if (goal == DriveGoal::kConfigure && restart) startSetup();
+  if (goal == DriveGoal::kConfigure) continueSetup(out);
+  if (phase_ == Phase::kRestarting && goal != DriveGoal::kSilent) makeRestart(out);
+  if (phase_ != Phase::kConfigured) return;
+  const bool is_finite = std::isfinite(velocity) && std::isfinite(position);
+  if (isRunning(goal) && !is_finite) fail(Fault::kCommandNotFinite);
+  const DriveCommand command{controlWord(goal), velocityCounts(goal, velocity, position)};
+  if (goal != DriveGoal::kSilent) out.push(commandFrame(config_.node_id, command));
+}
+
+void Drive::release(FrameBatch& out) const noexcept {
+  const NmtCommand command =
+      report_.is_off ? NmtCommand::kResetCommunication : NmtCommand::kResetNode;
+  out.push(nmtFrame({command, config_.node_id}));
+}
+
+/// A drive that has started anew sends no feedback before it is told to.
+void Drive::watchRestart() noexcept {
+  countSilence();
+  if (phase_ == Phase::kUnconfigured) {
+    if (report_.is_off && feedback_) beginRestart();
+    return;
+  }
+  report_.is_silent =
+      std::min(cycles_without_feedback_, cycles_without_heartbeat_) > heartbeat_timeout_cycles_;
+}
+
+/// Once, and again where it is heard although it should be booting.
+void Drive::makeRestart(FrameBatch& out) noexcept {
+  const bool is_heard = cycles_without_heartbeat_ <= 1 || cycles_without_feedback_ == 0;
+  const bool has_ignored = restart_cycles_ > answer_timeout_cycles_ && is_heard;
+  if (restart_cycles_ == 0 || has_ignored) {
+    out.push(nmtFrame({NmtCommand::kResetNode, config_.node_id}));
+    restart_cycles_ = 0;
+  }
+  restart_cycles_ = std::min(restart_cycles_, answer_timeout_cycles_) + 1;
+}
+
+void Drive::watchStop(DriveGoal goal) noexcept {
+  const bool ignores = goal == DriveGoal::kDisabled && phase_ == Phase::kConfigured &&
+                       state_ == DriveState::kOperationEnabled;
+  ignored_cycles_ = ignores ? std::min(ignored_cycles_, stop_deadline_cycles_) + 1 : 0;
+  if (ignored_cycles_ > stop_deadline_cycles_) fail(Fault::kDriveStateLost);
+  if (goal != DriveGoal::kQuickStop) {
+    rest_watch_.restart();
+    quick_stop_cycles_ = cut_off_cycles_ = 0;
+    report_.is_moving_on = report_.is_cut_off = false;
+    return;
+  }
+  // What it did while nobody heard of it shows as a jump, which is no motion on.
+  const bool is_unheard = cycles_without_feedback_ > kMaxSilentCycles || !report_.has_position;
+  if (is_unheard) rest_watch_.restart();
+  if (!is_unheard && rest_watch_.update(report_.position)) report_.is_moving_on = true;
+  quick_stop_cycles_ = std::min(quick_stop_cycles_, stop_deadline_cycles_) + 1;
+  const bool is_late = quick_stop_cycles_ > stop_deadline_cycles_ || report_.is_moving_on;
+  if (is_late && !report_.is_off) report_.is_cut_off = true;
+}
+
+void Drive::cutOff(FrameBatch& out) noexcept {
+  if (cut_off_cycles_ % 5 == 0) out.push(nmtFrame({NmtCommand::kStop, config_.node_id}));
+  cut_off_cycles_ = std::min(cut_off_cycles_, kCuttingOffCycles) + 1;
+}
+
+void Drive::startSetup() noexcept {
+  report_ = {};
+  phase_ = Phase::kSetup;
+  setup_.start();
+}
+
+void Drive::continueSetup(FrameBatch& out) noexcept {
+  const bool is_new = phase_ == Phase::kUnconfigured && report_.fault == Fault::kNone;
+  if (is_new) startSetup();
+  if (phase_ != Phase::kSetup) return;
+  setup_.update(out);
+  if (setup_.status() == DriveSetup::Status::kDone) {
+    phase_ = Phase::kStarting;
+    is_operational_ = false;  // whatever was seen before, as in a start cut short by a boot-up
+    report_.has_position = false;
+    starting_cycles_ = 0;
+  } else if (setup_.status() == DriveSetup::Status::kFailed) {
+    phase_ = Phase::kUnconfigured;
+    report_.setup_failure = setup_.failure();
+    fail(Fault::kDriveSetupRefused);
+  }
+}
+
+void Drive::awaitOperation() noexcept {
+  takeFeedback();
+  if (is_operational_ && report_.has_position) return onConfigured();
+  if (++starting_cycles_ <= heartbeat_timeout_cycles_ + answer_timeout_cycles_) return;
+  phase_ = Phase::kUnconfigured;
+  fail(Fault::kDriveSilent);
+}
+
+void Drive::onConfigured() noexcept {
+  phase_ = Phase::kConfigured;
+  report_.is_configured = true;
+  has_old_fault_ = true;  // until its first valid state shows otherwise
+  reset_cycles_ = 0;
+}
+
+/// Counts as far as it matters: a drive may be silent for months.
+void Drive::countSilence() noexcept {
+  const int most = std::max(kMaxSilentCycles, heartbeat_timeout_cycles_) + 1;
+  cycles_without_feedback_ = feedback_ ? 0 : std::min(cycles_without_feedback_ + 1, most);
+  cycles_without_heartbeat_ = std::min(cycles_without_heartbeat_ + 1, most);
+}
+
+void Drive::takeFeedback() noexcept {
+  if (!feedback_) return;
+  cycles_without_feedback_ = 0;
+  state_ = decodeStatusWord(feedback_->status_word);
+  report_.state = state_.value_or(DriveState::kNotReady);
+  report_.has_state = state_.has_value();
+  report_.is_off = state_ && isWithoutPower(*state_);
+  report_.has_position = true;
+  report_.position =
+      feedback_->position / (config_.sign * config_.counts_per_unit) + config_.offset;
+}
+
+void Drive::watchSilence() noexcept {
+  const bool is_silent = cycles_without_feedback_ > kMaxSilentCycles ||
+                         cycles_without_heartbeat_ > heartbeat_timeout_cycles_;
+  report_.is_silent = is_silent;
+  if (is_silent) fail(Fault::kDriveSilent);
+}
+
+void Drive::watchFault() noexcept {
+  const bool is_in_fault =
+      state_ == DriveState::kFault || state_ == DriveState::kFaultReactionActive;
+  if (state_ && !is_in_fault) has_old_fault_ = false;
+  if (!is_in_fault) return;
+  const bool may_reset = goal_ == DriveGoal::kEnabled && has_old_fault_;
+  if (may_reset) ++reset_cycles_;
+  const bool is_given_up = reset_cycles_ > (may_reset ? answer_timeout_cycles_ : 0);
+  if (!has_old_fault_ || is_given_up) fail(Fault::kDriveFault);
+}
+
+void Drive::watchOperation() noexcept {
+  const bool is_running = isRunning(goal_);
+  const bool is_asked_for = goal_ == DriveGoal::kEnabled;
+  if (is_asked_for && !is_running && enabled_cycles_ >= kSettledCycles)
+    fail(Fault::kDriveStateLost);
+  enabled_cycles_ = is_running ? std::min(enabled_cycles_ + 1, kSettledCycles) : 0;
+}
+
+void Drive::watchPosition(double position) noexcept {
+  if (!std::isfinite(position)) return fail(Fault::kCommandNotFinite);
+  const bool is_far = std::abs(position - report_.position) > config_.max_following_error;
+  if (feedback_ && is_far) fail(Fault::kFollowingError);
+}
+
+bool Drive::isRunning(DriveGoal goal) const noexcept {
+  return goal == DriveGoal::kEnabled && report_.fault == Fault::kNone &&
+         state_ == DriveState::kOperationEnabled;
+}
+
+std::uint16_t Drive::controlWord(DriveGoal goal) const noexcept {
+  const bool has_fault = report_.fault != Fault::kNone;
+  const bool is_resetting = goal == DriveGoal::kEnabled && has_old_fault_ && !has_fault;
+  if (is_resetting && state_ == DriveState::kFault) return control_word::kFaultReset;
+  if (!state_) return control_word::kQuickStop;
+  return controlWordTowards(powerGoal(goal, has_fault), *state_);
+}
+
+std::int32_t Drive::velocityCounts(DriveGoal goal, double velocity, double position) noexcept {
+  if (!isRunning(goal)) {
+    velocity_counts_.reset();
+    return 0;
+  }
+  const double limit = config_.max_following_error;  // also where the measured position is old
+  const double lag = std::clamp(position - report_.position, -limit, limit);
+  const double tracking = velocity + config_.tracking_gain_per_s * lag;
+  return velocity_counts_.next(std::clamp(tracking, -config_.max_velocity, config_.max_velocity));
+}
+
+void Drive::fail(Fault fault) noexcept {
+  if (report_.fault == Fault::kNone) report_.fault = fault;
+}
+
+}  // namespace tactus

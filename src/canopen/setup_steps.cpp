@@ -1,0 +1,109 @@
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "tactus/canopen/canopen.h"
+#include "tactus/canopen/drive_setup.h"
+
+namespace tactus {
+namespace {
+
+using Kind = SetupStep::Kind;
+
+/// COB-id of a TPDO: no remote frames (CiA 301, 7.5.2.37, bit 30).
+constexpr std::uint32_t kNoRemote = 0x40000000;
+constexpr std::uint32_t kEverySync = 1;  // transmission type
+
+SetupStep write(std::uint16_t index, std::uint8_t subindex, int size, std::uint32_t value) {
+  return {Kind::kWrite, {index, subindex, size}, value};
+}
+
+SetupStep stopPdo(std::uint16_t index) { return {Kind::kStopPdo, {index, 1, 4}}; }
+
+SetupStep expect(const ObjectEntry& entry, std::uint32_t value, std::uint32_t mask) {
+  return {Kind::kExpect, entry, value, mask};
+}
+
+SetupStep ifThere(SetupStep step) {
+  step.is_optional = true;
+  return step;
+}
+
+SetupStep ifWritable(SetupStep step) {
+  step.may_be_read_only = true;
+  return ifThere(step);
+}
+
+std::uint32_t milliseconds(double duration_s, const char* key) {
+  const double ms = std::round(duration_s * 1e3);
+  if (ms >= 1.0 && ms <= 65535.0) return static_cast<std::uint32_t>(ms);
+  throw std::invalid_argument(std::string(key) + ": drives count heartbeats in whole ms, from " +
+                              "0.001 to 65.535 s; choose a time in that range");
+}
+
+InterpolationPeriod representablePeriod(double period_s) {
+  const auto period = interpolationPeriod(period_s);
+  if (period) return *period;
+  throw std::invalid_argument(
+      "period: drives cannot be told it (object 60C2 holds 1 to 255 times a power of ten of "
+      "seconds); choose one as 0.001 or 0.00125 s");
+}
+
+}  // namespace
+
+std::optional<InterpolationPeriod> interpolationPeriod(double period_s) noexcept {
+  for (int exponent = 0; exponent >= -9; --exponent) {
+    const double value = period_s * std::pow(10.0, -exponent);
+    const double whole = std::round(value);
+    if (whole >= 1.0 && whole <= 255.0 && std::abs(value - whole) < 1e-6)
+      return InterpolationPeriod{static_cast<std::uint8_t>(whole),
+                                 static_cast<std::int8_t>(exponent)};
+  }
+  return std::nullopt;
+}
+
+SetupSteps setupSteps(const DriveConfig& drive, const CanopenConfig& canopen, double period_s) {
+  const auto node = static_cast<std::uint32_t>(drive.node_id);
+  const auto master = static_cast<std::uint32_t>(canopen.master_node_id);
+  const std::uint32_t heartbeat_ms = milliseconds(canopen.heartbeat_period_s, "heartbeat_period_s");
+  const std::uint32_t timeout_ms = milliseconds(canopen.heartbeat_timeout_s, "heartbeat_timeout_s");
+  const InterpolationPeriod period = representablePeriod(period_s);
+  return {{
+      expect({0x1000, 0, 4}, 402, 0xFFFF),  // device type: a drive of CiA 402
+      write(0x6040, 0, 2, 0x0002),          // may still be moving for a master that has gone
+      // Mapping is changed while the PDO is not valid and its number of entries is 0
+      // (CiA 301, 7.5.2.36, 7.5.2.38).
+      stopPdo(0x1400),
+      write(0x1600, 0, 1, 0),
+      write(0x1600, 1, 4, 0x60400010),
+      write(0x1600, 2, 4, 0x60FF0020),
+      write(0x1600, 0, 1, 2),
+      write(0x1400, 2, 1, kEverySync),
+      // Deadline of setpoints (CiA 301, 7.5.2.35, event timer): SYNC and heartbeat may still come
+      // when they do not.
+      ifWritable(write(0x1400, 5, 2, timeout_ms)),
+      stopPdo(0x1800),
+      write(0x1A00, 0, 1, 0),
+      write(0x1A00, 1, 4, 0x60410010),
+      write(0x1A00, 2, 4, 0x60640020),
+      write(0x1A00, 0, 1, 2),
+      write(0x1800, 2, 1, kEverySync),
+      // What else it may send by default would not be in the bus's calculated load.
+      ifThere(stopPdo(0x1801)),
+      ifThere(stopPdo(0x1802)),
+      ifThere(stopPdo(0x1803)),
+      write(0x1400, 1, 4, cob_id::kRpdo1 + node),
+      write(0x1800, 1, 4, kNoRemote | (cob_id::kTpdo1 + node)),
+      write(0x6060, 0, 1, 9),           // cyclic synchronous velocity
+      expect({0x6061, 0, 1}, 9, 0xFF),  // some drives show it only after a while
+      write(0x60C2, 1, 1, period.value),
+      write(0x60C2, 2, 1, static_cast<std::uint8_t>(period.exponent)),
+      write(0x605A, 0, 2, 2),           // quick stop: its own ramp, then disabled
+      ifThere(write(0x605E, 0, 2, 2)),  // fault: slow down on the quick stop's ramp
+      ifThere(write(0x6007, 0, 2, 3)),  // master silent: quick stop
+      write(0x1016, 1, 4, master << 16 | timeout_ms),
+      write(0x1017, 0, 2, heartbeat_ms),
+  }};
+}
+
+}  // namespace tactus

@@ -1,0 +1,146 @@
+#include "tactus/canopen/tactile_receiver.h"
+
+#include <algorithm>
+
+#include "tactus/canopen/cycle_count.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::uint8_t kSaturated = 0x01;
+constexpr int kRail = (1 << 23) - 1;
+constexpr int kFirstChannelByte = 2;
+constexpr int kBytesPerChannel = 3;
+constexpr unsigned kAllFrames = 0xF;
+
+/// Signed 24 bits, little-endian.
+int countsAt(const CanFrame& frame, int byte) noexcept {
+  const std::uint32_t bits = static_cast<std::uint32_t>(frame.data[byte]) |
+                             static_cast<std::uint32_t>(frame.data[byte + 1]) << 8 |
+                             static_cast<std::uint32_t>(frame.data[byte + 2]) << 16;
+  return static_cast<int>(bits ^ 0x800000U) - 0x800000;
+}
+
+bool isAtRail(int counts) noexcept { return counts >= kRail || counts <= -kRail; }
+
+}  // namespace
+
+TactileReceiver::TactileReceiver(const CanTactileConfig& config, double period_s)
+    : config_(config),
+      max_silent_cycles_(cyclesLasting(kMaxSilentSamples * config.sample_period_s, period_s)) {
+  if (config.filter_cutoff_hz)
+    fresh_filter_.emplace(*config.filter_cutoff_hz, 1.0 / config.sample_period_s);
+  filters_.fill(fresh_filter_);
+}
+
+void TactileReceiver::receive(const CanFrame& frame) noexcept {
+  const std::uint32_t index = frame.id - config_.first_id;
+  if (index >= kFrames) return;
+  if (frame.kind != FrameKind::kData || frame.extended || frame.size != 8) {
+    ++counters_.malformed;
+    return;
+  }
+  silent_cycles_ = 0;
+  if (isNew(frame.data[0]))
+    add(static_cast<int>(index), frame);
+  else
+    ++counters_.repeated;
+}
+
+void TactileReceiver::tick() noexcept {
+  if (silent_cycles_ == max_silent_cycles_) return;
+  if (++silent_cycles_ == max_silent_cycles_) forgetNumbers();
+}
+
+/// Nor may frames from before the silence complete a sample after it.
+void TactileReceiver::forgetNumbers() noexcept {
+  has_finished_ = false;
+  if (assembly_.arrived != 0) ++counters_.incomplete;
+  assembly_.arrived = 0;
+}
+
+bool TactileReceiver::isNew(std::uint8_t sequence) const noexcept {
+  const int ahead = static_cast<std::uint8_t>(sequence - finished_sequence_);
+  return !has_finished_ || (ahead >= 1 && ahead <= 127);
+}
+
+void TactileReceiver::add(int index, const CanFrame& frame) noexcept {
+  if (assembly_.arrived == 0 || assembly_.sequence != frame.data[0]) begin(frame.data[0]);
+  if ((assembly_.arrived >> index & 1U) != 0) {
+    ++counters_.repeated;
+    if (assembly_.frames[index] != frame) assembly_.is_spoilt = true;
+    return;
+  }
+  assembly_.arrived |= 1U << index;
+  assembly_.status |= frame.data[1];
+  assembly_.frames[index] = frame;
+  if (assembly_.arrived == kAllFrames) finish();
+}
+
+void TactileReceiver::begin(std::uint8_t sequence) noexcept {
+  if (assembly_.arrived != 0) ++counters_.incomplete;
+  assembly_.sequence = sequence;
+  assembly_.arrived = 0;
+  assembly_.is_spoilt = false;
+  assembly_.status = 0;
+}
+
+void TactileReceiver::finish() noexcept {
+  has_finished_ = true;
+  finished_sequence_ = assembly_.sequence;
+  assembly_.arrived = 0;
+  if (assembly_.is_spoilt) {
+    ++counters_.incomplete;
+    return;
+  }
+  Eigen::Matrix<double, kChannels, 1> counts;
+  bool is_saturated = (assembly_.status & kSaturated) != 0;
+  for (int channel = 0; channel < kChannels; ++channel) {
+    const int byte = kFirstChannelByte + kBytesPerChannel * (channel % 2);
+    const int value = countsAt(assembly_.frames[channel / 2], byte);
+    counts[channel] = value;
+    is_saturated = is_saturated || isAtRail(value);
+  }
+  fault_ = is_saturated ? Fault::kTactileSaturated : Fault::kNone;
+  if ((assembly_.status & ~kSaturated) != 0) fault_ = Fault::kTactileCableBreak;
+  publish(config_.calibration * counts / config_.counts_per_N);
+}
+
+void TactileReceiver::publish(const Wrench& raw) noexcept {
+  if (tare_state_ == TareState::kAveraging) average(raw);
+  Wrench wrench = raw - offset_;
+  for (int i = 0; i < 4; ++i) {
+    if (filters_[i]) wrench[i] = filters_[i]->update(wrench[i]);
+  }
+  if (++counters_.samples == 0) counters_.samples = 1;  // 0 says that there is none
+  sample_ = {wrench[0], wrench[1], wrench[2], wrench[3], counters_.samples};
+}
+
+void TactileReceiver::startTare() noexcept {
+  tare_state_ = TareState::kAveraging;
+  tare_count_ = 0;
+  tare_sum_.setZero();
+}
+
+void TactileReceiver::average(const Wrench& raw) noexcept {
+  const Eigen::Vector2d force = raw.head<2>();
+  tare_low_ = tare_count_ == 0 ? force : tare_low_.cwiseMin(force);
+  tare_high_ = tare_count_ == 0 ? force : tare_high_.cwiseMax(force);
+  const bool is_calm = force.norm() <= config_.tare_max_offset_N &&
+                       (tare_high_ - tare_low_).norm() <= config_.tare_max_spread_N;
+  if (fault_ != Fault::kNone || !is_calm) {
+    tare_state_ = TareState::kRefused;
+    return;
+  }
+  tare_sum_ += raw;
+  if (++tare_count_ >= config_.tare_samples) endTare();
+}
+
+/// Filters begin anew, as the step of the offset would ring in them as a force.
+void TactileReceiver::endTare() noexcept {
+  offset_ = tare_sum_ / tare_count_;
+  tare_state_ = TareState::kDone;
+  filters_.fill(fresh_filter_);
+}
+
+}  // namespace tactus

@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tactus/cli/commands.h"
+#include "tactus/cli/plant_run.h"
+#include "tactus/record/run_error.h"
+#include "tactus/scene/command_scene.h"
+#include "tactus/scene/json.h"
+
+namespace tactus {
+namespace {
+
+struct PlantOptions {
+  std::string scene;
+  std::vector<std::string> settings;
+  std::string e_stop_file;
+  bool json = false;
+};
+
+std::string countersJson(const PlantRunResult& result) {
+  JsonWriter json;
+  json.beginObject();
+  const auto count = [&json](const char* name, std::uint64_t number) {
+    json.key(name).value(static_cast<long long>(number));
+  };
+  count("stale_setpoints_applied", result.plant.stale_setpoints_applied);
+  count("frames_refused", result.plant.frames_refused);
+  count("frames_not_taken", result.plant.frames_not_taken);
+  count("interface_refused", result.interface_refused);
+  json.endObject();
+  return json.text();
+}
+
+void printCounters(const PlantRunResult& result) {
+  fmt::print("{:<26}{}\n", "stale setpoints applied", result.plant.stale_setpoints_applied);
+  fmt::print("{:<26}{}\n", "frames refused by queues", result.plant.frames_refused);
+  fmt::print("{:<26}{}\n", "frames not taken", result.plant.frames_not_taken);
+  fmt::print("{:<26}{}\n", "refused by interfaces", result.interface_refused);
+}
+
+void play(const PlantOptions& options) {
+  const Scene scene = loadHardwareScene(options.scene, options.settings, "to play");
+  try {
+    const PlantRunResult result =
+        runPlant(scene, options.e_stop_file, options.json ? stderr : stdout);
+    if (options.json) {
+      std::fputs(countersJson(result).c_str(), stdout);
+    } else {
+      printCounters(result);
+    }
+  } catch (const std::runtime_error& error) {  // and what the operating system refuses
+    throw RunError(error.what());
+  }
+}
+
+}  // namespace
+
+void addPlantCommand(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "plant", "Play drives, tactile module and obstacles on the scene's CAN interfaces");
+  const auto options = std::make_shared<PlantOptions>();
+  command->add_option("SCENE", options->scene, "Scene file")->required();
+  command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
+  command->add_option("--e-stop-file", options->e_stop_file,
+                      "File or FIFO that gets 1 and 0 as the scripted e-stop moves");
+  command->add_flag("--json", options->json, "Print the counters as JSON, all else to stderr");
+  command->callback([options, &exit_code] {
+    play(*options);
+    exit_code = kExitDone;
+  });
+}
+
+}  // namespace tactus

@@ -1,0 +1,253 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tactus/cli/commands.h"
+#include "tactus/record/log_parts.h"
+#include "tactus/record/replay.h"
+#include "tactus/record/ulog_reader.h"
+#include "tactus/scene/command_scene.h"
+#include "tactus/scene/json.h"
+#include "tactus/scene/located_error.h"
+#include "tactus/supervisor/apply_mode.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::string_view kMissedCycles = "missed_cycles";
+
+struct ReplayOptions {
+  std::vector<std::string> logs, settings;
+  std::string output;
+  bool json = false;
+};
+
+void checkSize(const std::string& log, const char* field, const char* what, int logged,
+               int of_scene) {
+  if (logged == of_scene) return;
+  failAt({std::make_shared<std::string>(log), 1, 1}, field,
+         fmt::format("the cycles have {} {}, the log's scene {}", logged, what, of_scene),
+         "expected the log of a run of its scene");
+}
+
+/// The scene of the first log with its own overrides and then those of the command line.
+Scene loadLoggedScene(const ReplayOptions& options, const LogDescription& description) {
+  const std::string& log = options.logs.front();
+  std::vector<Override> overrides = description.overrides;
+  for (const Override& setting : parseOverrides(options.settings)) overrides.push_back(setting);
+  if (description.sources.empty()) {
+    failAt({std::make_shared<std::string>(log), 1, 1}, "source_path", "the log holds no scene",
+           "expected the files of the run");
+  }
+  Scene scene = loadScene(description.sources, overrides, SceneUse::kSimulation);
+  checkSize(log, "q", "joints", description.shape.joints, scene.controller.chain.size());
+  checkSize(log, "w", "task components", description.shape.task_size, scene.controller.task.size);
+  return scene;
+}
+
+struct ReplayResult {
+  ReplayComparison comparison;
+  std::vector<UnknownStretch> unknown;  ///< that were not compared
+  bool cut_off = false;                 ///< any of the logs
+};
+
+/// A replay without a single cycle of an arm under command would say nothing, and must not look as
+/// if all were well.
+void refuseUnknown(const std::vector<std::string>& logs, LogContinuity continuity) {
+  CycleRecord record;
+  for (const std::string& path : logs) {
+    std::ifstream in = openLog(path);
+    UlogReader reader(in, path);
+    continuity.beginPart(logPart(reader.description(), path).part);
+    while (reader.next(record)) {
+      if (continuity.add(record) && isCommanding(static_cast<Mode>(record.mode))) return;
+    }
+  }
+  if (continuity.stretches().empty()) return;
+  const UnknownStretch& first = continuity.stretches().front();
+  failAt({std::make_shared<std::string>(logs.front()), 1, 1}, "cycle",
+         fmt::format("none with a command can be replayed: from {:.9g} s on {}", first.from_s,
+                     first.reason),
+         "expected all logs of the run, the oldest first");
+}
+
+/// A scene, and what becomes of it fed with logs, one after the other.
+class LogReplay {
+ public:
+  LogReplay(const ReplayOptions& options, const UlogReader& first)
+      : shape_(first.description().shape),
+        scene_(loadLoggedScene(options, first.description())),
+        controller_(scene_.controller),
+        replayer_(controller_, shape_.joints, scene_.period_s, first.has(kMissedCycles)),
+        comparison_(shape_) {
+    refuseUnknown(options.logs, LogContinuity(scene_.period_s, first.has(kMissedCycles)));
+    if (!options.output.empty()) csv_.emplace(options.output, shape_);
+  }
+
+  void add(UlogReader& reader, const std::string& path) {
+    replayer_.beginPart(logPart(reader.description(), path).part);
+    const bool has_path_time = reader.has("path_time_s");
+    CycleRecord recorded;
+    while (reader.next(recorded)) {
+      if (!has_path_time) recorded.path_time_s = recorded.task_time_s;  // nothing waited then
+      const CycleRecord replayed = replayer_.replay(recorded);
+      if (!replayer_.isKnown()) {
+        comparison_.skip();
+        continue;
+      }
+      comparison_.add(recorded, replayed);
+      if (csv_) csv_->add(recorded, replayed);
+    }
+  }
+
+  ReplayResult finish() {
+    if (csv_) csv_->close();
+    return {std::move(comparison_), replayer_.unknown()};
+  }
+
+ private:
+  RecordShape shape_;
+  Scene scene_;
+  Controller controller_;
+  Replayer replayer_;
+  ReplayComparison comparison_;
+  std::optional<ReplayCsv> csv_;
+};
+
+ReplayResult replayLogs(const ReplayOptions& options) {
+  std::optional<LogReplay> replay;
+  for (const std::string& path : options.logs) {
+    std::ifstream in = openLog(path);
+    UlogReader reader(in, path);
+    if (!replay) replay.emplace(options, reader);
+    replay->add(reader, path);
+  }
+  return replay->finish();
+}
+
+void writeDifference(const ReplayDifference& difference, JsonWriter& json) {
+  json.beginObject();
+  json.key("column").value(difference.column);
+  json.key("cycle").value(difference.cycle);
+  json.key("t_s").value(difference.t_s);
+  json.key("recorded").value(difference.recorded);
+  json.key("replayed").value(difference.replayed);
+  json.endObject();
+}
+
+void writeList(const char* name, const std::vector<std::string>& texts, JsonWriter& json) {
+  json.key(name).beginArray();
+  for (const std::string& text : texts) json.value(text);
+  json.endArray();
+}
+
+void writeStretches(const std::vector<UnknownStretch>& stretches, JsonWriter& json) {
+  json.key("not_replayed").beginArray();
+  for (const UnknownStretch& stretch : stretches) {
+    json.beginObject();
+    json.key("from_s").value(stretch.from_s);
+    json.key("to_s").value(stretch.to_s);
+    json.key("reason").value(stretch.reason);
+    json.endObject();
+  }
+  json.endArray();
+}
+
+std::string jsonReport(const ReplayOptions& options, const ReplayResult& result) {
+  const ReplayComparison& comparison = result.comparison;
+  JsonWriter json;
+  json.beginObject();
+  writeList("logs", options.logs, json);
+  writeList("set", options.settings, json);
+  json.key("cycles").value(comparison.cycles() + comparison.skipped());
+  json.key("cut_off").value(result.cut_off);
+  json.key("compared_cycles").value(comparison.cycles());
+  writeStretches(result.unknown, json);
+  json.key("differing_cycles").value(comparison.differingCycles());
+  json.key("first_difference");
+  if (comparison.first()) {
+    writeDifference(*comparison.first(), json);
+  } else {
+    json.null();
+  }
+  json.key("largest_differences").beginArray();
+  for (const ReplayDifference& largest : comparison.largest()) writeDifference(largest, json);
+  json.endArray();
+  json.endObject();
+  return json.text();
+}
+
+std::string stretchesText(const ReplayResult& result) {
+  std::string text;
+  for (const UnknownStretch& stretch : result.unknown) {
+    text += fmt::format("not replayed from {:.9g} s to {:.9g} s: {}\n", stretch.from_s,
+                        stretch.to_s, stretch.reason);
+  }
+  const ReplayComparison& comparison = result.comparison;
+  if (comparison.skipped() == 0) return text;
+  return text + fmt::format("{} of {} cycles compared\n", comparison.cycles(),
+                            comparison.cycles() + comparison.skipped());
+}
+
+std::string differencesText(const ReplayOptions& options, const ReplayComparison& comparison) {
+  if (!comparison.first()) {
+    return fmt::format("{} cycles, every output equal to the bit\n", comparison.cycles());
+  }
+  const ReplayDifference& first = *comparison.first();
+  std::string text = fmt::format(
+      "{} of {} cycles differ, first cycle {} at {:.9g} s: {} recorded {}, replayed {}\n",
+      comparison.differingCycles(), comparison.cycles(), first.cycle, first.t_s, first.column,
+      first.recorded, first.replayed);
+  if (options.settings.empty()) return text;
+  for (const ReplayDifference& largest : comparison.largest()) {
+    text += fmt::format("largest difference of {}: {:.6g} at {:.9g} s, recorded {}, replayed {}\n",
+                        largest.column, largest.size(), largest.t_s, largest.recorded,
+                        largest.replayed);
+  }
+  return text;
+}
+
+int runReplay(const ReplayOptions& options) {
+  const std::vector<LogExtent> extents = checkParts(options.logs);
+  for (const std::string& log : options.logs) {
+    if (!options.output.empty()) refuseOverwriting(log, options.output);
+  }
+  ReplayResult result = replayLogs(options);
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    if (!extents[i].cut_off) continue;
+    result.cut_off = true;
+    fmt::print(stderr, "{}: the log was cut off after {} cycles\n", escaped(options.logs[i]),
+               extents[i].cycles);
+  }
+  const ReplayComparison& comparison = result.comparison;
+  const std::string report = options.json
+                                 ? jsonReport(options, result)
+                                 : stretchesText(result) + differencesText(options, comparison);
+  fmt::print(options.output == "-" ? stderr : stdout, "{}", report);
+  return options.settings.empty() && comparison.first() ? kExitFault : kExitDone;
+}
+
+}  // namespace
+
+void addReplayCommand(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<ReplayOptions>();
+  CLI::App* const command =
+      app.add_subcommand("replay", "Feed a log's inputs to the controller and compare its outputs");
+  command->add_option("log", options->logs, "Log of a run (run.ulg), or its logs, oldest first")
+      ->required();
+  command
+      ->add_option("--set", options->settings, std::string(kSetHelp) + "; shows what that changes")
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", options->output,
+                      "Write recorded and replayed commands as CSV, - for standard output");
+  command->add_flag("--json", options->json, "Print the comparison as JSON");
+  command->callback([options, &exit_code] { exit_code = runReplay(*options); });
+}
+
+}  // namespace tactus

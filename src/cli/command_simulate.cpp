@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "tactus/cli/commands.h"
+#include "tactus/cli/simulation.h"
+#include "tactus/record/run_folder.h"
+#include "tactus/record/run_summary.h"
+#include "tactus/scene/command_scene.h"
+#include "tactus/scene/located_error.h"
+
+namespace tactus {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SimulateOptions {
+  std::vector<std::string> scenes;
+  std::vector<std::string> settings;
+  std::string directory;
+  bool json = false;
+};
+
+/// All scenes are loaded before the first one runs, so that bad input writes nothing.
+std::vector<Scene> loadScenes(const SimulateOptions& options) {
+  const std::vector<Override> overrides = parseOverrides(options.settings);
+  std::vector<Scene> scenes;
+  std::set<std::string> names;
+  for (const std::string& path : options.scenes) {
+    scenes.push_back(loadScene(path, overrides, SceneUse::kSimulation));
+    if (!names.insert(scenes.back().name).second) {
+      failAt({std::make_shared<std::string>(path), 1, 1}, "-",
+             "a second scene named " + inQuotes(scenes.back().name),
+             "expected names that differ, each names a folder");
+    }
+  }
+  return scenes;
+}
+
+/// All folders are prepared before the first scene runs, too.
+std::vector<fs::path> prepareFolders(const SimulateOptions& options,
+                                     const std::vector<Scene>& scenes) {
+  std::vector<fs::path> folders;
+  for (const Scene& scene : scenes)
+    folders.push_back(prepareRunFolder(options.directory, scene.name));
+  return folders;
+}
+
+/// Keeps one line of a terminal up to date; says nothing elsewhere.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::string name) : name_(std::move(name)) {}
+
+  void show(double share) {
+    if (!is_terminal_) return;
+    fmt::print(stderr, "\r{:<32} {:3.0f} %", name_, 100.0 * share);
+    std::fflush(stderr);
+  }
+
+  void clear() {
+    if (is_terminal_) fmt::print(stderr, "\r{:<40}\r", "");
+  }
+
+ private:
+  std::string name_;
+  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
+};
+
+void printHeading() {
+  fmt::print("{:<28} {:>9} {:>9} {:>10} {:>10} {:>8}  {}\n", "scene", "peak", "final", "TCP max",
+             "TCP final", "faster", "outcome");
+  fmt::print("{:<28} {:>9} {:>9} {:>10} {:>10} {:>8}\n", "", "N", "N", "mm", "mm", "than real");
+}
+
+void printRow(const std::string& name, const SimulationResult& result) {
+  const RunFigures& figures = result.figures;
+  fmt::print("{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", name, figures.peak_force_N,
+             figures.final_force_N, 1e3 * figures.tcp_error_max_m, 1e3 * figures.tcp_error_final_m,
+             result.real_time_factor,
+             figures.fault == Fault::kNone ? "completed" : faultName(figures.fault));
+}
+
+SimulationResult simulateScene(const Scene& scene, const fs::path& folder) {
+  ProgressLine line(scene.name);
+  const SimulationResult result =
+      simulate(scene, (folder / "run.ulg").string(), [&line](double share) { line.show(share); });
+  line.clear();
+  writeSummary((folder / "summary.json").string(), scene, result.figures, result.real_time_factor);
+  return result;
+}
+
+int simulateScenes(const SimulateOptions& options) {
+  const std::vector<Scene> scenes = loadScenes(options);
+  const std::vector<fs::path> folders = prepareFolders(options, scenes);
+  int exit_code = kExitDone;
+  if (!options.json) printHeading();
+  std::string json;  // printed at the end, so that a failed run leaves no unfinished list
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const SimulationResult result = simulateScene(scenes[i], folders[i]);
+    if (result.figures.fault != Fault::kNone) exit_code = kExitFault;
+    if (options.json) {
+      json += json.empty() ? "[" : ",";
+      json += summaryJson(scenes[i], result.figures, result.real_time_factor);
+    } else {
+      printRow(scenes[i].name, result);
+      std::fflush(stdout);
+    }
+  }
+  if (options.json) fmt::print("{}]\n", json);
+  return exit_code;
+}
+
+}  // namespace
+
+void addSimulateCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<SimulateOptions>();
+  CLI::App* command =
+      app.add_subcommand("simulate", "Run scenes in virtual time; write a log and a summary each");
+  command->add_option("SCENE", options->scenes, "Scene files")->required();
+  command
+      ->add_option("-o,--output", options->directory,
+                   "Folder for <scene>/run.ulg and "
+                   "<scene>/summary.json")
+      ->required();
+  command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
+  command->add_flag("--json", options->json, "Print the summaries as one JSON list");
+  command->callback([options, &exit_code] { exit_code = simulateScenes(*options); });
+}
+
+}  // namespace tactus

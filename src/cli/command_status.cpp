@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+#include <unistd.h>
+#include <yaml-cpp/yaml.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "tactus/cli/commands.h"
+#include "tactus/daemon/run_status.h"
+#include "tactus/record/run_error.h"
+#include "tactus/scene/located_error.h"
+
+namespace tactus {
+namespace {
+
+/// Where the unit's RuntimeDirectory= is.
+constexpr const char* kServiceFolder = "/run/tactus";
+/// The daemon writes each half second.
+constexpr double kMaxAge_s = 2.0;
+constexpr std::chrono::seconds kWatchPeriod{1};
+
+struct StatusOptions {
+  bool watch = false;
+  bool json = false;
+};
+
+std::string statusPath() {
+  const char* folder = std::getenv("RUNTIME_DIRECTORY");
+  return fmt::format("{}/{}", folder && *folder ? folder : kServiceFolder, kStatusName);
+}
+
+std::string readStatus(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    const char* reason = errno == ENOENT ? "no service is running; `journalctl -u tactusd` says "
+                                           "how it ended"
+                                         : std::strerror(errno);
+    const char* help = errno == EACCES ? "; it is for root and the group tactus" : "";
+    throw RunError(fmt::format("{}: {}{}", escaped(path), reason, help));
+  }
+  if (!std::filesystem::is_regular_file(path))
+    throw RunError(fmt::format("{}: not a file", escaped(path)));
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// null stands for what JSON has no number for.
+double number(const YAML::Node& parent, const char* name) {
+  const YAML::Node node = parent[name];
+  return node.IsDefined() && node.IsNull() ? std::numeric_limits<double>::quiet_NaN()
+                                           : node.as<double>();
+}
+
+std::string timesLine(const char* name, const YAML::Node& times) {
+  const auto microseconds = [&](const char* figure) { return 1e-3 * number(times, figure); };
+  return fmt::format("{:<8} {:.1f} us, 99 % below {:.1f} us, at worst {:.1f} us\n", name,
+                     microseconds("median"), microseconds("p99"), microseconds("max"));
+}
+
+std::string motionText(const YAML::Node& motion) {
+  const auto of = [&](const char* name) { return number(motion, name); };
+  return fmt::format(
+      "force    {:.2f} N, at most {:.2f} N so far; obstacle taken for {:.0f} N/m\n"
+      "tool     {:.1f} mm off its path, at most {:.1f} mm\n",
+      of("force_N"), of("peak_force_N"), of("stiffness_N_per_m"), 1e3 * of("tcp_error_m"),
+      1e3 * of("tcp_error_max_m"));
+}
+
+std::string logText(const YAML::Node& log) {
+  const int files = log["files"].as<int>();
+  std::string text = fmt::format("log      {}", escaped(log["state"].as<std::string>()));
+  if (log["reason"]) text += ": " + escaped(log["reason"].as<std::string>());
+  return text + fmt::format("; {} file{}\n", files, files == 1 ? "" : "s");
+}
+
+std::string statusText(const YAML::Node& status) {
+  const auto text = [&](const char* name) { return escaped(status[name].as<std::string>()); };
+  std::string shown = fmt::format("{} ({}), process {}\n{}\n", text("scene"), text("variant"),
+                                  text("pid"), text("description"));
+  if (status["motion"]) shown += motionText(status["motion"]);
+  shown += fmt::format("cycles   {}, {} missed, {} not logged\n", text("cycles"),
+                       text("missed_cycles"), text("dropped_records"));
+  if (status["log"]) shown += logText(status["log"]);
+  return shown + timesLine("wakes", status["wake_latency_ns"]) +
+         timesLine("step", status["control_ns"]);
+}
+
+struct Shown {
+  std::string text;
+  bool is_well = false;  ///< the daemon has no fault
+  double age_s = 0.0;
+};
+
+Shown readShown(const std::string& path, bool as_json) {
+  const std::string json = readStatus(path);
+  try {
+    const YAML::Node status = YAML::Load(json);  // JSON is YAML, too
+    Shown shown;
+    shown.age_s = monotonicTime_s() - number(status, "monotonic_s");
+    shown.is_well = status["fault"].as<std::string>() == faultName(Fault::kNone);
+    shown.text = statusText(status);  // also to see that all is there
+    if (as_json) shown.text = json;
+    return shown;
+  } catch (const YAML::Exception&) {
+    throw RunError(fmt::format("{}: not the status of a daemon", escaped(path)));
+  }
+}
+
+/// True: the daemon lives, and has no fault.
+bool showStatus(const StatusOptions& options) {
+  const bool clears = options.watch && !options.json && ::isatty(STDOUT_FILENO) == 1;
+  const std::string path = statusPath();
+  const Shown shown = readShown(path, options.json);
+  if (clears) std::fputs("\033[H\033[J", stdout);
+  std::fputs(shown.text.c_str(), stdout);
+  if (std::fflush(stdout) != 0) throw RunError("standard output: cannot be written");
+  // A clock that starts anew may be behind: the file is of before.
+  if (shown.age_s >= 0.0 && shown.age_s <= kMaxAge_s) return shown.is_well;
+  throw RunError(fmt::format("{}: no word from the daemon for {:.0f} s", escaped(path),
+                             std::abs(shown.age_s)));
+}
+
+[[noreturn]] void watchStatus(const StatusOptions& options) {
+  for (;;) {
+    showStatus(options);
+    std::this_thread::sleep_for(kWatchPeriod);
+  }
+}
+
+}  // namespace
+
+void addStatusCommand(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("status", "Show what the service does");
+  const auto options = std::make_shared<StatusOptions>();
+  command->add_flag("--watch", options->watch, "Show it each second until the daemon ends");
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &exit_code] {
+    if (options->watch) watchStatus(*options);
+    exit_code = showStatus(*options) ? kExitDone : kExitFault;
+  });
+}
+
+}  // namespace tactus

@@ -1,0 +1,67 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "tactus/cli/commands.h"
+#include "tactus/record/run_error.h"
+#include "tactus/scene/located_error.h"
+
+namespace tactus {
+namespace {
+
+/// Buffered output may fail as late as here (disk full, closed pipe).
+int exitCodeAfterFlush(int exit_code) {
+  const bool is_flushed = std::fflush(stdout) == 0;
+  if (is_flushed && std::ferror(stdout) == 0) return exit_code;
+  std::fprintf(stderr, "standard output: cannot be written\n");
+  return kExitFault;
+}
+
+/// CLI11 names only what is missing, a command.
+void refuseUnknownCommand(const CLI::App& app, const char* word) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  if (word[0] == '-' || std::ranges::count(commands, word) > 0) return;
+  const std::string nearest = nearestWord(word, commands);
+  throw CLI::ExtrasError(
+      "tactus", {nearest.empty() ? std::string(word) : std::string(word) + ", perhaps " + nearest});
+}
+
+}  // namespace
+
+int tactusProgram(int argc, char** argv) {
+  CLI::App app{"Tactile feedback control of redundant robot arms: the engineer's tool", "tactus"};
+  app.set_version_flag("--version", TACTUS_VERSION);
+  app.require_subcommand(1);
+  int exit_code = kExitDone;
+  addCheckCommand(app, exit_code);
+  addSimulateCommand(app, exit_code);
+  addExportCommand(app, exit_code);
+  addReplayCommand(app, exit_code);
+  addPlantCommand(app, exit_code);
+  addBenchCommand(app, exit_code);
+  addKeysCommand(app, exit_code);
+  addDoctorCommand(app, exit_code);
+  addStatusCommand(app, exit_code);
+  try {
+    if (argc > 1) refuseUnknownCommand(app, argv[1]);
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exitCodeAfterFlush(kExitDone) : kExitUsage;
+  } catch (const RunError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitFault;
+  } catch (const std::system_error& error) {  // of fmt::print
+    std::fprintf(stderr, "standard output: %s\n", error.what());
+    return kExitFault;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return kExitBadInput;
+  }
+  return exitCodeAfterFlush(exit_code);
+}
+
+}  // namespace tactus

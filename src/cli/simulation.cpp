@@ -1,0 +1,74 @@
+#include "tactus/cli/simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "tactus/control/controller.h"
+#include "tactus/record/tool_error.h"
+#include "tactus/record/ulog_writer.h"
+#include "tactus/sim/simulated_robot.h"
+#include "tactus/supervisor/cycle_record.h"
+
+namespace tactus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr long long kCyclesBetweenReports = 8192;
+/// Longer runs pay for their memory as they go.
+constexpr long long kMaxReservedCycles = 1'000'000;
+
+std::int64_t nanoseconds(Clock::duration duration) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+bool isOver(const ControllerOutput& output) {
+  return output.fault != Fault::kNone && output.velocity.isZero(0.0);
+}
+
+}  // namespace
+
+SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
+  const auto cycles = std::llround(scene.duration_s / scene.period_s);
+  const Controller controller(scene.controller);
+  SimulatedRobot robot(scene.controller, scene.plant, scene.period_s);
+  RunSummary summary(scene.controller,
+                     static_cast<std::size_t>(std::min(cycles, kMaxReservedCycles)));
+  ControllerState state = controller.initialState();
+  RobotInput input;
+  ControllerOutput output;
+  CycleRecord record;
+
+  const Clock::time_point start = Clock::now();
+  long long cycle = 0;
+  for (; cycle < cycles && !isOver(output); ++cycle) {
+    const double t_s = static_cast<double>(cycle) * scene.period_s;
+    robot.read(input);
+    const Clock::time_point before = Clock::now();
+    controller.update(input, t_s, scene.period_s, state, output);
+    record.step_ns = nanoseconds(Clock::now() - before);
+    const Vector3 error = toolError(scene.controller.task, output.w_d, robot.toolPosition());
+    robot.write(output.velocity);
+    fillRecord(t_s, input, output, error, record);
+    sink(record);
+    summary.add(record);
+  }
+  const double wall_s = 1e-9 * static_cast<double>(nanoseconds(Clock::now() - start));
+  const double simulated_s = static_cast<double>(cycle) * scene.period_s;
+  return {summary.figures(), simulated_s / wall_s};
+}
+
+SimulationResult simulate(const Scene& scene, const std::string& log_path,
+                          const Progress& progress) {
+  UlogWriter log(log_path, describeLog(scene));
+  long long cycle = 0;
+  const SimulationResult result = simulate(scene, [&](const CycleRecord& record) {
+    log.write(record);
+    if (cycle++ % kCyclesBetweenReports == 0) progress(record.t_s / scene.duration_s);
+  });
+  log.close();
+  return result;
+}
+
+}  // namespace tactus

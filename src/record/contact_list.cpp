@@ -1,0 +1,85 @@
+#include "tactus/record/contact_list.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+namespace {
+
+constexpr double kTouchForce_N = 0.05;
+constexpr double kReleasePause_s = 0.1;
+constexpr double kSettlingBand_N = 0.05;
+constexpr double kSettlingBandFraction = 0.02;
+/// Times are multiples of a period with rounding errors; far below any period.
+constexpr double kTimeTolerance_s = 1e-9;
+/// Of one contact, 16 bytes each.
+constexpr std::size_t kMostSamples = std::size_t{1} << 20;
+
+}  // namespace
+
+ContactList::ContactList(bool has_force_control, std::size_t expected_cycles)
+    : has_force_control_(has_force_control) {
+  present_.samples.reserve(std::min(expected_cycles, kMostSamples));
+}
+
+void ContactList::add(const CycleRecord& record) {
+  if (present_.cycles == 0 && !starts(record)) return;
+  const Sample sample{record.t_s, record.force_sensor_N};
+  keep(sample);
+  present_.peak_force_N = std::max(present_.peak_force_N, sample.force_N);
+  const bool is_touching = sample.force_N > kTouchForce_N;
+  if (present_.is_touching && !is_touching) present_.released_s = sample.t_s;
+  present_.is_touching = is_touching;
+  if (is_touching || sample.t_s - present_.released_s < kReleasePause_s - kTimeTolerance_s) return;
+  finished_.push_back(summarise(true));
+  std::vector<Sample> emptied = std::move(present_.samples);
+  emptied.clear();
+  present_ = {};
+  present_.samples = std::move(emptied);
+}
+
+std::vector<ContactSummary> ContactList::contacts() const {
+  std::vector<ContactSummary> contacts = finished_;
+  if (present_.cycles > 0) contacts.push_back(summarise(false));
+  return contacts;
+}
+
+bool ContactList::starts(const CycleRecord& record) const noexcept {
+  return has_force_control_ ? record.force_contact_N > 0.0 : record.force_sensor_N > kTouchForce_N;
+}
+
+/// Where there is no more room, every other sample goes, and from then on every other one comes.
+void ContactList::keep(const Sample& sample) {
+  present_.newest = sample;
+  if (present_.cycles++ % present_.stride != 0) return;
+  std::vector<Sample>& samples = present_.samples;
+  if (samples.size() >= kMostSamples) {
+    for (std::size_t i = 0; i < kMostSamples / 2; ++i) samples[i] = samples[2 * i];
+    samples.resize(kMostSamples / 2);
+    present_.stride *= 2;
+  }
+  samples.push_back(sample);
+}
+
+ContactSummary ContactList::summarise(bool is_released) const {
+  const std::vector<Sample>& samples = present_.samples;
+  ContactSummary contact;
+  contact.start_s = samples.front().t_s;
+  contact.end_s = is_released ? present_.released_s : present_.newest.t_s;
+  contact.peak_force_N = present_.peak_force_N;
+  Sample rest = present_.newest;
+  std::size_t settled = samples.size() - 1;
+  if (is_released) {
+    const double rest_s = contact.end_s - kReleasePause_s + kTimeTolerance_s;
+    while (settled > 0 && samples[settled].t_s > rest_s) --settled;
+    rest = samples[settled];
+    contact.settling_s = contact.end_s - contact.start_s;
+    if (contact.settling_s < kReleasePause_s - kTimeTolerance_s) return contact;
+  }
+  const double band_N = std::max(kSettlingBand_N, kSettlingBandFraction * std::abs(rest.force_N));
+  while (settled > 0 && std::abs(samples[settled - 1].force_N - rest.force_N) <= band_N) --settled;
+  contact.settling_s = samples[settled].t_s - contact.start_s;
+  return contact;
+}
+
+}  // namespace tactus

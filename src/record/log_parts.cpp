@@ -1,0 +1,66 @@
+#include "tactus/record/log_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "tactus/record/ulog_format.h"
+#include "tactus/scene/located_error.h"
+
+namespace tactus {
+namespace {
+
+[[noreturn]] void failIn(const std::string& path, const char* key, const std::string& problem,
+                         const std::string& expectation) {
+  failAt({std::make_shared<std::string>(path), 1, 1}, key, problem, expectation);
+}
+
+std::string infoOf(const LogDescription& description, const char* name) {
+  const auto info =
+      std::ranges::find(description.infos, name, &std::pair<std::string, std::string>::first);
+  return info == description.infos.end() ? "" : info->second;
+}
+
+void checkOrder(const std::string& path, const LogPart& part, const std::string& path_before,
+                const LogPart& before) {
+  if (part.run.empty() || part.run != before.run) {
+    failIn(path, kRunKey, "is not of the same run as " + inQuotes(path_before),
+           "expected the logs of one run of tactusd");
+  }
+  if (part.part <= before.part) {
+    failIn(path, kPartKey, fmt::format("part {} of the run behind part {}", part.part, before.part),
+           "expected the oldest first, as in run.2.ulg run.1.ulg run.ulg");
+  }
+}
+
+}  // namespace
+
+LogPart logPart(const LogDescription& description, const std::string& path) {
+  LogPart part{infoOf(description, kRunKey), 0};
+  const std::string text = infoOf(description, kPartKey);
+  if (text.empty()) return part;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), part.part);
+  if (error != std::errc() || end != text.data() + text.size() || part.part < 0)
+    failIn(path, kPartKey, inQuotes(text) + " is not a part's number", "expected 0, 1 and so on");
+  return part;
+}
+
+std::vector<LogExtent> checkParts(const std::vector<std::string>& paths) {
+  std::vector<LogExtent> extents;
+  LogPart before;
+  long long cycles = 0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    std::ifstream in = openLog(paths[i]);
+    UlogReader reader(in, paths[i]);
+    const LogPart part = logPart(reader.description(), paths[i]);
+    if (i > 0) checkOrder(paths[i], part, paths[i - 1], before);
+    before = part;
+    extents.push_back(readToEnd(reader));
+    cycles += extents.back().cycles;
+  }
+  if (cycles == 0) refuseEmptyLog(paths.back());
+  return extents;
+}
+
+}  // namespace tactus

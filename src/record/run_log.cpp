@@ -1,0 +1,153 @@
+#include "tactus/record/run_log.h"
+
+#include <fmt/format.h>
+#include <sys/statvfs.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <random>
+#include <system_error>
+#include <utility>
+
+#include "tactus/record/run_error.h"
+#include "tactus/record/ulog_format.h"
+
+namespace tactus {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLookPeriod_s = 1.0;
+/// The next file until it is complete up to its first cycle.
+constexpr const char* kNextName = "run.next.ulg";
+
+std::string newRunName() {
+  std::random_device random;
+  return fmt::format("{:08x}{:08x}", random(), random());
+}
+
+[[noreturn]] void failTo(const char* what, const std::string& path, const std::string& why) {
+  throw RunError(fmt::format("{}: cannot be {}: {}", path, what, why));
+}
+
+void rename(const std::string& from, const std::string& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  const bool is_missing = error == std::errc::no_such_file_or_directory;  // somebody tidied up
+  if (error && !is_missing) failTo("renamed", from, error.message());
+}
+
+}  // namespace
+
+std::string logName(int age) { return age == 0 ? "run.ulg" : fmt::format("run.{}.ulg", age); }
+
+void writeLogState(const LogState& state, const char* unless_stopped, JsonWriter& json) {
+  json.key("log").beginObject();
+  json.key("state").value(state.stop_reason.empty() ? unless_stopped : "stopped");
+  if (!state.stop_reason.empty()) json.key("reason").value(state.stop_reason);
+  json.key("files").value(state.files);
+  json.key("removed_files").value(state.removed_files);
+  json.endObject();
+}
+
+RunLog::RunLog(const Scene& scene, std::string folder)
+    : config_(scene.log),
+      folder_(std::move(folder)),
+      description_(describeLog(scene)),
+      cycle_bytes_(logBytesACycle(description_.shape)) {
+  description_.infos.emplace_back(kRunKey, newRunName());
+  description_.infos.emplace_back(kPartKey, "0");
+  writer_ = begin(folder_ + "/" + logName(0));
+  attempt([this] { keepReserve(); });
+}
+
+void RunLog::write(const CycleRecord& record) {
+  attempt([&] {
+    const auto size = static_cast<double>(writer_->size() + cycle_bytes_);
+    if (config_.max_bytes > 0.0 && size > config_.max_bytes) beginNextFile();
+    writer_->write(record);
+    t_s_ = record.t_s;
+  });
+}
+
+void RunLog::flush() {
+  attempt([this] {
+    writer_->flush();
+    if (t_s_ - looked_s_ < kLookPeriod_s) return;
+    looked_s_ = t_s_;
+    keepReserve();
+  });
+}
+
+void RunLog::close() {
+  attempt([this] { writer_->close(); });
+  writer_.reset();
+}
+
+template <typename Step>
+void RunLog::attempt(const Step& step) {
+  if (!writer_) return;
+  try {
+    step();
+  } catch (const std::exception& error) {
+    stop(error.what());
+  }
+}
+
+void RunLog::stop(const std::string& reason) {
+  state_.stop_reason = reason;
+  writer_.reset();
+  std::fputs(fmt::format("tactusd: log stopped, the run goes on: {}\n", reason).c_str(), stderr);
+}
+
+std::unique_ptr<UlogWriter> RunLog::begin(const std::string& path) {
+  auto writer = std::make_unique<UlogWriter>(path, description_);
+  writer->flush();
+  return writer;
+}
+
+/// Whenever this ends, by an error or with the process, all files that have cycles are complete.
+void RunLog::beginNextFile() {
+  const std::string next = folder_ + "/" + kNextName;
+  try {
+    description_.infos.back().second = fmt::to_string(part_ + 1);
+    std::unique_ptr<UlogWriter> writer = begin(next);
+    writer_->close();
+    shiftFiles();
+    writer->rename(next, folder_ + "/" + logName(0));
+    writer_ = std::move(writer);
+  } catch (const std::exception&) {
+    std::error_code ignored;
+    fs::remove(next, ignored);
+    throw;
+  }
+  ++part_;
+}
+
+void RunLog::shiftFiles() {
+  const auto path = [this](int age) { return folder_ + "/" + logName(age); };
+  if (state_.files > config_.keep) {
+    const std::string oldest = path(config_.keep);
+    std::error_code error;
+    fs::remove(oldest, error);
+    if (error) failTo("removed", oldest, error.message());
+    --state_.files;
+    ++state_.removed_files;
+  }
+  for (int age = state_.files; age > 0; --age) rename(path(age - 1), path(age));
+  ++state_.files;
+}
+
+void RunLog::keepReserve() const {
+  if (config_.min_free_bytes <= 0.0) return;
+  struct statvfs disk {};
+  if (::statvfs(folder_.c_str(), &disk) != 0) failTo("looked at", folder_, std::strerror(errno));
+  const double free_bytes = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
+  if (free_bytes >= config_.min_free_bytes) return;
+  throw RunError(fmt::format("{}: {:.0f} bytes are free, log.min_free_bytes is {:.0f}", folder_,
+                             free_bytes, config_.min_free_bytes));
+}
+
+}  // namespace tactus

@@ -1,0 +1,166 @@
+#include "tactus/record/ulog_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+#include "tactus/record/ulog_format.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::size_t kTextChunk = 32768;
+constexpr std::uint16_t kCycleId = 0;
+constexpr std::size_t kDataHeaderSize =
+    kMessageHeaderSize + sizeof(kCycleId) + sizeof(std::uint64_t);
+
+template <typename Number>
+void append(std::string& bytes, Number number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
+}
+
+void appendKey(std::string& bytes, const std::string& key) {
+  if (key.size() > 255) throw std::invalid_argument("ULog: key too long: " + key);
+  append(bytes, static_cast<std::uint8_t>(key.size()));
+  bytes += key;
+}
+
+std::string textKey(std::string_view name, std::string_view value) {
+  return fmt::format("char[{}] {}", value.size(), name);
+}
+
+std::uint64_t microseconds(double t_s) noexcept {
+  const double t_us = t_s * 1e6 + 0.5;
+  return t_us >= 0.0 && t_us < 1e18 ? static_cast<std::uint64_t>(t_us) : 0;
+}
+
+std::vector<CopyRun> packedRuns(const RecordShape& shape, std::size_t message_offset) {
+  std::vector<CopyRun> runs;
+  for (const RecordField& field : recordFields()) {
+    const std::size_t size = shape.entries(field) * sizeof(double);
+    appendRun({field.offset, message_offset, size}, runs);
+    message_offset += size;
+  }
+  return runs;
+}
+
+void appendMessage(std::string& bytes, char type, std::string_view payload) {
+  if (payload.size() > kMaxMessageSize) throw std::invalid_argument("ULog: message too long");
+  append(bytes, static_cast<std::uint16_t>(payload.size()));
+  bytes += type;
+  bytes += payload;
+}
+
+void appendFormat(std::string& bytes, const RecordShape& shape) {
+  std::string format = fmt::format("{}:uint64_t timestamp;", kCycleTopic);
+  for (const RecordField& field : recordFields()) {
+    format += typeName(field.type);
+    if (field.shape != FieldShape::kScalar) format += fmt::format("[{}]", shape.entries(field));
+    format += fmt::format(" {};", field.name);
+  }
+  appendMessage(bytes, 'F', format);
+}
+
+void appendInfo(std::string& bytes, std::string_view name, std::string_view value) {
+  std::string payload;
+  appendKey(payload, textKey(name, value));
+  payload += value;
+  appendMessage(bytes, 'I', payload);
+}
+
+void appendMultiInfo(std::string& bytes, std::string_view name, std::string_view value) {
+  bool is_continued = false;
+  do {
+    const std::string_view chunk = value.substr(0, kTextChunk);
+    std::string payload(1, is_continued ? '\1' : '\0');
+    appendKey(payload, textKey(name, chunk));
+    payload += chunk;
+    appendMessage(bytes, 'M', payload);
+    value.remove_prefix(chunk.size());
+    is_continued = true;
+  } while (!value.empty());
+}
+
+void appendParameter(std::string& bytes, std::string name, double value) {
+  std::erase(name, ']');
+  std::ranges::replace_if(
+      name, [](char c) { return c == '.' || c == '['; }, '/');
+  std::string payload;
+  appendKey(payload, "float " + name);
+  append(payload, static_cast<float>(value));
+  appendMessage(bytes, 'P', payload);
+}
+
+}  // namespace
+
+LogDescription describeLog(const Scene& scene) {
+  LogDescription description;
+  description.shape = {scene.controller.chain.size(), scene.controller.task.size};
+  description.infos = {{"ver_sw", TACTUS_VERSION},
+                       {"scene", scene.name},
+                       {"variant", scene.variant},
+                       {"robot", scene.robot_name}};
+  for (std::size_t i = 0; i < scene.joint_names.size(); ++i) {
+    description.infos.emplace_back(fmt::format("joint/{}", i + 1), scene.joint_names[i]);
+  }
+  description.parameters = scene.numbers;
+  description.sources = scene.sources;
+  description.overrides = scene.overrides;
+  return description;
+}
+
+std::string logDefinitions(const LogDescription& description) {
+  std::string bytes(reinterpret_cast<const char*>(kUlogMagic.data()), kUlogMagic.size());
+  append(bytes, std::uint64_t{0});  // start time: virtual time begins at zero
+  appendMessage(bytes, 'B', std::string(kFlagBitsSize, '\0'));
+  appendFormat(bytes, description.shape);
+  appendInfo(bytes, "sys_name", "tactus");
+  for (const auto& [name, value] : description.infos) appendInfo(bytes, name, value);
+  for (const RecordField& field : recordFields()) {
+    if (*field.unit) appendInfo(bytes, fmt::format("unit/{}", field.name), field.unit);
+  }
+  for (const auto& [name, value] : description.parameters) appendParameter(bytes, name, value);
+  for (const SourceFile& source : description.sources) {
+    appendMultiInfo(bytes, kSourcePathKey, source.path);
+    appendMultiInfo(bytes, kSourceTextKey, source.text);
+  }
+  for (const Override& override_ : description.overrides) {
+    appendMultiInfo(bytes, kOverrideKeyKey, override_.key);
+    appendMultiInfo(bytes, kOverrideValueKey, override_.value);
+  }
+  std::string subscription(1, '\0');  // the topic's first and only instance
+  append(subscription, kCycleId);
+  appendMessage(bytes, 'A', subscription + kCycleTopic);
+  return bytes;
+}
+
+std::size_t logBytesACycle(const RecordShape& shape) {
+  const CopyRun last = packedRuns(shape, kDataHeaderSize).back();
+  return last.message_offset + last.size;
+}
+
+UlogWriter::UlogWriter(const std::string& path, const LogDescription& description)
+    : file_(path),
+      runs_(packedRuns(description.shape, kDataHeaderSize)),
+      data_size_(logBytesACycle(description.shape)) {
+  file_.append(logDefinitions(description));
+}
+
+void UlogWriter::write(const CycleRecord& record) {
+  char* message = file_.reserve(data_size_);
+  const auto payload_size = static_cast<std::uint16_t>(data_size_ - kMessageHeaderSize);
+  const std::uint64_t timestamp_us = microseconds(record.t_s);
+  std::memcpy(message, &payload_size, 2);
+  message[2] = 'D';
+  std::memcpy(message + kMessageHeaderSize, &kCycleId, 2);
+  std::memcpy(message + kMessageHeaderSize + 2, &timestamp_us, 8);
+  const char* bytes = reinterpret_cast<const char*>(&record);
+  for (const CopyRun& run : runs_) {
+    std::memcpy(message + run.message_offset, bytes + run.record_offset, run.size);
+  }
+  file_.commit(data_size_);
+}
+
+}  // namespace tactus

@@ -1,0 +1,22 @@
+#include "tactus/scene/command_scene.h"
+
+#include "tactus/scene/input_error.h"
+
+namespace tactus {
+
+std::vector<Override> parseOverrides(const std::vector<std::string>& settings) {
+  std::vector<Override> overrides;
+  for (const std::string& setting : settings) overrides.push_back(parseOverride(setting));
+  return overrides;
+}
+
+Scene loadHardwareScene(const std::string& path, const std::vector<std::string>& settings,
+                        const char* purpose) {
+  Scene scene = loadScene(path, parseOverrides(settings));
+  if (!scene.hardware)
+    throw InputError(path + ":1:1: robot: has no can section, expected buses and drives " +
+                     purpose);
+  return scene;
+}
+
+}  // namespace tactus

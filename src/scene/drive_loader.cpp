@@ -1,0 +1,141 @@
+#include "tactus/scene/drive_loader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace tactus {
+namespace {
+
+int findJoint(const LoadingRobot& l, const std::string& joint, const std::string& path) {
+  const std::vector<std::string>& names = l.chain.joint_names;
+  const auto found = std::ranges::find(names, joint);
+  if (found == names.end()) {
+    l.fail(path, inQuotes(joint) + " is no moving joint on the way to the tip",
+           fmt::format("one of {}", fmt::join(names, ", ")));
+  }
+  return static_cast<int>(found - names.begin());
+}
+
+/// What is given in the unit of the joint. The other unit is refused.
+DriveUnits chooseUnits(const LoadingRobot& l, const DriveDraft& drive, int joint,
+                       const std::string& path) {
+  const bool is_prismatic = l.chain.joints[joint].type == JointType::kPrismatic;
+  const std::string unit = is_prismatic ? "m" : "rad";
+  const std::string other_unit = is_prismatic ? "rad" : "m";
+  for (const char* stem : {"counts_per_", "offset_", "max_following_error_"}) {
+    const std::string other = fmt::format("{}.{}{}", path, stem, other_unit);
+    if (l.isGiven(other)) {
+      l.fail(other,
+             fmt::format("joint {} is {}", inQuotes(drive.joint),
+                         is_prismatic ? "prismatic" : "revolute"),
+             stem + unit);
+    }
+  }
+  const std::string counts = path + ".counts_per_" + unit;
+  if (!l.isGiven(counts)) l.fail(counts, "is missing", "a number >= 1 in 1/" + unit);
+  return is_prismatic ? drive.metres : drive.radians;
+}
+
+/// Positions and velocities are counts in an INTEGER32 on the bus.
+void checkCounts(const LoadingRobot& l, const DriveConfig& drive, const std::string& path) {
+  constexpr double kMaxCount = std::numeric_limits<std::int32_t>::max();
+  const JointLimits& limits = l.chain.limits;
+  const bool is_prismatic = l.chain.joints[drive.joint].type == JointType::kPrismatic;
+  const std::string key = path + (is_prismatic ? ".counts_per_m" : ".counts_per_rad");
+  const double farthest = std::max(std::abs(limits.lower[drive.joint] - drive.offset),
+                                   std::abs(limits.upper[drive.joint] - drive.offset)) +
+                          drive.max_following_error;
+  if (!std::isfinite(farthest)) {
+    l.fail(path + ".joint", "the joint turns without limits, and its counts would overflow",
+           "a joint with limits in the URDF");
+  }
+  const double largest = std::max(farthest, limits.max_velocity[drive.joint]);
+  if (drive.counts_per_unit * largest > kMaxCount) {
+    l.fail(key,
+           fmt::format("{:.4g} counts at the joint's limits do not fit into 32 bits",
+                       drive.counts_per_unit * largest),
+           fmt::format("at most {:.6g}", std::floor(kMaxCount / largest)));
+  }
+}
+
+DriveConfig makeDrive(const LoadingRobot& l, std::size_t i) {
+  const DriveDraft& draft = l.draft.drives[i];
+  const std::string path = fmt::format("drives.joints[{}]", i);
+  DriveConfig drive = draft.config;
+  drive.joint = findJoint(l, draft.joint, path + ".joint");
+  drive.bus = findBus(l, draft.interface, path + ".interface");
+  if (drive.sign == 0) l.fail(path + ".sign", "'0' is no sign", "1 or -1");
+  const DriveUnits units = chooseUnits(l, draft, drive.joint, path);
+  drive.counts_per_unit = units.counts_per_unit;
+  drive.offset = units.offset;
+  drive.max_following_error = units.max_following_error;
+  drive.max_velocity = l.chain.limits.max_velocity[drive.joint];
+  checkCounts(l, drive, path);
+  return drive;
+}
+
+/// From the entries before it.
+void checkIsDistinct(const LoadingRobot& l, std::size_t i) {
+  const std::string path = fmt::format("drives.joints[{}]", i);
+  const DriveDraft& drive = l.draft.drives[i];
+  if (drive.config.node_id == l.draft.canopen.master_node_id) {
+    l.fail(path + ".node_id", fmt::format("{} is the master's", drive.config.node_id),
+           "another one than can.master_node_id");
+  }
+  for (std::size_t k = 0; k < i; ++k) {
+    const DriveDraft& other = l.draft.drives[k];
+    if (other.joint == drive.joint) {
+      l.fail(path + ".joint",
+             fmt::format("{} has a drive already, in entry {}", inQuotes(drive.joint), k),
+             "each joint once");
+    }
+    if (other.interface == drive.interface && other.config.node_id == drive.config.node_id) {
+      l.fail(path + ".node_id",
+             fmt::format("{} is that of joint {} on the same bus", drive.config.node_id,
+                         inQuotes(other.joint)),
+             "each node id once a bus");
+    }
+  }
+}
+
+}  // namespace
+
+std::string listOfBuses(const LoadingRobot& l) {
+  std::vector<std::string> names;
+  for (const BusConfig& bus : l.draft.buses) names.push_back(bus.interface);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+int findBus(const LoadingRobot& l, const std::string& interface, const std::string& path) {
+  const std::vector<BusConfig>& buses = l.draft.buses;
+  const auto bus = std::ranges::find(buses, interface, &BusConfig::interface);
+  if (bus == buses.end()) {
+    l.fail(path, inQuotes(interface) + " is none of can.buses", "one of " + listOfBuses(l));
+  }
+  return static_cast<int>(bus - buses.begin());
+}
+
+std::vector<DriveConfig> loadDrives(const LoadingRobot& l) {
+  if (!l.isGiven("drives.joints")) {
+    l.fail("drives.joints", "is missing", "a list of one drive a moving joint beside can");
+  }
+  std::vector<DriveConfig> drives;
+  for (std::size_t i = 0; i < l.draft.drives.size(); ++i) {
+    checkIsDistinct(l, i);
+    drives.push_back(makeDrive(l, i));
+  }
+  for (std::size_t j = 0; j < l.chain.joint_names.size(); ++j) {
+    if (std::ranges::count(drives, static_cast<int>(j), &DriveConfig::joint) == 1) continue;
+    l.fail("drives.joints", "no drive of joint " + inQuotes(l.chain.joint_names[j]),
+           "one a moving joint");
+  }
+  std::ranges::sort(drives, {}, &DriveConfig::joint);
+  return drives;
+}
+
+}  // namespace tactus

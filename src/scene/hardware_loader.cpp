@@ -1,0 +1,206 @@
+#include "tactus/scene/hardware_loader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "tactus/canopen/canopen.h"
+#include "tactus/scene/drive_loader.h"
+
+namespace tactus {
+namespace {
+
+/// A name that the kernel gives a device: no slash, no white space.
+bool isDeviceName(std::string_view name, std::size_t max_size) {
+  const auto is_allowed = [](char c) { return c > ' ' && c < 0x7F && c != '/' && c != ':'; };
+  return name.size() <= max_size && std::ranges::all_of(name, is_allowed) && name != "." &&
+         name != "..";
+}
+
+void refuseKeysWithoutCan(const LoadingRobot& l) {
+  for (const char* key : {"drives.joints", "drives.start_tolerance", "tactile_module.interface",
+                          "gpio", "real_time"}) {
+    if (l.isGiven(key)) l.fail(key, "the robot has no can section", "one, or not this key");
+  }
+}
+
+void refuseKeysOfModuleOnNoBus(const LoadingRobot& l) {
+  if (l.isGiven("tactile_module.interface")) return;
+  for (const char* key : {"first_id", "filter_in_daemon", "tare"}) {
+    const std::string path = std::string("tactile_module.") + key;
+    if (l.isGiven(path)) {
+      l.fail(path, "the module is on no bus", "tactile_module.interface, or not this key");
+    }
+  }
+}
+
+void checkBuses(const LoadingRobot& l) {
+  constexpr std::size_t kMaxInterfaceName = 15;  // IFNAMSIZ with its end
+  const std::vector<BusConfig>& buses = l.draft.buses;
+  for (std::size_t i = 0; i < buses.size(); ++i) {
+    const std::string& name = buses[i].interface;
+    const std::string path = fmt::format("can.buses[{}].interface", i);
+    if (!isDeviceName(name, kMaxInterfaceName)) {
+      l.fail(path, inQuotes(name) + " is no name of a network interface",
+             fmt::format("1 to {} letters and digits, as can0", kMaxInterfaceName));
+    }
+    if (std::ranges::find(buses, name, &BusConfig::interface) != buses.begin() + i) {
+      l.fail(path, inQuotes(name) + " is given twice", "each bus once");
+    }
+  }
+}
+
+void checkHeartbeat(const LoadingRobot& l) {
+  const CanopenConfig& canopen = l.draft.canopen;
+  constexpr double kTolerance = 1e-6;
+  const auto checkMilliseconds = [&](const char* key, double seconds) {
+    if (std::abs(seconds * 1e3 - std::round(seconds * 1e3)) <= kTolerance) return;
+    l.fail(key, fmt::format("{} s is no whole number of milliseconds", seconds),
+           "what CANopen can say");
+  };
+  checkMilliseconds("can.heartbeat_period_s", canopen.heartbeat_period_s);
+  checkMilliseconds("can.heartbeat_timeout_s", canopen.heartbeat_timeout_s);
+  if (canopen.heartbeat_timeout_s <= canopen.heartbeat_period_s) {
+    l.fail("can.heartbeat_timeout_s",
+           fmt::format("{} s is not above the period", canopen.heartbeat_timeout_s),
+           fmt::format("more than heartbeat_period_s = {}", canopen.heartbeat_period_s));
+  }
+}
+
+/// An id of CiA 301 that is in use on a bus.
+struct UsedId {
+  std::uint32_t id;
+  std::string name;
+};
+
+std::vector<UsedId> usedIds(const HardwareConfig& hardware, int bus) {
+  std::vector<UsedId> ids;
+  for (const DriveConfig& drive : hardware.drives) {
+    if (drive.bus != bus) continue;
+    const auto add = [&](std::uint32_t base, const char* name) {
+      ids.push_back({base + drive.node_id, fmt::format("{} of node {}", name, drive.node_id)});
+    };
+    add(cob_id::kEmergency, "EMCY");
+    add(cob_id::kTpdo1, "TPDO1");
+    add(cob_id::kRpdo1, "RPDO1");
+    add(cob_id::kSdoAnswer, "SDO answer");
+    add(cob_id::kSdoRequest, "SDO request");
+    add(cob_id::kHeartbeat, "heartbeat");
+  }
+  if (ids.empty()) return ids;
+  ids.push_back({cob_id::kSync, "SYNC"});
+  ids.push_back({cob_id::kHeartbeat + hardware.canopen.master_node_id, "heartbeat of the master"});
+  return ids;
+}
+
+void checkModuleIds(const LoadingRobot& l, const HardwareConfig& hardware) {
+  const CanTactileConfig& module = *hardware.tactile;
+  for (const UsedId& used : usedIds(hardware, module.bus)) {
+    if (used.id < module.first_id || used.id > module.first_id + 3) continue;
+    l.fail("tactile_module.first_id",
+           fmt::format("frame {:#05x} is the {} on the same bus", used.id, used.name),
+           "four ids of its own");
+  }
+}
+
+CanTactileConfig makeModule(const LoadingRobot& l) {
+  const SimulatedModuleConfig& module = l.draft.plant.module;
+  const std::string path = "tactile_module.interface";
+  if (!l.isGiven(path)) l.fail(path, "is missing", "one of " + listOfBuses(l));
+  CanTactileConfig config = l.draft.can_tactile;
+  config.bus = findBus(l, l.draft.module_interface, path);
+  config.first_id = static_cast<std::uint32_t>(l.draft.module_first_id);
+  config.calibration = module.calibration;
+  config.counts_per_N = module.counts_per_N;
+  config.sample_period_s = module.sample_period_s;
+  if (!l.draft.filter_in_daemon) return config;
+  config.filter_cutoff_hz = module.filter_cutoff_hz;
+  if (module.filter_cutoff_hz * module.sample_period_s >= 0.5) {
+    l.fail("tactile_module.filter_cutoff_hz",
+           fmt::format("{} Hz is too high for a filter in the daemon", module.filter_cutoff_hz),
+           fmt::format("less than half the samples' rate of {} Hz", 1.0 / module.sample_period_s));
+  }
+  return config;
+}
+
+void checkLines(const LoadingRobot& l, const GpioConfig& gpio) {
+  constexpr std::size_t kMaxChipName = 31;
+  if (!isDeviceName(gpio.chip, kMaxChipName)) {
+    l.fail("gpio.chip", inQuotes(gpio.chip) + " is no name of a GPIO chip", "one as gpiochip0");
+  }
+  std::vector<std::pair<int, const char*>> lines;
+  const auto check = [&](const std::optional<GpioLineConfig>& line, const char* key) {
+    if (!line) return;
+    for (const auto& [number, owner] : lines) {
+      if (number != line->line) continue;
+      l.fail(fmt::format("gpio.{}.line", key), fmt::format("line {} is {}'s", number, owner),
+             "a line of its own");
+    }
+    lines.emplace_back(line->line, key);
+  };
+  check(gpio.e_stop, "e_stop");
+  check(gpio.enable, "enable");
+  check(gpio.brake, "brake");
+  check(gpio.heartbeat, "heartbeat");
+  if (lines.empty()) {
+    l.fail("gpio", "no line", "one of e_stop, enable, brake, heartbeat, or no section");
+  }
+}
+
+bool isUsed(const HardwareConfig& hardware, int bus) {
+  return std::ranges::count(hardware.drives, bus, &DriveConfig::bus) > 0 ||
+         (hardware.tactile && hardware.tactile->bus == bus);
+}
+
+}  // namespace
+
+std::optional<HardwareConfig> loadHardware(const YamlNode& root, const ConfigDraft& draft,
+                                           const UrdfChain& chain) {
+  const LoadingRobot l{root, draft, chain};
+  if (!l.isGiven("can")) {
+    refuseKeysWithoutCan(l);
+    refuseKeysOfModuleOnNoBus(l);
+    return std::nullopt;
+  }
+  checkBuses(l);
+  checkHeartbeat(l);
+  HardwareConfig hardware{.buses = draft.buses,
+                          .drives = loadDrives(l),
+                          .canopen = draft.canopen,
+                          .tactile = std::nullopt,
+                          .gpio = draft.gpio,
+                          .real_time = draft.real_time,
+                          .start_tolerance = draft.start_tolerance};
+  if (l.isGiven("tactile_module")) {
+    hardware.tactile = makeModule(l);
+    checkModuleIds(l, hardware);
+  }
+  for (std::size_t i = 0; i < draft.buses.size(); ++i) {
+    if (isUsed(hardware, static_cast<int>(i))) continue;
+    l.fail(fmt::format("can.buses[{}]", i), "nothing is on " + inQuotes(draft.buses[i].interface),
+           "a drive or the tactile module, or no such bus");
+  }
+  if (hardware.gpio) checkLines(l, *hardware.gpio);
+  return hardware;
+}
+
+HardwareConfig withoutTactileModule(const HardwareConfig& hardware) {
+  HardwareConfig result = hardware;
+  result.tactile.reset();
+  result.buses.clear();
+  for (std::size_t i = 0; i < hardware.buses.size(); ++i) {
+    const int old_bus = static_cast<int>(i);
+    if (std::ranges::count(hardware.drives, old_bus, &DriveConfig::bus) == 0) continue;
+    for (std::size_t k = 0; k < hardware.drives.size(); ++k) {
+      if (hardware.drives[k].bus == old_bus) {
+        result.drives[k].bus = static_cast<int>(result.buses.size());
+      }
+    }
+    result.buses.push_back(hardware.buses[i]);
+  }
+  return result;
+}
+
+}  // namespace tactus

@@ -1,0 +1,57 @@
+#include "tactus/scene/key_docs.h"
+
+namespace tactus {
+namespace {
+
+void addRows(const std::vector<KeySpec>& keys, const std::string& prefix,
+             std::vector<KeyRow>& rows) {
+  for (const KeySpec& spec : keys) {
+    rows.push_back({prefix + spec.key, &spec});
+    const bool is_list = spec.type == ValueType::kSectionList;
+    addRows(spec.keys, prefix + spec.key + (is_list ? "[]." : "."), rows);
+  }
+}
+
+/// `list[0].key` as `list.key`.
+std::string withoutIndices(std::string_view path) {
+  std::string result;
+  bool is_index = false;
+  for (const char c : path) {
+    is_index = is_index || c == '[';
+    if (!is_index) result += c;
+    if (c == ']') is_index = false;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::array<FileFormat, 2> fileFormats() {
+  return {FileFormat{"scene", sceneKeys()}, FileFormat{"robot", robotKeys()}};
+}
+
+std::vector<KeyRow> keyRows(const std::vector<KeySpec>& keys) {
+  std::vector<KeyRow> rows;
+  addRows(keys, "", rows);
+  return rows;
+}
+
+std::string keyFacts(const KeySpec& spec) {
+  std::string text = describeExpectation(spec);
+  if (spec.presence == Presence::kRequired) return text + "; required";
+  const bool has_default = spec.presence == Presence::kDefaulted && !spec.default_value.empty();
+  return text + (has_default ? "; default " + spec.default_value : "; optional");
+}
+
+std::vector<KeyRow> findKeyRows(const std::vector<KeySpec>& keys, std::string_view path) {
+  const std::string wanted = "." + withoutIndices(path);
+  std::vector<KeyRow> found;
+  for (KeyRow& row : keyRows(keys)) {
+    const std::string words = "." + withoutIndices(row.path);
+    if (words.ends_with(wanted) || words.find(wanted + ".") != std::string::npos)
+      found.push_back(std::move(row));
+  }
+  return found;
+}
+
+}  // namespace tactus

@@ -1,0 +1,96 @@
+#include "tactus/scene/path_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/control/controller.h"
+#include "tactus/math/weighted_pseudoinverse.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kMaxLag = 1e-3;  ///< m or rad; discretisation alone stays far below
+/// So that check stays quick: the first minutes of a path.
+constexpr double kMaxCheckedCycles = 3e5;
+
+/// The motion without a contact, along a path that does not wait.
+ControllerConfig undisturbed(ControllerConfig config) {
+  config.task.wait_beyond_m.reset();
+  config.tactile_module.reset();
+  config.force_control.reset();
+  return config;
+}
+
+std::string singularStart(const ControllerConfig& config) {
+  const double smallest = smallestSingularValueAtStart(config, config.weights);
+  if (smallest >= WeightedPseudoinverse::kDampingThreshold) return "";
+  return fmt::format(
+      "singular start: smallest singular value {:.3g}, damped below {:g}, so that the tool lags "
+      "behind; better another start, or fewer task.components",
+      smallest, WeightedPseudoinverse::kDampingThreshold);
+}
+
+/// Why the tool lags: the joint that is nearest to its largest speed, if it is there.
+std::string slowestJoint(const Scene& scene, const JointVector& velocity) {
+  Eigen::Index joint = 0;
+  const double share =
+      (velocity.cwiseAbs().array() / scene.controller.limits.max_velocity.array()).maxCoeff(&joint);
+  constexpr double kFull = 0.999;
+  if (share < kFull) return "limits of position or acceleration, or a singular pose, hold it back";
+  return fmt::format("joint {} is at its largest speed of {:g}", scene.joint_names[joint],
+                     scene.controller.limits.max_velocity[joint]);
+}
+
+/// Where the tool first lags behind its path.
+std::string laggingPath(const Scene& scene) {
+  const ControllerConfig config = undisturbed(scene.controller);
+  const double end_s = Trajectory(config.task.trajectory, Pose{}).end_s();
+  const auto cycles = std::llround(std::min(end_s / scene.period_s, kMaxCheckedCycles));
+  const Controller controller(config);
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  for (long long cycle = 0; cycle < cycles; ++cycle) {
+    const double t_s = static_cast<double>(cycle) * scene.period_s;
+    controller.update(RobotInput{}, t_s, scene.period_s, state, output);
+    const double lag = output.error.norm();
+    if (lag > kMaxLag)
+      return fmt::format("path not followed: at {:.3f} s the tool lags by {:g} mm or mrad; {}", t_s,
+                         1e3 * kMaxLag, slowestJoint(scene, output.velocity));
+  }
+  return "";
+}
+
+std::string shortRun(const Scene& scene) {
+  const double end_s = Trajectory(scene.controller.task.trajectory, Pose{}).end_s();
+  if (!(scene.duration_s < end_s)) return "";
+  return fmt::format("the simulation ends at {:g} s, its path at {:g} s", scene.duration_s, end_s);
+}
+
+std::string unfeltObstacles(const Scene& scene) {
+  if (scene.controller.tactile_module || scene.plant.obstacles.empty()) return "";
+  return "nothing feels the obstacles: there is no controller";
+}
+
+}  // namespace
+
+std::vector<std::string> checkPath(const Scene& scene) {
+  std::vector<std::string> warnings;
+  for (const std::string& warning : {singularStart(scene.controller), laggingPath(scene),
+                                     shortRun(scene), unfeltObstacles(scene)}) {
+    if (!warning.empty()) warnings.push_back(warning);
+  }
+  return warnings;
+}
+
+double smallestSingularValueAtStart(const ControllerConfig& config, const JointVector& weights) {
+  ChainPose pose;
+  config.chain.computePose(config.q_start, pose);
+  TaskJacobian J;
+  computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()),
+                     config.task.components.data(), config.task.size, J);
+  return smallestSingularValue(J, weights);
+}
+
+}  // namespace tactus

@@ -1,0 +1,90 @@
+#include "tactus/scene/source_reader.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tactus/scene/located_error.h"
+
+namespace tactus {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSizeProblem = "is larger than 1 MiB";
+
+void checkIsText(const SourceFile& file, std::string_view key) {
+  const std::string_view text = file.text;
+  std::size_t offset = 0;
+  while (offset < text.size()) {
+    const std::size_t length = utf8CharacterLength(text.substr(offset));
+    if (length == 0 || text[offset] == '\0') {
+      failAt(positionAt(std::make_shared<std::string>(file.path), text, offset), key,
+             fmt::format("byte 0x{:02x} is no text", static_cast<unsigned char>(text[offset])),
+             "expected a text file in UTF-8");
+    }
+    offset += length;
+  }
+}
+
+}  // namespace
+
+void requireRegularFile(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) {
+    throw FileProblem(error ? error.message() : std::string("no such file"));
+  }
+  if (fs::is_directory(status)) throw FileProblem("is a folder");
+  // Opening a fifo would wait for its writer.
+  if (!fs::is_regular_file(status)) throw FileProblem("is no regular file");
+}
+
+std::string readFromDisk(const std::string& path) {
+  requireRegularFile(path);
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw FileProblem("cannot be opened");
+  std::string text(kMaxFileBytes + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) throw FileProblem("cannot be read");
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > kMaxFileBytes) throw FileProblem(kSizeProblem);
+  return text;
+}
+
+FileProvider provideFrom(const std::vector<SourceFile>& files) {
+  return [files](const std::string& path) {
+    for (const SourceFile& file : files) {
+      if (file.path != path) continue;
+      if (file.text.size() > kMaxFileBytes) throw FileProblem(kSizeProblem);
+      return file.text;
+    }
+    throw FileProblem("is not among the recorded files");
+  };
+}
+
+SourceFile SourceReader::readFirst(const std::string& path) {
+  return read(path, "-", {std::make_shared<std::string>(path), 1, 1});
+}
+
+SourceFile SourceReader::read(const std::string& path, std::string_view key,
+                              const SourcePosition& named_at) {
+  try {
+    SourceFile file{path, provider_(path)};
+    checkIsText(file, key);
+    files_.push_back(file);
+    return file;
+  } catch (const FileProblem& problem) {
+    const bool is_named = *named_at.file != path;
+    failAt(named_at, key, (is_named ? escaped(path) + ": " : "") + problem.what(),
+           key == "robot" ? "expected the path of a robot.yaml, readable, at most 1 MiB"
+                          : "expected a readable file of at most 1 MiB");
+  }
+}
+
+std::string resolvePath(const std::string& from, const std::string& reference) {
+  return (fs::path(from).parent_path() / reference).lexically_normal().string();
+}
+
+}  // namespace tactus

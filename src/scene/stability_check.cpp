@@ -1,0 +1,163 @@
+#include "tactus/scene/stability_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tactus/analysis/variant_loops.h"
+#include "tactus/scene/yaml_tree.h"
+#include "tactus/sim/obstacle.h"
+
+namespace tactus {
+namespace {
+
+/// A contact and the key that says how stiff it is; no key where the assumed stiffness stands for
+/// it.
+struct StiffestContact {
+  double stiffness_N_per_m;
+  std::string key;
+};
+
+StiffestContact stiffestContact(const Scene& scene) {
+  StiffestContact stiffest{scene.controller.force_control->assumed_stiffness_N_per_m, ""};
+  if (scene.stiffest_N_per_m > 0.0)
+    stiffest = {scene.stiffest_N_per_m, "stiffness.stiffest_N_per_m"};
+  for (std::size_t i = 0; i < scene.plant.obstacles.size(); ++i) {
+    const double stiffness_N_per_m =
+        inSeries(scene.plant.obstacles[i].stiffness_N_per_m, scene.plant.robot_stiffness_N_per_m);
+    if (stiffness_N_per_m <= stiffest.stiffness_N_per_m) continue;
+    stiffest = {stiffness_N_per_m, fmt::format("simulation.obstacles[{}].stiffness_N_per_m", i)};
+  }
+  return stiffest;
+}
+
+/// A good estimate is the stiffness itself, within the estimator's range.
+double stiffnessOfLaw(const ForceControlConfig& force, double stiffest_N_per_m) {
+  if (!force.estimator) return force.assumed_stiffness_N_per_m;
+  return std::clamp(stiffest_N_per_m, force.estimator->min_N_per_m, force.estimator->max_N_per_m);
+}
+
+[[noreturn]] void fail(const Scene& scene, const std::string& key, const std::string& problem,
+                       const std::string& expectation) {
+  failAt(scene.tree ? locate(*scene.tree, key) : SourcePosition{}, key, problem,
+         "expected " + expectation);
+}
+
+constexpr double kInside = 0.999;  ///< of a limit: what is printed shall be accepted
+constexpr double kMinPhaseMargin_rad = kMinPhaseMargin_deg * std::numbers::pi / 180.0;
+
+/// The c_e/c up to which all loops have this phase margin; 0: with none.
+double largestRatio(const std::vector<VariantLoop>& loops, double phase_margin_rad) {
+  double ratio = std::numeric_limits<double>::infinity();
+  for (const VariantLoop& loop : loops)
+    ratio = std::min(ratio, largestStiffnessRatio(loop.loop, phase_margin_rad));
+  return ratio;
+}
+
+/// The T from which on they have it, s; infinite: from none.
+double smallestT_s(const std::vector<VariantLoop>& loops, double ratio, double phase_margin_rad) {
+  double T_s = 0.0;
+  for (const VariantLoop& loop : loops)
+    T_s = std::max(T_s, smallestTimeConstant(loop.loop, ratio, phase_margin_rad));
+  return T_s;
+}
+
+std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, double ratio) {
+  const auto rounded = [](double T_s) { return std::ceil(1e4 * T_s) / 1e4; };
+  const std::string margin = fmt::format("a phase margin of {:g} degrees", kMinPhaseMargin_deg);
+  const double good_s = smallestT_s(loops, ratio, kMinPhaseMargin_rad);
+  if (std::isfinite(good_s))
+    return fmt::format("at least {:g} s for {} with this damping and these delays", rounded(good_s),
+                       margin);
+  const double stable_s = smallestT_s(loops, ratio, 0.0);
+  if (std::isfinite(stable_s))
+    return fmt::format("at least {:g} s, and more damping for {}", rounded(stable_s), margin);
+  return "more damping, or less delay in filter and drives";
+}
+
+/// Where not even a contact as stiff as the law takes it would be stable, or none has the phase
+/// margin, the gains are wrong, else the stiffness is.
+[[noreturn]] void failUnstable(const Scene& scene, const StabilityReport& report,
+                               const std::string& stiffest_key,
+                               const std::vector<VariantLoop>& loops, const LoopReport& unstable) {
+  const std::string contact =
+      fmt::format("unstable ({}) in a contact of {:g} N/m", unstable.name, report.stiffest_N_per_m);
+  const double ratio = largestRatio(loops, kMinPhaseMargin_rad);
+  if (unstable.margins.largest_stiffness_ratio < 1.0 || ratio == 0.0) {
+    fail(scene, "controller.time_constant_s",
+         fmt::format("{} s is {}", scene.controller.force_control->time_constant_s, contact),
+         timeConstantExpectation(loops, report.ratio()));
+  }
+  const std::string rule = fmt::format("c_e/c at most {:.3f} for a phase margin of {:g} degrees",
+                                       ratio, kMinPhaseMargin_deg);
+  const double least_N_per_m = report.stiffest_N_per_m / (kInside * ratio);
+  if (scene.controller.force_control->estimator) {
+    fail(scene, "stiffness.estimate.max_N_per_m",
+         fmt::format("{:g} N/m is {}", report.stiffness_N_per_m, contact),
+         fmt::format("at least {:g} N/m ({})", least_N_per_m, rule));
+  }
+  fail(scene, stiffest_key, contact + ", obstacle and arm in series",
+       fmt::format("at most {:g} N/m, or stiffness.assumed_N_per_m of at least {:g} N/m ({})",
+                   kInside * ratio * report.stiffness_N_per_m, least_N_per_m, rule));
+}
+
+/// The module's electronics, but the daemon's filter where the daemon filters.
+PlantConfig plantOf(const Scene& scene) {
+  PlantConfig plant = scene.plant;
+  const bool is_on_bus = scene.hardware && scene.hardware->tactile;
+  plant.module.filtered = !(is_on_bus && scene.hardware->tactile->filter_cutoff_hz);
+  return plant;
+}
+
+std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& report,
+                                    double largest_ratio) {
+  std::vector<std::string> warnings;
+  const LoopReport& nearest = *std::ranges::min_element(
+      report.loops, {}, [](const LoopReport& loop) { return loop.phaseMargin_deg(); });
+  if (nearest.phaseMargin_deg() < kMinPhaseMargin_deg) {
+    warnings.push_back(fmt::format(
+        "phase margin of {:.1f} degrees ({}): overshoots and rings, better {:g} or more",
+        nearest.phaseMargin_deg(), nearest.name, kMinPhaseMargin_deg));
+  }
+  const double assumed_N_per_m = scene.controller.force_control->assumed_stiffness_N_per_m;
+  const double needed_N_per_m = report.stiffest_N_per_m / largest_ratio;
+  if (assumed_N_per_m < needed_N_per_m) {
+    warnings.push_back(
+        fmt::format("unstable in the stiffest contact until the estimate has risen from {:g} to "
+                    "{:g} N/m",
+                    assumed_N_per_m, needed_N_per_m));
+  }
+  return warnings;
+}
+
+}  // namespace
+
+std::optional<StabilityReport> checkStability(const Scene& scene) {
+  const std::vector<VariantLoop> loops =
+      variantLoops(scene.controller, plantOf(scene), scene.period_s);
+  if (loops.empty()) return std::nullopt;
+  const StiffestContact stiffest = stiffestContact(scene);
+  StabilityReport report;
+  report.stiffest_N_per_m = stiffest.stiffness_N_per_m;
+  report.stiffness_N_per_m =
+      stiffnessOfLaw(*scene.controller.force_control, stiffest.stiffness_N_per_m);
+  if (stepsOfCommonPeriod(loops.front().loop) == 0) {
+    report.warnings = {"margins not computed: cycle and samples hardly ever coincide"};
+    return report;
+  }
+  for (const VariantLoop& loop : loops)
+    report.loops.push_back({loop.name, computeMargins(loop.loop, report.ratio())});
+  const auto worst = std::ranges::min_element(report.loops, {}, [](const LoopReport& loop) {
+    return loop.margins.largest_stiffness_ratio;
+  });
+  const double largest_ratio = worst->margins.largest_stiffness_ratio;
+  if (worst->margins.phase_margin_rad == 0.0) {
+    failUnstable(scene, report, stiffest.key, loops, *worst);
+  }
+  report.warnings = warningsOf(scene, report, largest_ratio);
+  return report;
+}
+
+}  // namespace tactus

@@ -1,0 +1,272 @@
+#include "tactus/scene/urdf_loader.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "tactus/scene/number_text.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kMaxLength_m = 1e3;  // keeps products of transforms finite and meaningful
+constexpr double kMaxAngle_rad = 1e3;
+constexpr double kMaxLimit = 1e6;
+constexpr const char* kWhitespace = " \t\r\n";
+
+/// One joint of the chain while it is read.
+struct JointReader {
+  const UrdfTree& tree;
+  const UrdfJoint& joint;
+
+  std::string key(const std::string& part) const { return "joint." + joint.name + "." + part; }
+
+  [[noreturn]] void fail(const pugi::xml_node& at, const std::string& part,
+                         const std::string& problem, const std::string& expectation) const {
+    failAt(tree.position(at), key(part), problem, "expected " + expectation);
+  }
+
+  pugi::xml_node child(const char* name) const {
+    return onlyChild(tree, joint.node, name, "joint." + joint.name);
+  }
+};
+
+/// Numbers between white space; false if there is anything else.
+bool parseNumbers(std::string_view text, std::vector<double>& numbers) {
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(kWhitespace), text.size()));
+    if (text.empty()) return true;
+    const std::string_view word = text.substr(0, text.find_first_of(kWhitespace));
+    const std::string_view number = withoutPlus(word);
+    const char* const end = number.data() + number.size();
+    double value = 0.0;
+    const auto [stop, error] = std::from_chars(number.data(), end, value);
+    if (error != std::errc() || stop != end || !std::isfinite(value)) {
+      return false;
+    }
+    numbers.push_back(value);
+    text.remove_prefix(word.size());
+  }
+}
+
+Vector3 readVector(const JointReader& reader, const char* element, const char* attribute,
+                   double bound, const Vector3& absent) {
+  const std::string part = std::string(element) + "." + attribute;
+  const pugi::xml_node node = reader.child(element);
+  const pugi::xml_attribute given =
+      onlyAttribute(reader.tree, node, attribute, reader.key(element));
+  if (!given) return absent;
+  std::vector<double> numbers;
+  const bool is_valid =
+      parseNumbers(given.value(), numbers) && numbers.size() == 3 &&
+      std::ranges::all_of(numbers, [&](double x) { return std::abs(x) <= bound; });
+  if (!is_valid) {
+    reader.fail(node, part, inQuotes(given.value()) + " is no vector",
+                fmt::format("three numbers from {} to {}", -bound, bound));
+  }
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+/// Rotations about the fixed axes x, y, z in this order, as the URDF defines rpy.
+Matrix3 rotationOf(const Vector3& rpy) {
+  return (Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) *
+          Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
+          Eigen::AngleAxisd(rpy.x(), Vector3::UnitX()))
+      .toRotationMatrix();
+}
+
+Pose readOrigin(const JointReader& reader) {
+  return {rotationOf(readVector(reader, "origin", "rpy", kMaxAngle_rad, Vector3::Zero())),
+          readVector(reader, "origin", "xyz", kMaxLength_m, Vector3::Zero())};
+}
+
+Vector3 readAxis(const JointReader& reader) {
+  const Vector3 axis = readVector(reader, "axis", "xyz", kMaxLength_m, Vector3::UnitX());
+  constexpr double kMinLength = 1e-6;
+  if (axis.norm() < kMinLength) {
+    reader.fail(reader.child("axis"), "axis.xyz", "the axis has no length",
+                "a vector other than zero");
+  }
+  return axis.normalized();
+}
+
+/// kNoLimit if the attribute is absent and need not be there.
+double readLimit(const JointReader& reader, const char* attribute, bool is_required) {
+  const pugi::xml_node node = reader.child("limit");
+  const std::string part = std::string("limit.") + attribute;
+  const pugi::xml_attribute given =
+      onlyAttribute(reader.tree, node, attribute, reader.key("limit"));
+  if (!given) {
+    if (!is_required) return kNoLimit;
+    reader.fail(node ? node : reader.joint.node, part, "is missing", "a number");
+  }
+  std::vector<double> numbers;
+  if (!parseNumbers(given.value(), numbers) || numbers.size() != 1 ||
+      std::abs(numbers[0]) > kMaxLimit) {
+    reader.fail(node, part, inQuotes(given.value()) + " is no limit",
+                fmt::format("a number from {} to {}", -kMaxLimit, kMaxLimit));
+  }
+  return numbers[0];
+}
+
+struct MovingJoint {
+  Joint joint;
+  double lower = -kNoLimit, upper = kNoLimit, max_velocity = kNoLimit;
+};
+
+MovingJoint readMovingJoint(const JointReader& reader) {
+  const std::string& type = reader.joint.type;
+  MovingJoint result;
+  result.joint.type = type == "prismatic" ? JointType::kPrismatic : JointType::kRevolute;
+  result.joint.axis = readAxis(reader);
+  if (type != "continuous") {
+    result.lower = readLimit(reader, "lower", true);
+    result.upper = readLimit(reader, "upper", true);
+    if (result.lower >= result.upper) {
+      reader.fail(reader.child("limit"), "limit",
+                  fmt::format("lower {} is not below upper {}", result.lower, result.upper),
+                  "lower < upper");
+    }
+  }
+  result.max_velocity = readLimit(reader, "velocity", true);
+  if (result.max_velocity <= 0.0) {
+    reader.fail(reader.child("limit"), "limit.velocity", "is not positive",
+                "a number > 0 in m/s or rad/s");
+  }
+  return result;
+}
+
+void checkType(const JointReader& reader) {
+  const std::string& type = reader.joint.type;
+  if (type != "fixed" && type != "prismatic" && type != "revolute" && type != "continuous") {
+    reader.fail(reader.joint.node, "type", inQuotes(type) + " on the way to the tip",
+                "prismatic, revolute, continuous or fixed");
+  }
+  if (const pugi::xml_node mimic = reader.child("mimic")) {
+    reader.fail(mimic, "mimic", "the joint follows another one", "joints that move on their own");
+  }
+}
+
+int requireLink(const UrdfTree& tree, const NamedFrame& frame) {
+  const int link = tree.findLink(frame.link);
+  if (link < 0) {
+    const std::string nearest = nearestWord(frame.link, tree.links);
+    failAt(frame.at, frame.key, inQuotes(frame.link) + " is no link of " + tree.file.path,
+           nearest.empty() ? "expected the name of a link"
+                           : fmt::format("expected perhaps {}", inQuotes(nearest)));
+  }
+  return link;
+}
+
+/// Where each link of the chain is, by its last moving joint.
+struct PlacedLink {
+  int link;
+  AttachedFrame frame;
+};
+
+/// The frame of a link that hangs on the chain by fixed joints only.
+AttachedFrame frameBesideChain(const UrdfTree& tree, const std::vector<PlacedLink>& placed,
+                               const NamedFrame& named) {
+  int link = requireLink(tree, named);
+  Pose X_LinkFrame;
+  while (true) {
+    const auto on_chain = std::ranges::find(placed, link, &PlacedLink::link);
+    if (on_chain != placed.end()) {
+      const AttachedFrame& frame = on_chain->frame;
+      return {frame.joint, frame.X_JointFrame * X_LinkFrame};
+    }
+    // The root is on the chain, so every other link has a joint above.
+    const JointReader reader{tree, tree.joints[tree.joint_above[link]]};
+    if (reader.joint.type != "fixed") {
+      failAt(named.at, named.key,
+             fmt::format("{} moves with joint {}, which is not on the way to the tip",
+                         inQuotes(named.link), inQuotes(reader.joint.name)),
+             "expected a link on the way to the tip or fixed to one");
+    }
+    X_LinkFrame = readOrigin(reader) * X_LinkFrame;
+    link = reader.joint.parent;
+  }
+}
+
+void setLimits(const std::vector<MovingJoint>& moving, JointLimits& limits) {
+  const auto n = static_cast<Eigen::Index>(moving.size());
+  limits.lower.resize(n);
+  limits.upper.resize(n);
+  limits.max_velocity.resize(n);
+  limits.max_acceleration.setConstant(n, kNoLimit);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    limits.lower[i] = moving[i].lower;
+    limits.upper[i] = moving[i].upper;
+    limits.max_velocity[i] = moving[i].max_velocity;
+  }
+}
+
+/// The way from the root to the tip, as far as it has been gone.
+struct Walk {
+  std::vector<MovingJoint> moving;
+  std::vector<std::string> names;  ///< of the moving joints
+  std::vector<PlacedLink> placed;
+  AttachedFrame frame;  ///< of the link reached last
+};
+
+Walk walkFrom(int root, const UrdfTree& tree, const std::vector<int>& path) {
+  Walk walk;
+  walk.placed.push_back({root, walk.frame});
+  for (const int j : path) {
+    const JointReader reader{tree, tree.joints[j]};
+    checkType(reader);
+    walk.frame.X_JointFrame = walk.frame.X_JointFrame * readOrigin(reader);
+    if (reader.joint.type != "fixed") {
+      walk.moving.push_back(readMovingJoint(reader));
+      walk.moving.back().joint.X_ParentJoint = walk.frame.X_JointFrame;
+      walk.names.push_back(reader.joint.name);
+      walk.frame = {static_cast<int>(walk.moving.size()) - 1, Pose{}};
+    }
+    walk.placed.push_back({reader.joint.child, walk.frame});
+  }
+  return walk;
+}
+
+void checkJointCount(const Walk& walk, const std::string& root, const NamedFrame& tip) {
+  if (walk.moving.size() >= 2 && walk.moving.size() <= kMaxJoints) return;
+  failAt(tip.at, tip.key,
+         fmt::format("{} moving joints from {} to {}", walk.moving.size(), inQuotes(root),
+                     inQuotes(tip.link)),
+         fmt::format("expected 2 to {}", kMaxJoints));
+}
+
+AttachedFrame moduleFrame(const UrdfTree& tree, const Walk& walk, const NamedFrame& link) {
+  const AttachedFrame frame = frameBesideChain(tree, walk.placed, link);
+  if (frame.joint < 0) {
+    failAt(link.at, link.key, inQuotes(link.link) + " never moves",
+           "expected a link that at least one joint moves");
+  }
+  return frame;
+}
+
+}  // namespace
+
+UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
+                        const std::optional<NamedFrame>& module_link) {
+  UrdfTree tree;
+  parseUrdf(file, tree);
+  const int tip_link = requireLink(tree, tip);
+  const std::vector<int> path = tree.pathTo(tip_link);
+  const int root = path.empty() ? tip_link : tree.joints[path.front()].parent;
+  const Walk walk = walkFrom(root, tree, path);
+  checkJointCount(walk, tree.links[root], tip);
+
+  UrdfChain chain;
+  chain.robot_name = tree.robot_name;
+  chain.joint_names = walk.names;
+  for (const MovingJoint& m : walk.moving) chain.joints.push_back(m.joint);
+  chain.tip = walk.frame;
+  setLimits(walk.moving, chain.limits);
+  if (module_link) chain.module_link = moduleFrame(tree, walk, *module_link);
+  return chain;
+}
+
+}  // namespace tactus

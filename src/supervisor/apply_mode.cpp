@@ -1,0 +1,19 @@
+#include "tactus/supervisor/apply_mode.h"
+
+namespace tactus {
+
+bool resetsController(Mode mode, Mode before) noexcept {
+  return !isCommanding(mode) && isCommanding(before);
+}
+
+void applyMode(const Controller& controller, Mode mode, Mode before, const RobotInput& input,
+               ControllerState& state) noexcept {
+  if (resetsController(mode, before)) controller.restart(state);
+  // Where drives stop by themselves, the arm is where they say.
+  if (!isCommanding(mode) || !isCommanding(before)) controller.place(input.q_measured, state);
+  // While holding, faults come and go: the mode remembers them.
+  if (mode == Mode::kHolding || before == Mode::kHolding) state.fault = Fault::kNone;
+  state.is_stopping = mode != Mode::kRunning;
+}
+
+}  // namespace tactus

@@ -1,0 +1,311 @@
+#include "tactus/supervisor/control_cycle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/canopen/cycle_count.h"
+#include "tactus/supervisor/apply_mode.h"
+
+namespace tactus {
+namespace {
+
+/// To switch on, and to come to rest and switch off; far more than drives need.
+constexpr double kSwitchingTime_s = 2.0;
+/// Between the last setpoint and power off, for the drives to have followed it.
+constexpr double kRestTime_s = 0.02;
+/// Beyond the drives' own limit, which names the drive: for first feedback and first samples.
+constexpr double kFirstFrames_s = 2.0;
+/// A ramp takes no longer in any robot that should be left to it.
+constexpr double kMaxRamp_s = 30.0;
+
+double brakeTime_s(const HardwareConfig& hardware) {
+  return hardware.gpio && hardware.gpio->brake ? hardware.gpio->brake_switching_s : 0.0;
+}
+
+double tareTime_s(const HardwareConfig& hardware) {
+  return hardware.tactile ? hardware.tactile->tare_samples * hardware.tactile->sample_period_s
+                          : 0.0;
+}
+
+double rampTime_s(const JointLimits& limits) {
+  return std::min(kMaxRamp_s,
+                  limits.max_velocity.cwiseQuotient(limits.max_acceleration).maxCoeff());
+}
+
+ModeConfig modeConfig(const JointLimits& limits, const HardwareConfig& hardware, double period_s) {
+  const double boot_s = hardware.canopen.boot_timeout_s + kFirstFrames_s + tareTime_s(hardware);
+  ModeConfig config;
+  config.brake_cycles = cyclesCovering(brakeTime_s(hardware), period_s);
+  config.boot_cycles = cyclesCovering(boot_s, period_s);
+  config.enabling_cycles = cyclesCovering(kSwitchingTime_s, period_s) + config.brake_cycles;
+  // Drives that do not switch off are cut off before this time is over.
+  const double stopping_s = rampTime_s(limits) + brakeDeadline_s(hardware);
+  config.stopping_cycles = config.enabling_cycles + cyclesCovering(stopping_s, period_s);
+  return config;
+}
+
+BrakeConfig brakeConfig(const HardwareConfig& hardware, double period_s) {
+  BrakeConfig config;
+  config.rest_cycles = cyclesCovering(std::max(kRestTime_s, brakeTime_s(hardware)), period_s);
+  config.deadline_cycles = cyclesLasting(brakeDeadline_s(hardware), period_s);
+  return config;
+}
+
+JointVector maxFollowingErrors(const HardwareConfig& hardware) {
+  JointVector errors(static_cast<int>(hardware.drives.size()));
+  for (int joint = 0; joint < errors.size(); ++joint)
+    errors[joint] = hardware.drives[joint].max_following_error;
+  return errors;
+}
+
+}  // namespace
+
+ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareConfig& hardware,
+                           double period_s)
+    : controller_(controller),
+      robot_(hardware, period_s),
+      q_commanded_(controller.q_start),
+      q_released_(controller.q_start),
+      max_following_error_(maxFollowingErrors(hardware)),
+      stop_way_(JointVector::Zero(q_commanded_.size())),
+      stop_deadline_s_(brakeDeadline_s(hardware)),
+      start_tolerance_(hardware.start_tolerance),
+      period_s_(period_s),
+      max_late_cycles_(hardware.real_time.max_late_cycles),
+      has_enable_line_(hardware.gpio && hardware.gpio->enable),
+      max_sample_age_s_(controller.tactile_module ? controller.tactile_module->max_sample_age_s
+                                                  : 0.0),
+      mode_config_(modeConfig(controller.limits, hardware, period_s)),
+      brake_config_(brakeConfig(hardware, period_s)),
+      state_(controller_.initialState()) {
+  output_.velocity = JointVector::Zero(q_commanded_.size());
+  output_.q_desired = q_commanded_;
+}
+
+void ControlCycle::update(const CycleInput& input) noexcept {
+  coast(input.missed_cycles);
+  robot_.expect(isCommanding(mode_.mode) ? state_.q_desired : output_.q_desired);
+  robot_.read(input_);
+  startTare();
+  const Mode before = mode_.mode;
+  const Fault fault_before = mode_.fault;
+  updateMode(mode_config_, modeInput(input, judge(input)), mode_);
+  const bool is_new_fault = mode_.fault != fault_before;
+  if (is_new_fault && mode_.fault != judged_.fault) judged_ = {};  // a time limit's
+  if (is_new_fault) noteCulprit();
+  report_.mode = mode_.mode;
+  report_.fault = mode_.fault;
+  control(input, before);
+  updateBrakes();
+  rememberPlace();
+  const bool is_boot_new = mode_.mode == Mode::kBoot && mode_.cycles_in_mode == 0;
+  if (is_boot_new) repeatRefusedTare();
+  robot_.command(driveGoal(), is_boot_new || is_first_, output_.q_desired);
+  if (mode_.mode == Mode::kOff) {
+    robot_.release();
+  } else {
+    robot_.write(output_.velocity);
+  }
+  is_first_ = false;
+  heartbeat_ = !heartbeat_;
+}
+
+void ControlCycle::prepare() noexcept {
+  if (!is_started_) return;
+  const long long next = task_cycles_ + (mode_.mode == Mode::kRunning ? 1 : 0);
+  controller_.prepare(static_cast<double>(next) * period_s_, state_, prepared_);
+}
+
+void ControlCycle::noteCulprit() noexcept {
+  report_.joint = judged_.joint;
+  report_.bus = judged_.bus;
+  if (judged_.joint < 0) return;
+  report_.drive = robot_.drive(judged_.joint);
+  report_.q_measured = input_.q_measured[judged_.joint];
+  report_.q_expected = q_commanded_[judged_.joint];
+}
+
+Fault ControlCycle::judge(const CycleInput& input) noexcept {
+  judged_ = {};
+  const auto found = [this](Fault fault) { return (judged_.fault = fault) != Fault::kNone; };
+  if (input.lines.emergency_stop && found(Fault::kEmergencyStop)) return judged_.fault;
+  if (input.are_lines_lost && found(Fault::kGpioLost)) return judged_.fault;
+  if (found(judgeBuses(input)) || found(judgeDrives())) return judged_.fault;
+  if (input.has_forbidden_call && found(Fault::kForbiddenSystemCall)) return judged_.fault;
+  const bool is_moving = mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding;
+  const bool is_late = mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_;
+  if (is_late && found(Fault::kOverrun)) return judged_.fault;
+  if (found(judgeTactile())) return judged_.fault;
+  if (is_moving) {
+    found(output_.fault);
+  } else if (mode_.mode != Mode::kBoot) {
+    found(state_.sample_fault);  // nothing starts on a reading that would stop it
+  }
+  return judged_.fault;
+}
+
+Fault ControlCycle::judgeBuses(const CycleInput& input) noexcept {
+  const auto fault = std::find_if(input.bus_faults.begin(), input.bus_faults.end(),
+                                  [](Fault candidate) { return candidate != Fault::kNone; });
+  if (fault == input.bus_faults.end()) return Fault::kNone;
+  judged_.bus = static_cast<int>(fault - input.bus_faults.begin());
+  return *fault;
+}
+
+/// A drive's fault stays until its set-up begins anew, so it says nothing about the present once
+/// it has been answered.
+Fault ControlCycle::judgeDrives() noexcept {
+  if (mode_.mode == Mode::kFault) return Fault::kNone;
+  const DrivesReport drives = robot_.drives();
+  judged_.joint = drives.joint;
+  const bool is_about_to_move = mode_.mode == Mode::kReady || mode_.mode == Mode::kEnabling ||
+                                (mode_.mode == Mode::kBoot && areConfigured());
+  if (drives.fault != Fault::kNone || !is_about_to_move) return drives.fault;
+  judged_.joint = jointOutOfPlace();
+  return judged_.joint < 0 ? Fault::kNone : Fault::kNotAtStart;
+}
+
+Fault ControlCycle::judgeTactile() noexcept {
+  TactileReceiver* const tactile = robot_.tactile();
+  if (!tactile) return Fault::kNone;
+  if (mode_.mode != Mode::kBoot) return hasFreshSample() ? tactile->fault() : Fault::kTactileStale;
+  if (tactile->tareState() == TareState::kRefused) return Fault::kTareRefused;
+  const bool is_late = mode_.cycles_in_mode >= mode_config_.boot_cycles;
+  return is_late && robot_.drives().are_configured ? Fault::kTactileStale : Fault::kNone;
+}
+
+/// The drives kept the last command, and the sensor's sample grew older.
+void ControlCycle::coast(int missed_cycles) noexcept {
+  if (missed_cycles > 0) controller_.coast(missed_cycles, period_s_, state_);
+}
+
+bool ControlCycle::hasFreshSample() const noexcept {
+  return input_.tactile.sequence > 0 &&
+         controller_.sampleAge_s(input_, period_s_, state_) <= max_sample_age_s_;
+}
+
+bool ControlCycle::areConfigured() const noexcept {
+  if (!robot_.drives().are_configured || !robot_.hasPositions()) return false;
+  const TactileReceiver* const tactile = robot_.tactile();
+  return !tactile || (tactile->tareState() == TareState::kDone && hasFreshSample());
+}
+
+/// The tare is taken once, before the arm has ever moved: afterwards it may rest in contact.
+void ControlCycle::startTare() noexcept {
+  TactileReceiver* const tactile = robot_.tactile();
+  const bool is_due = tactile && tactile->tareState() == TareState::kNone &&
+                      mode_.mode == Mode::kBoot && robot_.drives().are_configured &&
+                      robot_.hasPositions();
+  if (is_due) tactile->startTare();
+}
+
+void ControlCycle::repeatRefusedTare() noexcept {
+  TactileReceiver* const tactile = robot_.tactile();
+  if (!is_started_ && tactile && tactile->tareState() == TareState::kRefused) tactile->startTare();
+}
+
+/// At the scene's start, or later where it was commanded to be or seen to rest: the task would pull
+/// an arm that somebody has pushed away back at once, as fast as its limits allow. The joint that
+/// is farthest from there, or -1.
+int ControlCycle::jointOutOfPlace() const noexcept {
+  const JointVector from_command = (input_.q_measured - q_commanded_).cwiseAbs();
+  const JointVector from_release = (input_.q_measured - q_released_).cwiseAbs();
+  const JointVector distance = from_command.cwiseMin(from_release);
+  if ((distance.array() <= start_tolerance_).all()) return -1;  // no NaN is in place
+  Eigen::Index joint = 0;
+  distance.maxCoeff(&joint);
+  return static_cast<int>(joint);
+}
+
+/// Each joint by its own drive: one that lies says nothing of the others, a joint that was let go
+/// may have been pushed, and one that went further than any stop was not stopped.
+void ControlCycle::rememberPlace() noexcept {
+  const bool is_commanding = isCommanding(mode_.mode);
+  if (!is_started_) return;
+  if (is_commanding) {
+    q_commanded_ = output_.q_desired;
+    stop_way_ = stop_deadline_s_ * output_.velocity.cwiseAbs() + max_following_error_;
+  }
+  for (int joint = 0; joint < q_released_.size(); ++joint) {
+    const DriveReport& drive = robot_.drive(joint);
+    const bool is_let_go = drive.is_off || drive.is_cut_off || mode_.mode == Mode::kBoot;
+    is_held_[joint] = is_commanding || (is_held_[joint] && !is_let_go);
+    const double way = std::abs(input_.q_measured[joint] - q_commanded_[joint]);
+    if (is_held_[joint] && robot_.isHolding(joint) && way <= stop_way_[joint])
+      q_released_[joint] = input_.q_measured[joint];
+  }
+}
+
+ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept {
+  const DrivesReport drives = robot_.drives();
+  ModeInput mode;
+  mode.fault = fault;
+  mode.stop_requested = input.stop_requested;
+  mode.has_enable_line = has_enable_line_;
+  mode.enable = input.lines.enable && input.lines.is_valid;
+  mode.are_configured = mode_.mode == Mode::kBoot && areConfigured();
+  mode.are_enabled = drives.are_enabled;
+  mode.are_disabled = drives.are_disabled;
+  mode.is_at_rest = output_.velocity.isZero(0.0);
+  return mode;
+}
+
+void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
+  const bool is_running = mode_.mode == Mode::kRunning;
+  if (!is_started_ && !is_running) {
+    controller_.watchSensor(input_, period_s_, state_);
+    output_.q_desired = robot_.hasPositions() ? input_.q_measured : q_commanded_;
+    return;
+  }
+  if (!is_started_) state_ = controller_.initialState();  // as a replay begins
+  const int missed = is_started_ ? input.missed_cycles : 0;
+  cycles_ += is_started_ ? 1 + missed : 0;
+  task_cycles_ += is_started_ && before == Mode::kRunning ? 1 + missed : 0;
+  is_started_ = true;
+  applyMode(controller_, mode_.mode, before, input_, state_);
+  const double task_time_s = static_cast<double>(task_cycles_) * period_s_;
+  controller_.update(input_, task_time_s, period_s_, prepared_, state_, output_);
+  fillRecord(static_cast<double>(cycles_) * period_s_, input_, output_, Vector3::Zero(), record_);
+  record_.task_time_s = task_time_s;
+  record_.mode = static_cast<std::uint64_t>(mode_.mode);
+  record_.missed_cycles = static_cast<std::uint64_t>(missed);
+  if (mode_.fault != Fault::kNone) record_.fault = static_cast<std::uint64_t>(mode_.fault);
+}
+
+DriveGoal ControlCycle::driveGoal() const noexcept {
+  switch (mode_.mode) {
+    case Mode::kBoot:
+      return DriveGoal::kConfigure;
+    case Mode::kEnabling:
+    case Mode::kRunning:
+    case Mode::kHolding:
+      return DriveGoal::kEnabled;
+    case Mode::kStopping:
+      return mayLetGo(brake_config_, brake_) ? DriveGoal::kDisabled : DriveGoal::kEnabled;
+    case Mode::kFault:
+      return DriveGoal::kQuickStop;
+    case Mode::kReady:
+    case Mode::kOff:
+      break;
+  }
+  return DriveGoal::kDisabled;
+}
+
+void ControlCycle::updateBrakes() noexcept {
+  const DrivesReport drives = robot_.drives();
+  BrakeInput input;
+  input.are_enabled = drives.are_enabled;
+  input.is_any_holding = drives.is_any_holding;
+  input.is_any_moving_on = drives.is_any_moving_on;
+  input.is_at_rest = output_.velocity.isZero(0.0);
+  updateBrake(brake_config_, mode_, input, brake_);
+}
+
+GpioOutputs ControlCycle::lines() const noexcept {
+  GpioOutputs outputs;
+  outputs.release_brake = brake_.is_open;
+  outputs.heartbeat = heartbeat_;
+  return outputs;
+}
+
+}  // namespace tactus

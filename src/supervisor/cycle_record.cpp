@@ -1,0 +1,68 @@
+#include "tactus/supervisor/cycle_record.h"
+
+#include <cstring>
+
+namespace tactus {
+namespace {
+
+template <typename Vector>
+void copy(const Vector& from, double* to) noexcept {
+  std::memcpy(to, from.data(), static_cast<std::size_t>(from.size()) * sizeof(double));
+}
+
+void fillContact(const ContactReport& contact, CycleRecord& record) noexcept {
+  record.force_sensor_N = contact.force_sensor_N;
+  record.contact_position_m = contact.contact_position_m;
+  copy(contact.contact_direction, record.contact_direction);
+  record.force_contact_N = contact.force_contact_N;
+  record.stiffness_N_per_m = contact.stiffness_N_per_m;
+  record.stiffness_raw_N_per_m = contact.stiffness_raw_N_per_m;
+  record.gamma = contact.gamma;
+  record.k_n = contact.k_n;
+  record.k_j = contact.k_j;
+  record.k_t = contact.k_t;
+  record.x_dot_eff_m_per_s = contact.x_dot_eff_m_per_s;
+  record.u_n = contact.u_n;
+  record.u_j = contact.u_j;
+  record.u_t = contact.u_t;
+}
+
+void fillInput(const RobotInput& input, CycleRecord& record) noexcept {
+  copy(input.q_measured, record.q_measured);
+  record.tactile_force_y_N = input.tactile.force_y_N;
+  record.tactile_force_z_N = input.tactile.force_z_N;
+  record.tactile_moment_y_Nm = input.tactile.moment_y_Nm;
+  record.tactile_moment_z_Nm = input.tactile.moment_z_Nm;
+  record.tactile_sequence = input.tactile.sequence;
+}
+
+}  // namespace
+
+void fillRecord(double t_s, const RobotInput& input, const ControllerOutput& output,
+                const Vector3& tool_error_m, CycleRecord& record) noexcept {
+  record.t_s = t_s;
+  record.task_time_s = t_s;
+  fillInput(input, record);
+  fillContact(output.contact, record);
+  copy(output.q_desired, record.q);
+  copy(output.velocity, record.dq);
+  copy(output.w, record.w);
+  copy(output.w_d, record.wd);
+  copy(output.w_d_dot, record.wd_dot);
+  record.fault = static_cast<std::uint64_t>(output.fault);
+  copy(tool_error_m, record.tool_error_m);
+  record.path_time_s = output.path_time_s;
+}
+
+RobotInput recordedInput(const CycleRecord& record, int joints) noexcept {
+  RobotInput input;
+  input.q_measured = Eigen::Map<const Eigen::VectorXd>(record.q_measured, joints);
+  input.tactile.force_y_N = record.tactile_force_y_N;
+  input.tactile.force_z_N = record.tactile_force_z_N;
+  input.tactile.moment_y_Nm = record.tactile_moment_y_Nm;
+  input.tactile.moment_z_Nm = record.tactile_moment_z_Nm;
+  input.tactile.sequence = static_cast<std::uint32_t>(record.tactile_sequence);
+  return input;
+}
+
+}  // namespace tactus

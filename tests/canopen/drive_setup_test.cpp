@@ -1,0 +1,276 @@
+#include "tactus/canopen/drive_setup.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+
+#include "support/drive_rig.h"
+
+namespace tactus {
+namespace {
+
+using test::DriveRig;
+using test::kNode;
+using test::ScriptedDrive;
+using Writes = std::vector<std::pair<ScriptedDrive::Entry, std::uint32_t>>;
+
+bool isFailed(const DriveRig& rig) { return rig.report().fault != Fault::kNone; }
+
+TEST(DriveSetup, WritesTheObjectsOfTheStandardsInOrder) {
+  DriveRig rig;
+  rig.configure();
+  ASSERT_TRUE(rig.report().is_configured);
+  const Writes expected = {
+      {{0x6040, 0}, 0x0002},     {{0x1400, 1}, 0x80000205}, {{0x1600, 0}, 0},
+      {{0x1600, 1}, 0x60400010}, {{0x1600, 2}, 0x60FF0020}, {{0x1600, 0}, 2},
+      {{0x1400, 2}, 1},          {{0x1400, 5}, 60},         {{0x1800, 1}, 0x80000185},
+      {{0x1A00, 0}, 0},          {{0x1A00, 1}, 0x60410010}, {{0x1A00, 2}, 0x60640020},
+      {{0x1A00, 0}, 2},          {{0x1800, 2}, 1},          {{0x1801, 1}, 0x80000285},
+      {{0x1400, 1}, 0x00000205}, {{0x1800, 1}, 0x40000185}, {{0x6060, 0}, 9},
+      {{0x60C2, 1}, 1},          {{0x60C2, 2}, 0xFD},       {{0x605A, 0}, 2},
+      {{0x605E, 0}, 2},          {{0x6007, 0}, 3},          {{0x1016, 1}, 127u << 16 | 60},
+      {{0x1017, 0}, 20}};
+  EXPECT_EQ(rig.slave.writes, expected);
+  EXPECT_EQ(rig.slave.nmt, 5);
+  EXPECT_EQ(rig.slave.aborts_heard, 0);
+}
+
+TEST(DriveSetup, StartsPreOperationalAndSendsNoSetpointBeforeItIsDone) {
+  DriveRig rig;
+  const auto first = rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  EXPECT_EQ(first, (std::vector{test::rawFrame(0, {0x80, kNode})}));
+  for (int cycle = 0; cycle < 200 && !rig.report().is_configured; ++cycle) {
+    const auto frames = rig.cycle(DriveGoal::kConfigure);
+    if (rig.report().is_configured) break;
+    EXPECT_LE(frames.size(), 2u);
+    for (const CanFrame& frame : frames)
+      EXPECT_TRUE(frame.id == 0 || frame.id == 0x605) << frame.id;
+  }
+  EXPECT_TRUE(rig.report().is_configured);
+  EXPECT_TRUE(rig.report().has_position);
+}
+
+TEST(DriveSetup, LeavesAPdoThatIsOffAsItIs) {
+  DriveRig rig;
+  rig.slave.objects[{0x1400, 1}] = 0x80000000;
+  rig.slave.objects[{0x1801, 1}] = 0xC0000285;
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+  EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1801, 1})], 0xC0000285u);
+  EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1400, 1})], 0x205u);
+  EXPECT_EQ(rig.slave.writes.size(), 23u);
+}
+
+class DriveSetupStep : public testing::TestWithParam<SetupStep> {
+ protected:
+  ScriptedDrive::Entry entry() const { return {GetParam().entry.index, GetParam().entry.subindex}; }
+  void expectRefused(DriveRig& rig, std::uint32_t code) {
+    rig.configure();
+    const DriveReport& report = rig.report();
+    EXPECT_EQ(report.fault, Fault::kDriveSetupRefused);
+    EXPECT_FALSE(report.is_configured);
+    EXPECT_EQ(report.setup_failure.index, entry().first);
+    EXPECT_EQ(report.setup_failure.subindex, entry().second);
+    EXPECT_EQ(report.setup_failure.abort_code, code);
+    rig.cycle(DriveGoal::kDisabled);  // an abort of a time-out
+    for (DriveGoal goal : {DriveGoal::kConfigure, DriveGoal::kEnabled, DriveGoal::kQuickStop})
+      EXPECT_TRUE(rig.cycle(goal).empty()) << "it is not ours to command";
+    EXPECT_NE(rig.slave.nmt, 5);
+  }
+};
+
+TEST_P(DriveSetupStep, RefusedEndsTheSetUpAndARestartMendsIt) {
+  DriveRig rig;
+  rig.slave.refused[entry()] = 0x08000022;
+  expectRefused(rig, 0x08000022);
+  rig.slave.refused.clear();
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+  EXPECT_EQ(rig.report().fault, Fault::kNone);
+}
+
+TEST_P(DriveSetupStep, MissingIsAcceptedOnlyWhereItMayBe) {
+  for (std::uint32_t code : {0x06020000u, 0x06090011u}) {
+    DriveRig rig;
+    rig.slave.refused[entry()] = code;
+    if (!GetParam().is_optional) {
+      expectRefused(rig, code);
+    } else {
+      rig.configure();
+      EXPECT_TRUE(rig.report().is_configured);
+    }
+  }
+}
+
+TEST_P(DriveSetupStep, ReadOnlyIsAcceptedOnlyWhereItMayBe) {
+  for (std::uint32_t code : {0x06010000u, 0x06010002u}) {
+    DriveRig rig;
+    rig.slave.refused[entry()] = code;
+    if (!GetParam().may_be_read_only) {
+      expectRefused(rig, code);
+    } else {
+      rig.configure();
+      EXPECT_TRUE(rig.report().is_configured);
+    }
+  }
+}
+
+TEST_P(DriveSetupStep, UnansweredEndsTheSetUp) {
+  CanopenConfig canopen;
+  const bool may_be_booting = GetParam().entry.index == 0x1000;
+  if (may_be_booting) canopen.boot_timeout_s = 0.3;  // else it is not waited for
+  DriveRig rig(test::driveConfig(), canopen);
+  rig.slave.unanswered.insert(entry());
+  expectRefused(rig, 0);
+  EXPECT_GE(rig.slave.aborts_heard, 1);
+  rig.slave.unanswered.clear();
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+}
+
+TEST_P(DriveSetupStep, BeginsAnewAfterABootUpThere) {
+  DriveRig rig;
+  rig.slave.unanswered.insert(entry());
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.cycles(80, DriveGoal::kConfigure);
+  rig.slave.unanswered.clear();
+  rig.slave.powerUp();
+  rig.slave.writes.clear();
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
+  EXPECT_EQ(rig.slave.writes.size(), 25u) << "all of it";
+  EXPECT_EQ(rig.report().fault, Fault::kNone);
+}
+
+SetupSteps steps() { return setupSteps(test::driveConfig(), {}, 0.001); }
+
+std::string stepName(const testing::TestParamInfo<SetupStep>& step) {
+  std::ostringstream name;
+  name << step.index << "_" << std::hex << step.param.entry.index << "_"
+       << int{step.param.entry.subindex};
+  return name.str();
+}
+
+INSTANTIATE_TEST_SUITE_P(Steps, DriveSetupStep, testing::ValuesIn(steps()), stepName);
+
+TEST(DriveSetup, WaitsForADriveThatIsNotThereYet) {
+  DriveRig rig;
+  rig.slave.is_powered = false;
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.cycles(4000, DriveGoal::kConfigure);
+  EXPECT_FALSE(isFailed(rig));
+  rig.slave.powerUp();
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure, 200);
+}
+
+TEST(DriveSetup, StopsWaitingAfterTheBootTimeout) {
+  DriveRig rig;
+  rig.slave.is_powered = false;
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.cycles(4900, DriveGoal::kConfigure);
+  EXPECT_FALSE(isFailed(rig));
+  rig.until([&] { return isFailed(rig); }, DriveGoal::kConfigure, 300);
+  EXPECT_EQ(rig.report().fault, Fault::kDriveSetupRefused);
+  EXPECT_EQ(rig.report().setup_failure.index, 0x1000);
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.cycles(4900, DriveGoal::kConfigure);
+  EXPECT_FALSE(isFailed(rig)) << "it has as long again";
+}
+
+TEST(DriveSetup, StopsWaitingForADriveThatBootsForever) {
+  CanopenConfig canopen;
+  canopen.boot_timeout_s = 0.2;
+  DriveRig rig(test::driveConfig(), canopen);
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  for (int cycle = 0; cycle < 300; ++cycle) {
+    if (cycle % 5 == 0) rig.slave.powerUp();
+    rig.cycle(DriveGoal::kConfigure);
+  }
+  EXPECT_EQ(rig.report().fault, Fault::kDriveSetupRefused);
+}
+
+TEST(DriveSetup, RefusesADeviceThatIsNoDrive) {
+  DriveRig rig;
+  rig.slave.objects[{0x1000, 0}] = 0x00020191;  // CiA 401: inputs and outputs
+  rig.configure();
+  EXPECT_EQ(rig.report().fault, Fault::kDriveSetupRefused);
+  EXPECT_EQ(rig.report().setup_failure.index, 0x1000);
+}
+
+TEST(DriveSetup, RefusesADriveThatDoesNotTakeTheMode) {
+  DriveRig rig;
+  rig.slave.shows_mode = false;
+  rig.configure();
+  EXPECT_EQ(rig.report().fault, Fault::kDriveSetupRefused);
+  EXPECT_EQ(rig.report().setup_failure.index, 0x6061);
+}
+
+TEST(DriveSetup, WaitsForADriveThatShowsItsModeLate) {
+  DriveRig rig;
+  rig.slave.shows_mode = false;
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.cycles(60, DriveGoal::kConfigure);
+  ASSERT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x6060, 0})], 9u);
+  rig.slave.objects[{0x6061, 0}] = 9;
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
+}
+
+TEST(DriveSetup, IsSilentWhenTheDriveDoesNotRunAfterwards) {
+  for (bool without_feedback : {false, true}) {
+    DriveRig rig;
+    rig.slave.sends_feedback = !without_feedback;
+    rig.slave.sends_heartbeat = without_feedback;
+    rig.configure();
+    EXPECT_EQ(rig.report().fault, Fault::kDriveSilent);
+    EXPECT_FALSE(rig.report().is_configured);
+  }
+}
+
+TEST(DriveSetup, BelievesNothingOfBeforeTheStart) {
+  DriveRig rig;
+  rig.enable();
+  rig.slave.sends_heartbeat = false;
+  rig.configure();
+  EXPECT_EQ(rig.report().fault, Fault::kDriveSilent) << "its heartbeat was that of before";
+}
+
+TEST(DriveSetup, BeginsAnewAfterABootUpAtTheEnd) {
+  DriveRig rig;
+  rig.slave.sends_heartbeat = false;
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.until([&] { return rig.report().has_position; }, DriveGoal::kConfigure);
+  rig.slave.sends_heartbeat = true;
+  rig.slave.sends_feedback = false;
+  rig.slave.powerUp();
+  rig.slave.writes.clear();
+  rig.cycles(150, DriveGoal::kConfigure);
+  EXPECT_EQ(rig.slave.writes.size(), 25u);
+  EXPECT_FALSE(rig.report().is_configured) << "its feedback was that of before";
+  rig.slave.sends_feedback = true;
+  rig.cycles(2, DriveGoal::kConfigure);
+  EXPECT_TRUE(rig.report().is_configured);
+  EXPECT_EQ(rig.report().fault, Fault::kNone);
+}
+
+TEST(DriveSetup, GoesOnOnlyWhileAskedTo) {
+  DriveRig rig;
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.cycles(5, DriveGoal::kConfigure);
+  for (DriveGoal goal : {DriveGoal::kSilent, DriveGoal::kDisabled, DriveGoal::kEnabled})
+    for (int cycle = 0; cycle < 50; ++cycle) EXPECT_TRUE(rig.cycle(goal, 1.0).empty());
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
+}
+
+TEST(DriveSetup, StopsADriveThatStillMovesForAMasterThatHasGone) {
+  DriveRig rig;
+  rig.slave.power = ScriptedDrive::kEnabled;
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.cycles(4, DriveGoal::kConfigure);
+  EXPECT_EQ(rig.slave.power, ScriptedDrive::kQuickStop);
+  rig.slave.quick_stop_cycles = 1;
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
+  EXPECT_EQ(rig.report().state, DriveState::kSwitchOnDisabled);
+}
+
+}  // namespace
+}  // namespace tactus

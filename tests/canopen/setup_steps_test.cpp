@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "tactus/canopen/drive_setup.h"
+
+namespace tactus {
+namespace {
+
+TEST(InterpolationPeriod, IsExactOrRefused) {
+  EXPECT_EQ(interpolationPeriod(0.001), (InterpolationPeriod{1, -3}));
+  EXPECT_EQ(interpolationPeriod(0.0005), (InterpolationPeriod{5, -4}));
+  EXPECT_EQ(interpolationPeriod(0.002), (InterpolationPeriod{2, -3}));
+  EXPECT_EQ(interpolationPeriod(0.01), (InterpolationPeriod{1, -2}));
+  EXPECT_EQ(interpolationPeriod(0.00125), (InterpolationPeriod{125, -5}));
+  EXPECT_EQ(interpolationPeriod(0.000125), (InterpolationPeriod{125, -6}));
+  for (double period_s : {0.001 / 3.0, 0.00333, 0.0, -0.001, std::nan(""), HUGE_VAL, 1e-12})
+    EXPECT_EQ(interpolationPeriod(period_s), std::nullopt) << period_s;
+  for (int value = 1; value <= 255; ++value) {
+    for (int exponent = -6; exponent <= 0; ++exponent) {
+      const double period_s = value * std::pow(10.0, exponent);
+      const auto period = interpolationPeriod(period_s);
+      ASSERT_TRUE(period) << period_s;
+      EXPECT_DOUBLE_EQ(period->value * std::pow(10.0, period->exponent), period_s);
+    }
+  }
+}
+
+TEST(SetupSteps, AreRefusedWhereDrivesCannotBeTold) {
+  EXPECT_THROW(setupSteps({}, {}, 0.001 / 3.0), std::invalid_argument);
+  for (double bad_s : {0.0, 0.0004, 66.0, -1.0, std::nan("")}) {
+    CanopenConfig canopen;
+    canopen.heartbeat_period_s = bad_s;
+    EXPECT_THROW(setupSteps({}, canopen, 0.001), std::invalid_argument) << bad_s;
+    canopen = {};
+    canopen.heartbeat_timeout_s = bad_s;
+    EXPECT_THROW(setupSteps({}, canopen, 0.001), std::invalid_argument) << bad_s;
+  }
+}
+
+/// Where a drive watches them, setpoints may stay away no longer than the heartbeat.
+TEST(SetupSteps, GiveSetpointsADeadlineBeforeTheyAreValid) {
+  CanopenConfig canopen;
+  canopen.heartbeat_timeout_s = 0.123;
+  int found = 0;
+  bool is_valid = true;
+  for (const SetupStep& step : setupSteps({}, canopen, 0.001)) {
+    const bool is_id = step.entry.index == 0x1400 && step.entry.subindex == 1;
+    if (is_id) is_valid = step.kind == SetupStep::Kind::kWrite;
+    if (step.entry.index != 0x1400 || step.entry.subindex != 5) continue;
+    ++found;
+    EXPECT_FALSE(is_valid);
+    EXPECT_EQ(step.value, 123u);
+    EXPECT_EQ(step.entry.size, 2);
+    EXPECT_TRUE(step.is_optional && step.may_be_read_only);
+  }
+  EXPECT_EQ(found, 1);
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,166 @@
+#include "tactus/record/run_summary.h"
+
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/crops9.h"
+#include "support/telemetry.h"
+#include "tactus/record/run_error.h"
+#include "tactus/scene/input_error.h"
+
+namespace tactus {
+namespace {
+
+ControllerConfig config() { return test::crops9Controller(Variant::kNullSpace); }
+
+CycleRecord restingRecord(double t_s) {
+  CycleRecord record;
+  record.t_s = t_s;
+  return record;
+}
+
+TEST(RunSummary, OfNoCycleIsZero) {
+  const RunFigures figures = RunSummary(config(), 10).figures();
+  EXPECT_EQ(figures.cycles, 0);
+  EXPECT_EQ(figures.tcp_error_rms_m, 0.0);
+  EXPECT_EQ(figures.step_time_ns.max, 0);
+}
+
+TEST(RunSummary, FindsPeaksAndFinalValues) {
+  RunSummary summary(config(), 4);
+  CycleRecord record = restingRecord(0.0);
+  const double forces[] = {1.0, 6.0, 6.0, 2.0};
+  const double stiffnesses[] = {100.0, 200.0, 300.0, 400.0};
+  const double errors[] = {0.0, 0.03, 0.0, 0.04};
+  for (int i = 0; i < 4; ++i) {
+    record.force_sensor_N = forces[i];
+    record.stiffness_N_per_m = stiffnesses[i];
+    record.tool_error_m[0] = -0.6 * errors[i];
+    record.tool_error_m[2] = 0.8 * errors[i];
+    record.dq[0] = 0.1 * i;
+    record.dq[8] = -0.2;
+    summary.add(record);
+  }
+  const RunFigures figures = summary.figures();
+  EXPECT_EQ(figures.cycles, 4);
+  EXPECT_EQ(figures.peak_force_N, 6.0);
+  EXPECT_EQ(figures.stiffness_at_peak_N_per_m, 200.0);
+  EXPECT_EQ(figures.final_force_N, 2.0);
+  EXPECT_EQ(figures.stiffness_final_N_per_m, 400.0);
+  EXPECT_NEAR(figures.tcp_error_max_m, 0.04, 1e-15);
+  EXPECT_NEAR(figures.tcp_error_final_m, 0.04, 1e-15);
+  EXPECT_NEAR(figures.tcp_error_rms_m, 0.025, 1e-15);
+  EXPECT_NEAR(figures.peak_joint_speed_squared, 0.3 * 0.3 + 0.04, 1e-15);
+}
+
+TEST(RunSummary, CountsCyclesWithAJointOnItsLimitOnce) {
+  const ControllerConfig c = config();
+  RunSummary summary(c, 4);
+  CycleRecord record;
+  summary.add(record);
+  record.q[0] = c.limits.upper[0] - 2e-4;
+  summary.add(record);
+  EXPECT_EQ(summary.figures().joints_at_limit_cycles, 0);
+  record.q[0] = c.limits.upper[0] - 1e-6;
+  record.q[3] = c.limits.lower[3];
+  summary.add(record);
+  record.q[0] = 0.0;
+  summary.add(record);
+  EXPECT_EQ(summary.figures().joints_at_limit_cycles, 2);
+}
+
+TEST(RunSummary, IgnoresWhatAShorterRobotDoesNotHave) {
+  RunSummary summary(config(), 1);
+  CycleRecord record;
+  record.dq[9] = 1e9;
+  record.q[9] = 1e9;
+  summary.add(record);
+  EXPECT_EQ(summary.figures().peak_joint_speed_squared, 0.0);
+  EXPECT_EQ(summary.figures().joints_at_limit_cycles, 0);
+}
+
+TEST(RunSummary, StepTimesAreOrderStatistics) {
+  RunSummary summary(config(), 10);
+  CycleRecord record;
+  for (int i = 0; i < 200; ++i) {
+    record.step_ns = (i * 77) % 200 + 1;  // 1 to 200, shuffled
+    summary.add(record);
+  }
+  const auto step = summary.figures().step_time_ns;
+  EXPECT_EQ(step.min, 1);
+  EXPECT_NEAR(static_cast<double>(step.median), 103.0, 3.0);
+  EXPECT_NEAR(static_cast<double>(step.p99), 199.0, 1.0);
+  EXPECT_EQ(step.max, 200);
+}
+
+Scene scene() {
+  return {.name = "a \"b\"\n\x01\\\xff",
+          .controller = config(),
+          .variant = "null_space",
+          .plant = {},
+          .robot_name = {},
+          .joint_names = {},
+          .sources = {},
+          .overrides = {},
+          .numbers = {}};
+}
+
+TEST(SummaryJson, HasTheKeysOfTheContractInTheirOrder) {
+  const YAML::Node json = YAML::Load(summaryJson(scene(), RunFigures(), 512.5));
+  const std::vector<std::string> expected = {"scene",
+                                             "variant",
+                                             "stages",
+                                             "cycles",
+                                             "peak_force_N",
+                                             "final_force_N",
+                                             "tcp_error_max_m",
+                                             "tcp_error_rms_m",
+                                             "tcp_error_final_m",
+                                             "peak_joint_speed_squared",
+                                             "joints_at_limit_cycles",
+                                             "stiffness_final_N_per_m",
+                                             "stiffness_at_peak_N_per_m",
+                                             "contacts",
+                                             "step_time_ns",
+                                             "real_time_factor",
+                                             "outcome"};
+  std::vector<std::string> keys;
+  for (const auto& entry : json) keys.push_back(entry.first.as<std::string>());
+  EXPECT_EQ(keys, expected);
+  EXPECT_EQ(json["real_time_factor"].as<double>(), 512.5);
+  EXPECT_EQ(json["outcome"].as<std::string>(), "completed");
+}
+
+TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
+  RunFigures figures;
+  figures.cycles = 13000;
+  figures.peak_force_N = 0.1 + 0.2;
+  figures.tcp_error_max_m = std::numeric_limits<double>::denorm_min();
+  figures.tcp_error_final_m = std::numeric_limits<double>::quiet_NaN();
+  figures.contacts = {{1.0, 2.5, 1.0 / 3.0, 0.25}};
+  figures.fault = Fault::kTactileStale;
+  const std::string text = summaryJson(scene(), figures, 1.0);
+  const YAML::Node json = YAML::Load(text);
+  EXPECT_EQ(json["cycles"].as<long long>(), 13000);
+  EXPECT_EQ(json["peak_force_N"].as<double>(), 0.1 + 0.2);
+  EXPECT_NE(text.find("\"tcp_error_max_m\": 5e-324"), std::string::npos);
+  EXPECT_TRUE(json["tcp_error_final_m"].IsNull());
+  EXPECT_EQ(json["contacts"][0]["peak_force_N"].as<double>(), 1.0 / 3.0);
+  EXPECT_EQ(json["outcome"].as<std::string>(), "tactile_stale");
+}
+
+TEST(SummaryJson, EscapesWhateverASceneIsCalled) {
+  const std::string text = summaryJson(scene(), RunFigures(), 1.0);
+  EXPECT_NE(text.find(R"("scene": "a \"b\"\u000a\u0001\\\ufffd")"), std::string::npos) << text;
+}
+
+TEST(WriteSummary, ReportsAFullDisk) {
+  EXPECT_THROW(writeSummary("/dev/full", scene(), RunFigures(), 1.0), RunError);
+  EXPECT_THROW(writeSummary("/nowhere/summary.json", scene(), RunFigures(), 1.0), InputError);
+}
+
+}  // namespace
+}  // namespace tactus

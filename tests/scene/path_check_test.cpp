@@ -1,0 +1,101 @@
+#include "tactus/scene/path_check.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tactus/math/trajectory.h"
+#include "tactus/scene/scene_loader.h"
+
+namespace tactus {
+namespace {
+
+using Warnings = std::vector<std::string>;
+
+/// The planar arm, whose joints reach 2 rad/s.
+Warnings warningsOf(const std::vector<Override>& settings) {
+  return checkPath(
+      loadScene(TACTUS_SOURCE_DIR "/config/scenes/robots/planar2_free.yaml", settings));
+}
+
+/// As a warning writes it.
+std::string pathEnd() {
+  const Scene scene = loadScene(TACTUS_SOURCE_DIR "/config/scenes/robots/planar2_free.yaml", {});
+  return fmt::format("{:g}", Trajectory(scene.controller.task.trajectory, Pose{}).end_s());
+}
+
+TEST(PathCheck, HasNothingAgainstTheScenesThatComeAlong) {
+  int scenes = 0;
+  const std::filesystem::path folder = TACTUS_SOURCE_DIR "/config/scenes";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".yaml") continue;
+    EXPECT_EQ(checkPath(loadScene(entry.path().string(), {})), Warnings{}) << entry.path();
+    ++scenes;
+  }
+  EXPECT_GT(scenes, 20);
+}
+
+TEST(PathCheck, WarnsOfASpeedBeyondThatOfAJoint) {
+  const auto warningsAt = [](const std::string& speed_m_per_s) {
+    const std::string line = "task.trajectory.line.";
+    return warningsOf({{line + "displacement_m", "[-0.3, 0, 0]"},
+                       {line + "speed_m_per_s", speed_m_per_s},
+                       {line + "ramp_s", "0.2"}});
+  };
+  EXPECT_EQ(warningsAt("0.4"), Warnings{});
+  const Warnings warnings = warningsAt("0.8");
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("; joint elbow is at its largest speed of 2"), std::string::npos)
+      << warnings[0];
+}
+
+/// By then the rotation vector of the tool has passed half a turn, where it changes its sign.
+TEST(PathCheck, HasNothingAgainstAToolThatTurnsOverHalfATurn) {
+  EXPECT_EQ(
+      checkPath(loadScene(TACTUS_SOURCE_DIR "/config/scenes/robots/kuka_iiwa7_free.yaml",
+                          {{"task.components", "[x, y, z, rx, ry, rz]"},
+                           {"task.trajectory.line", "{rotation_vector_rad: [0.03, 0.3, 0]}"}})),
+      Warnings{});
+}
+
+/// A reference that waits would hide it.
+TEST(PathCheck, WarnsOfASpeedBeyondThatOfAJointThoughThePathWaits) {
+  const std::string line = "task.trajectory.line.";
+  const Warnings warnings = warningsOf({{line + "displacement_m", "[-0.3, 0, 0]"},
+                                        {line + "speed_m_per_s", "0.8"},
+                                        {line + "ramp_s", "0.2"},
+                                        {"task.wait_beyond_m", "0.0001"}});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("path not followed"), std::string::npos) << warnings[0];
+}
+
+TEST(PathCheck, WarnsOfAStretchedArm) {
+  const auto warningsAt = [](const std::string& elbow_rad) {
+    return warningsOf({{"start", "[0.6, " + elbow_rad + "]"},
+                       {"task.trajectory", "{hold: {}}"},
+                       {"task.trajectory.line", "~"}});
+  };
+  EXPECT_EQ(warningsAt("-1.2"), Warnings{});
+  const Warnings stretched = warningsAt("-0.001");
+  ASSERT_EQ(stretched.size(), 1u);
+  EXPECT_NE(stretched[0].find("singular start: smallest singular value "), std::string::npos)
+      << stretched[0];
+}
+
+TEST(PathCheck, WarnsOfARunThatEndsBeforeItsPath) {
+  EXPECT_EQ(warningsOf({{"simulation.duration_s", "2"}}),
+            Warnings{"the simulation ends at 2 s, its path at " + pathEnd() + " s"});
+}
+
+TEST(PathCheck, WarnsOfObstaclesThatNothingFeels) {
+  const std::string free = TACTUS_SOURCE_DIR "/config/scenes/free_motion.yaml";
+  const std::vector<Override> obstacle = {
+      {"simulation.obstacles", "[{x_m: 0.6, y_m: 0.0, stiffness_N_per_m: 300}]"}};
+  EXPECT_EQ(checkPath(loadScene(free, {})), Warnings{});
+  EXPECT_EQ(checkPath(loadScene(free, obstacle)),
+            Warnings{"nothing feels the obstacles: there is no controller"});
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,227 @@
+#include "tactus/scene/stability_check.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "support/scene_files.h"
+
+/// The scene of SceneFiles: both spaces, estimated, assumed 7000 N/m, arm 5000 N/m, drives 10 ms, a
+/// sample every 5 ms.
+namespace tactus {
+namespace {
+
+using test::BrokenText;
+using test::SceneFiles;
+
+const std::string kEstimate = "  estimate: {min_N_per_m: 20}\n";
+
+/// Without estimate, and with what `more` says of the stiffness.
+SceneFiles assumed(const std::string& more = "") {
+  SceneFiles files;
+  files.scene = test::replaced(files.scene, kEstimate, more.empty() ? "" : "  " + more + "\n");
+  return files;
+}
+
+/// With drives and samples as quick as the paper's.
+SceneFiles quick(SceneFiles files) {
+  files.robot = test::replaced(files.robot, "position_lag_s: 0.01", "position_lag_s: 0.005");
+  files.robot = test::replaced(files.robot, "sample_period_s: 0.005", "sample_period_s: 0.004");
+  return files;
+}
+
+std::string stabilityError(const Scene& scene) {
+  try {
+    checkStability(scene);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+StabilityReport check(const Scene& scene) { return checkStability(scene).value(); }
+
+/// Largest c_e / c of the least stable loop.
+double largestRatio(const StabilityReport& report) {
+  double largest = kNoLimit;
+  for (const LoopReport& loop : report.loops)
+    largest = std::min(largest, loop.margins.largest_stiffness_ratio);
+  return largest;
+}
+
+TEST(StabilityCheck, HasNothingToSayWithoutForceControl) {
+  EXPECT_FALSE(checkStability(SceneFiles{}.load({{"controller.variant", "none"}})));
+  EXPECT_FALSE(checkStability(SceneFiles{}.load({{"controller", "null"}, {"stiffness", "null"}})));
+}
+
+TEST(StabilityCheck, TakesItsNumbersFromSceneAndRobot) {
+  const Scene scene = assumed().load();
+  const StabilityReport report = check(scene);
+  ContactLoop expected;
+  expected.law = LoopLaw::kTwoSpaces;
+  expected.drive_lag_s = 0.01;
+  expected.sample_period_s = 0.005;
+  EXPECT_EQ(report.loops.at(0).margins.largest_stiffness_ratio,
+            computeMargins(expected, 1.0).largest_stiffness_ratio);
+  expected.drift_gain_per_s = 5.0;
+  EXPECT_EQ(report.loops.at(1).margins.phase_margin_rad,
+            computeMargins(expected, 1.0).phase_margin_rad);
+}
+
+TEST(StabilityCheck, LooksAtTheLoopsOfTheVariant) {
+  const auto loops = [](const std::string& variant) {
+    std::vector<Override> settings = {{"controller.variant", variant}};
+    if (variant == "joint_space") settings.push_back({"redundancy.joint_limit_avoidance", "{}"});
+    return check(assumed().load(settings)).loops.size();
+  };
+  EXPECT_EQ(loops("null_space"), 1u);
+  EXPECT_EQ(loops("joint_space"), 1u);
+  EXPECT_EQ(loops("task_space"), 2u);
+  EXPECT_EQ(loops("null_task"), 3u);
+  EXPECT_EQ(loops("null_joint"), 3u);
+  EXPECT_EQ(loops("null_limit"), 2u);
+}
+
+TEST(StabilityCheck, TakesTheApproachLimitWithTheModelThatItHas) {
+  const StabilityReport report = check(
+      assumed().load({{"controller.variant", "null_limit"}, {"simulation.drive_lag_s", "0.02"}}));
+  ContactLoop expected;
+  expected.law = LoopLaw::kApproachLimit;
+  expected.order = 1;
+  expected.drive_lag_s = 0.02;
+  expected.model_drive_lag_s = 0.01;
+  expected.sample_period_s = 0.005;
+  EXPECT_EQ(report.loops.at(1).margins.largest_stiffness_ratio,
+            computeMargins(expected, 1.0).largest_stiffness_ratio);
+}
+
+TEST(StabilityCheck, TakesTheContactForAsStiffAsAssumed) {
+  const StabilityReport report = check(assumed().load());
+  EXPECT_EQ(report.stiffest_N_per_m, 7000.0);
+  EXPECT_EQ(report.ratio(), 1.0);
+}
+
+TEST(StabilityCheck, TakesTheDeclaredStiffnessInstead) {
+  EXPECT_EQ(check(assumed("stiffest_N_per_m: 10500").load()).ratio(), 1.5);
+  EXPECT_EQ(check(assumed("stiffest_N_per_m: 3500").load()).stiffest_N_per_m,
+            1.0 / (1.0 / 17000.0 + 1.0 / 5000.0))
+      << "an obstacle of the scene is stiffer";
+}
+
+TEST(StabilityCheck, RefusesAContactThatIsTooStiff) {
+  const double largest = largestRatio(check(quick(assumed()).load()));
+  const auto error = [&](double ratio) {
+    const std::string stiffest = "stiffest_N_per_m: " + std::to_string(ratio * 7000.0);
+    return stabilityError(quick(assumed(stiffest)).load());
+  };
+  EXPECT_EQ(error(0.999 * largest), "");
+  test::expectError(error(1.001 * largest),
+                    {"", "", "scene.yaml:16:21: stiffness.stiffest_N_per_m: ",
+                     "unstable (both spaces) in a contact of 1", "at most "});
+}
+
+/// The number behind `words` in an error.
+std::string numberAfter(const std::string& error, const std::string& words) {
+  const std::size_t at = error.find(words);
+  EXPECT_NE(at, std::string::npos) << error;
+  const std::size_t start = at + words.size();
+  return error.substr(start, error.find(' ', start) - start);
+}
+
+TEST(StabilityCheck, NamesStiffnessesThatDoWithoutWarning) {
+  const auto scene = [](const std::string& stiffest, const std::string& assumed_N_per_m) {
+    return quick(assumed("stiffest_N_per_m: " + stiffest))
+        .load({{"stiffness.assumed_N_per_m", assumed_N_per_m}});
+  };
+  const std::string error = stabilityError(scene("60000", "7000"));
+  const std::string softer = numberAfter(error, "at most ");
+  const std::string stiffer = numberAfter(error, "assumed_N_per_m of at least ");
+  EXPECT_NE(error.find("for a phase margin of 30 degrees"), std::string::npos) << error;
+  EXPECT_EQ(check(scene(softer, "7000")).warnings, std::vector<std::string>{}) << softer;
+  EXPECT_EQ(check(scene("60000", stiffer)).warnings, std::vector<std::string>{}) << stiffer;
+}
+
+TEST(StabilityCheck, NamesATimeConstantWhereNoStiffnessHasTheMargin) {
+  const auto scene = [](const std::string& T_s) {
+    return assumed("stiffest_N_per_m: 60000").load({{"controller.time_constant_s", T_s}});
+  };
+  const std::string error = stabilityError(scene("0.1"));
+  EXPECT_NE(error.find(": controller.time_constant_s: 0.1 s is unstable "), std::string::npos)
+      << error;
+  EXPECT_EQ(check(scene(numberAfter(error, "at least "))).warnings, std::vector<std::string>{});
+}
+
+TEST(StabilityCheck, NamesTheEdgeWhereDampingAllowsNoMargin) {
+  const auto scene = [](const std::string& T_s) {
+    return assumed().load({{"controller.damping", "0.1"}, {"controller.time_constant_s", T_s}});
+  };
+  const std::string error = stabilityError(scene("0.1"));
+  EXPECT_NE(error.find("more damping"), std::string::npos) << error;
+  EXPECT_EQ(check(scene(numberAfter(error, "at least "))).warnings.size(), 1u) << error;
+}
+
+TEST(StabilityCheck, RefusesAnObstacleThatIsTooStiff) {
+  test::expectError(stabilityError(quick(assumed()).load({{"stiffness.assumed_N_per_m", "500"}})),
+                    {"", "", "scene.yaml:20:47: simulation.obstacles[1].stiffness_N_per_m: ",
+                     "in a contact of 3863.64 N/m, obstacle and arm in series", "at most "});
+}
+
+TEST(StabilityCheck, RefusesGainsThatAreUnstableAsAssumedAndNamesThoseThatAreNot) {
+  const std::string error =
+      stabilityError(assumed().load({{"controller.time_constant_s", "0.05"}}));
+  test::expectError(error,
+                    {"", "", "--set controller.time_constant_s:1:1: controller.time_constant_s: ",
+                     "0.05 s is unstable (both spaces) in a contact of 7000 N/m", "at least 0.1"});
+  const std::string at_least = numberAfter(error, "at least ");
+  EXPECT_EQ(check(assumed().load({{"controller.time_constant_s", at_least}})).warnings,
+            std::vector<std::string>{})
+      << at_least;
+}
+
+TEST(StabilityCheck, ExpectsOfAnEstimateThatItCanFollow) {
+  const SceneFiles files = quick({});
+  const StabilityReport report = check(files.load({{"stiffness.stiffest_N_per_m", "30000"}}));
+  EXPECT_EQ(report.ratio(), 1.0);
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_NE(report.warnings[0].find("until the estimate has risen from 7000 to "),
+            std::string::npos);
+  test::expectError(
+      stabilityError(files.load({{"stiffness.estimate.max_N_per_m", "2000"}})),
+      {"", "", "--set stiffness.estimate.max_N_per_m:1:1: stiffness.estimate.max_N_per_m: ",
+       "2000 N/m is unstable (both spaces)", "at least 6"});
+}
+
+TEST(StabilityCheck, WarnsBelowThirtyDegrees) {
+  const StabilityReport slow_drives = check(assumed().load());
+  ASSERT_EQ(slow_drives.warnings.size(), 1u);
+  EXPECT_NE(slow_drives.warnings[0].find("phase margin of 2"), std::string::npos);
+  EXPECT_EQ(check(quick(assumed()).load()).warnings.size(), 0u);
+}
+
+TEST(StabilityCheck, FindsNothingInTheScenesThatComeAlong) {
+  int with_force_control = 0;
+  const std::filesystem::path folder = TACTUS_SOURCE_DIR "/config/scenes";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".yaml" || entry.path().parent_path().stem() == "base")
+      continue;
+    const auto report = checkStability(loadScene(entry.path().string(), {}));
+    if (!report) continue;
+    EXPECT_EQ(report->warnings, std::vector<std::string>{}) << entry.path();
+    ++with_force_control;
+  }
+  EXPECT_GT(with_force_control, 10);
+}
+
+TEST(StabilityCheck, SaysSoWhereMarginsCannotBeComputed) {
+  SceneFiles files = assumed();
+  files.robot = test::replaced(files.robot, "sample_period_s: 0.005",
+                               "sample_period_s: 0.99991\n  filter_rate_hz: 100000\n  "
+                               "max_sample_age_s: 1");
+  const StabilityReport report = check(files.load());
+  EXPECT_TRUE(report.loops.empty());
+  EXPECT_EQ(report.warnings.size(), 1u);
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,211 @@
+#include "tactus/supervisor/mode.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/random.h"
+
+namespace tactus {
+namespace {
+
+/// A robot that does in the end what the mode asks of it.
+struct ObedientRobot {
+  ModeConfig config;
+  ModeState state;
+  ModeInput input;
+
+  void step() {
+    const bool has_power = state.mode == Mode::kEnabling || state.mode == Mode::kRunning ||
+                           state.mode == Mode::kHolding;
+    input.are_configured = state.mode == Mode::kBoot;
+    input.is_at_rest = state.mode != Mode::kRunning;
+    input.are_enabled = has_power;
+    input.are_disabled = !has_power;
+    updateMode(config, input, state);
+  }
+  Mode run(int cycles) {
+    for (int i = 0; i < cycles; ++i) step();
+    return state.mode;
+  }
+  Mode runWith(Fault fault) {
+    input.fault = fault;
+    step();
+    input.fault = Fault::kNone;
+    return state.mode;
+  }
+};
+
+ObedientRobot running(bool has_enable_line) {
+  ObedientRobot robot;
+  robot.input.has_enable_line = has_enable_line;
+  robot.run(10);
+  return robot;
+}
+
+TEST(FaultTable, HasOneRowAFaultInTheOrderOfTheNumbers) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < faultTable().size(); ++i) {
+    const FaultRow& row = faultTable()[i];
+    EXPECT_EQ(static_cast<std::size_t>(row.fault), i);
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_EQ(row.reaction == Reaction::kNone, row.fault == Fault::kNone);
+    EXPECT_EQ(std::string(row.detection).empty(), row.fault == Fault::kNone);
+    EXPECT_EQ(std::string(row.within).empty(), row.fault == Fault::kNone);
+  }
+  EXPECT_EQ(faultRow(static_cast<Fault>(200)).fault, Fault::kNone);
+  EXPECT_STREQ(faultName(static_cast<Fault>(200)), "unknown");
+}
+
+TEST(Mode, ReachesRunningThroughBootReadyAndEnabling) {
+  ObedientRobot robot;
+  std::vector<Mode> modes;
+  for (int i = 0; i < 4; ++i) modes.push_back(robot.run(1));
+  EXPECT_EQ(modes, (std::vector{Mode::kReady, Mode::kEnabling, Mode::kRunning, Mode::kRunning}));
+}
+
+TEST(Mode, WaitsForTheEnableLine) {
+  ObedientRobot robot;
+  robot.input.has_enable_line = true;
+  robot.input.enable = false;
+  EXPECT_EQ(robot.run(100), Mode::kReady);
+  robot.input.enable = true;
+  EXPECT_EQ(robot.run(2), Mode::kRunning);
+  robot.input.enable = false;
+  EXPECT_EQ(robot.run(1), Mode::kHolding);
+  EXPECT_EQ(robot.run(100), Mode::kHolding);
+  robot.input.enable = true;
+  EXPECT_EQ(robot.run(1), Mode::kRunning);
+}
+
+TEST(Mode, AnswersEveryFaultByItsRow) {
+  for (const FaultRow& row : faultTable()) {
+    if (row.fault == Fault::kNone) continue;
+    ObedientRobot robot = running(true);
+    ASSERT_EQ(robot.state.mode, Mode::kRunning);
+    const Mode mode = robot.runWith(row.fault);
+    const Mode expected = row.reaction == Reaction::kHold   ? Mode::kHolding
+                          : row.reaction == Reaction::kRamp ? Mode::kStopping
+                                                            : Mode::kFault;
+    EXPECT_EQ(mode, expected) << row.name;
+    EXPECT_EQ(robot.state.fault, row.fault);
+  }
+}
+
+TEST(Mode, ClearsFaultsOnlyByEnableOffAndOn) {
+  for (const FaultRow& row : faultTable()) {
+    if (row.fault == Fault::kNone) continue;
+    ObedientRobot robot = running(true);
+    robot.runWith(row.fault);
+    const Mode rest = row.reaction == Reaction::kHold ? Mode::kHolding : Mode::kFault;
+    EXPECT_EQ(robot.run(5000), rest) << row.name;
+    robot.input.enable = false;
+    EXPECT_EQ(robot.run(10), rest) << row.name;
+    robot.runWith(row.fault);  // the cause is still there, so the line has to go off anew
+    robot.input.enable = true;
+    EXPECT_EQ(robot.run(10), rest) << row.name;
+    robot.input.enable = false;
+    robot.run(1);
+    robot.input.enable = true;
+    EXPECT_EQ(robot.run(10), Mode::kRunning) << row.name;
+    EXPECT_EQ(robot.state.fault, Fault::kNone);
+  }
+}
+
+TEST(Mode, EndsAfterAFaultWithoutEnableLine) {
+  for (const FaultRow& row : faultTable()) {
+    if (row.fault == Fault::kNone) continue;
+    ObedientRobot robot = running(false);
+    robot.runWith(row.fault);
+    EXPECT_EQ(robot.run(10), Mode::kOff) << row.name;
+    EXPECT_EQ(robot.state.fault, row.fault) << "the reason is kept";
+  }
+}
+
+TEST(Mode, AHarsherFaultOverridesAMilderOneButNeverTheOtherWayRound) {
+  for (const FaultRow& first : faultTable()) {
+    for (const FaultRow& second : faultTable()) {
+      if (first.fault == Fault::kNone) continue;
+      ObedientRobot robot = running(true);
+      robot.runWith(first.fault);
+      robot.runWith(second.fault);
+      EXPECT_GE(robot.state.reaction, first.reaction);
+      EXPECT_GE(robot.state.reaction, second.reaction);
+      EXPECT_EQ(robot.state.fault, first.fault);
+      if (second.reaction >= Reaction::kQuickStop) {
+        EXPECT_EQ(robot.state.mode, Mode::kFault);
+      }
+    }
+  }
+}
+
+TEST(Mode, TimeLimitsEndWhatNeverHappens) {
+  ModeState state;
+  ModeInput input;
+  for (int i = 0; i < 5001; ++i) updateMode({}, input, state);
+  EXPECT_EQ(state.mode, Mode::kFault);
+  EXPECT_EQ(state.fault, Fault::kDriveSetupRefused);
+
+  state = {};
+  input.are_configured = true;
+  for (int i = 0; i < 2003; ++i) updateMode({}, input, state);
+  EXPECT_EQ(state.mode, Mode::kFault);
+  EXPECT_EQ(state.fault, Fault::kDriveStateLost);
+
+  state = {};
+  state.mode = Mode::kStopping;
+  input.are_disabled = false;
+  input.stop_requested = true;
+  for (int i = 0; i < 2001; ++i) updateMode({}, input, state);
+  EXPECT_EQ(state.mode, Mode::kFault);
+  for (int i = 0; i < 2001; ++i) updateMode({}, input, state);
+  EXPECT_EQ(state.mode, Mode::kOff) << "the end comes even if drives never answer";
+}
+
+ModeInput randomInput(test::Random& random) {
+  ModeInput input;
+  if (random.chance(0.05)) input.fault = static_cast<Fault>(random.integer(0, 21));
+  input.has_enable_line = true;
+  input.enable = random.chance(0.7);
+  input.are_configured = random.chance(0.5);
+  input.are_enabled = random.chance(0.5);
+  input.are_disabled = random.chance(0.5);
+  input.is_at_rest = random.chance(0.5);
+  return input;
+}
+
+TEST(Mode, ChangesOnlyAlongTheTableAndUsesAllOfIt) {
+  test::Random random(1);
+  ModeConfig config;
+  config.boot_cycles = config.enabling_cycles = config.stopping_cycles = 4;
+  std::set<std::pair<Mode, Mode>> seen;
+  for (int run = 0; run < 2000; ++run) {
+    ModeState state;
+    const int stop_at = random.index(150);
+    const bool has_enable_line = random.chance(0.7);
+    for (int i = 0; i < 200; ++i) {
+      const ModeState before = state;
+      ModeInput input = randomInput(random);
+      input.has_enable_line = has_enable_line;
+      input.stop_requested = i >= stop_at;
+      updateMode(config, input, state);
+      if (state.mode == before.mode) continue;
+      EXPECT_TRUE(isLegal(before.mode, state.mode))
+          << modeName(before.mode) << " to " << modeName(state.mode);
+      EXPECT_EQ(state.cycles_in_mode, 0);
+      if (state.mode == Mode::kRunning) {
+        EXPECT_EQ(state.fault, Fault::kNone);
+        EXPECT_FALSE(input.stop_requested);
+      }
+      seen.insert({before.mode, state.mode});
+    }
+    EXPECT_EQ(state.mode, Mode::kOff) << "a stop always comes to an end";
+  }
+  EXPECT_EQ(seen.size(), modeTransitions().size()) << "a row of the table never happens";
+}
+
+}  // namespace
+}  // namespace tactus
