@@ -73,7 +73,8 @@ void ContactController::update(const TaskKinematics& kinematics, const ContactPo
   if (!commanded.is_followed) {
     rest(contact, period_s, state, report, input);
   } else if (joint_space_transition_) {
-    passJointSpaceTransition(kinematics, contact, period_s, state, report, input, motion);
+    passJointSpaceTransition(kinematics, contact, commanded.return_share, period_s, state, report,
+                             input, motion);
   } else {
     passTransition(contact, period_s, state, report, input);
   }
@@ -194,8 +195,8 @@ void ContactController::passTransition(const Contact& contact, double period_s,
 }
 
 void ContactController::passJointSpaceTransition(const TaskKinematics& kinematics,
-                                                 const Contact& contact, double period_s,
-                                                 ContactControllerState& state,
+                                                 const Contact& contact, double return_share,
+                                                 double period_s, ContactControllerState& state,
                                                  ContactReport& report, ControlLawInput& input,
                                                  Motion& motion) const noexcept {
   JointSpaceTransitionState& transition = state.joint_space_transition;
@@ -203,7 +204,7 @@ void ContactController::passJointSpaceTransition(const TaskKinematics& kinematic
   const double x_free = space.a_task.dot(motion.y) + space.a_scaled.dot(motion.v_scaled);
   TaskVector y_pull = kinematics.pseudoinverse.solve(pull(kinematics.error));
   y_pull *= law_.speedShare(kinematics.pseudoinverse.expand(y_pull)) *
-            (1.0 - motion.limit_nearness * motion.limit_nearness);
+            (1.0 - motion.limit_nearness * motion.limit_nearness) * return_share;
   const double x_pull = space.a_task.dot(y_pull);
   const IntegralShare integral =
       joint_space_transition_->update({input.F_p_N, contact.p_Base, x_free}, period_s, transition);

@@ -77,6 +77,7 @@ ControllerState Controller::initialState(const JointVector& q) const {
 }
 
 void Controller::restart(ControllerState& state) const noexcept {
+  state.return_share = 0.0;
   if (contact_controller_) state.contact = contact_controller_->initialState();
 }
 
@@ -109,6 +110,7 @@ void Controller::prepare(double t_s, const ControllerState& state,
   prepared.path_time_s = t_s - state.waited_s;
   prepared.q_desired = state.q_desired;
   prepared.push = state.contact.push;
+  prepared.return_share = state.return_share;
   computeMotion(prepared.path_time_s, state, prepared);
 }
 
@@ -117,7 +119,7 @@ void Controller::update(const RobotInput& input, double t_s, double period_s,
                         ControllerOutput& output) const noexcept {
   output.path_time_s = t_s - state.waited_s;
   if (prepared.path_time_s != output.path_time_s || prepared.q_desired != state.q_desired ||
-      prepared.push != state.contact.push)
+      prepared.push != state.contact.push || prepared.return_share != state.return_share)
     computeMotion(output.path_time_s, state, prepared);
   prepared.path_time_s = std::numeric_limits<double>::quiet_NaN();
   respond(input, period_s, prepared, state, output);
@@ -155,9 +157,10 @@ void Controller::respond(const RobotInput& input, double period_s, PreparedCycle
     output.contact.contact_direction = state.contact_point.direction;
   }
   if (contact_controller_)
-    contact_controller_->update(kinematics, state.contact_point,
-                                {state.q_desired, state.velocity_before, mayMove(state)}, period_s,
-                                state.contact, output.contact, motion);
+    contact_controller_->update(
+        kinematics, state.contact_point,
+        {state.q_desired, state.velocity_before, mayMove(state), state.return_share}, period_s,
+        state.contact, output.contact, motion);
 
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
@@ -196,7 +199,9 @@ void Controller::passTime(double duration_s, ControllerState& state) const noexc
     state.q_desired[i] = std::clamp(q, config_.limits.lower[i], config_.limits.upper[i]);
   }
   // Else the task's clock, of which waited_s is taken, stands still itself.
-  if (!state.is_stopping) state.waited_s += (1.0 - state.progress) * duration_s;
+  if (state.is_stopping) return;
+  state.waited_s += (1.0 - state.progress) * duration_s;
+  state.return_share = std::min(1.0, state.return_share + duration_s / kReturnRise_s);
 }
 
 void Controller::avoidJointLimits(const TaskKinematics& kinematics, const ControllerState& state,
@@ -248,7 +253,7 @@ void Controller::computeTaskMotion(const ControllerState& state,
     prepared.progress = pathProgress(lag_m(task, kinematics.error), *task.wait_beyond_m);
     prepared.w_d_dot *= prepared.progress;
   }
-  TaskVector correction = task.drift_gain_per_s * kinematics.error;
+  TaskVector correction = state.return_share * task.drift_gain_per_s * kinematics.error;
   limitReturnSpeed(task, state.contact.push, correction);
   kinematics.y_eff = kinematics.pseudoinverse.solve(prepared.w_d_dot + correction);
 }

@@ -12,9 +12,9 @@ namespace {
 constexpr double kMaxPeakMore = 0.25;  ///< than without a trouble, m/s or rad/s
 
 /// The peak where nothing went wrong: the same start, the line off from each stop to where the arm
-/// goes on, and the same forces but for the time between.
+/// goes on, and the same forces, those between only if asked for.
 double undisturbedPeak(const Stage& stage, const Plan& plan, const std::vector<GoingOn>& stops,
-                       long long& cycles) {
+                       bool has_forces_between, long long& cycles) {
   const GoingOn& last = stops.back();
   Plan forces = plan;
   std::erase_if(forces.injections, [](const Injection& x) { return !x.kind->is_followed; });
@@ -27,7 +27,7 @@ double undisturbedPeak(const Stage& stage, const Plan& plan, const std::vector<G
     });
     CycleInput input;
     input.lines.enable = !is_stopped;
-    play.setForces(!is_stopped);
+    play.setForces(!is_stopped || has_forces_between);
     play.step(input);
     ++cycles;
     if (t_ms < last.return_ms) continue;
@@ -46,7 +46,8 @@ void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& ju
     if (!judge.is_calm[i] || one.peak <= kMaxPeakMore) continue;
     const std::vector<GoingOn> stops(judge.all.begin(),
                                      judge.all.begin() + static_cast<long>(i) + 1);
-    const double peak = undisturbedPeak(stage, plan, stops, cycles);
+    double peak = undisturbedPeak(stage, plan, stops, false, cycles);
+    if (one.has_hand) peak = std::max(peak, undisturbedPeak(stage, plan, stops, true, cycles));
     if (one.peak <= peak + kMaxPeakMore) continue;
     found.push_back({"going on", "faster than undisturbed after a return to running",
                      fmt::format("{:.2f}, undisturbed {:.2f}", one.peak, peak), one.return_ms});
@@ -62,11 +63,12 @@ void GoingOnJudge::look(const Look& look) {
   if (has_ended) all.back().end_ms = look.before.t_ms;
   if (now.mode != Mode::kRunning && look.before.mode == Mode::kRunning) stop_ms = now.t_ms;
   if (look.entered(Mode::kRunning) && stop_ms >= 0) {
-    all.push_back({stop_ms, now.t_ms, 0, 0.0});
+    all.push_back({.stop_ms = stop_ms, .return_ms = now.t_ms});
     is_calm.push_back(true);
   }
   if (all.empty() || all.back().end_ms != 0) return;
   is_calm.back() = is_calm.back() && now.is_calm;
+  all.back().has_hand = all.back().has_hand || now.has_hand;
   all.back().peak = std::max(
       {all.back().peak, now.command.cwiseAbs().maxCoeff(), now.velocity.cwiseAbs().maxCoeff()});
 }

@@ -11,10 +11,11 @@ namespace tactus::campaign {
 /// Notes where the arm goes on, and how fast it is then: the run compares with one that was not
 /// disturbed.
 struct GoingOn {
-  int stop_ms = 0;    ///< when it last stopped running
-  int return_ms = 0;  ///< and ran again
-  int end_ms = 0;     ///< of what was looked at: 3 s, or the next stop
-  double peak = 0.0;  ///< of commands and drives, m/s or rad/s
+  int stop_ms = 0;        ///< when it last stopped running
+  int return_ms = 0;      ///< and ran again
+  int end_ms = 0;         ///< of what was looked at: 3 s, or the next stop
+  double peak = 0.0;      ///< of commands and drives, m/s or rad/s
+  bool has_hand = false;  ///< that still leans on the arm, which gives way to it then
 };
 
 struct GoingOnJudge {
@@ -27,8 +28,9 @@ struct GoingOnJudge {
   double peak() const;   ///< the largest while nothing was at work but hands
 };
 
-/// Complains of what was faster than in the same run without a trouble; adds the cycles that this
-/// takes.
+/// Complains of what was faster than in the same run without a trouble, in which nobody leans on an
+/// arm that is stopped; or, where a hand is there beyond the stop, that leans on it then, too. Adds
+/// the cycles that this takes.
 void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& judge,
                     std::vector<Violation>& found, long long& cycles);
 

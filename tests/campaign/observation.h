@@ -19,6 +19,7 @@ struct Observation {
   const char* hidden_cause = nullptr;  ///< a trouble that it should have seen by now
   bool is_free = true;                 ///< no trouble is at work
   bool is_calm = true;                 ///< no trouble is at work, but for hands
+  bool has_hand = false;               ///< that leans on the arm
   bool is_late_frame = false;          ///< something makes frames late: old setpoints are no wonder
   bool is_brake_open = true;
   bool has_torque = true;      ///< any drive of the plant

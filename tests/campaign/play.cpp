@@ -162,6 +162,7 @@ void Play::observePlant() {
 void Play::observeInjections() {
   const int t_ms = now_ms() - 1;  // when it was done
   now_.is_calm = now_.is_free = true;
+  now_.has_hand = false;
   now_.is_late_frame = false;
   now_.hidden_cause = nullptr;
   now_.pushed = 0.0;
@@ -172,7 +173,9 @@ void Play::observeInjections() {
     const bool is_in_place =
         x.kind == &push() && std::abs(x.offset) <= stage_.promise.start_tolerance;
     now_.is_free = now_.is_free && x.kind == &push() && x.offset == 0.0;
-    now_.is_calm = now_.is_calm && (x.kind->receive == hand().receive || is_in_place);
+    const bool is_hand = x.kind->receive == hand().receive;
+    now_.has_hand = now_.has_hand || is_hand;
+    now_.is_calm = now_.is_calm && (is_hand || is_in_place);
     // What else is at work may hide it, until no news at all comes.
     const bool is_tactile = x.kind->where == InjectionKind::Where::kTactile;
     const int silence_ms = injections_.size() < 2 ? 0 : is_tactile ? kStaleSample_ms : kSilent_ms;

@@ -143,5 +143,32 @@ TEST(ReturnSpeed, ChangesNoBitOfACommandBelowIt) {
   }
 }
 
+/// An arm that its drives had let go may stand beside its path: there beta grows from zero.
+TEST(ReturnSpeed, RisesGentlyBesideThePath) {
+  PushedArm arm(3, 0.05);
+  arm.config.joint_limit_avoidance.reset();
+  arm.config.task.trajectory = {};
+  const Controller controller(arm.config);
+  ControllerState state = controller.initialState();
+  controller.restart(state);
+  controller.place(arm.config.q_start + arm.push, state);
+  ControllerOutput output;
+  PreparedCycle prepared;
+  controller.prepare(0.0, controller.initialState(), prepared);  // of an arm that was not let go
+  double error_before = 0.0, peak = 0.0;
+  double first = 0.0;
+  for (int i = 0; i < 4000; ++i) {
+    controller.update({}, 0.0, 1e-3, prepared, state, output);
+    controller.prepare(0.0, state, prepared);
+    if (i == 0) first = output.error.norm();
+    if (i > 0) peak = std::max(peak, (error_before - output.error.norm()) / 1e-3);
+    error_before = output.error.norm();
+  }
+  EXPECT_GT(first, 0.01);
+  EXPECT_LT(peak, 1.45 * first);
+  EXPECT_GT(peak, 1.2 * first) << "it does go back";
+  EXPECT_LT(error_before, 1e-3 * first);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -45,6 +45,7 @@ struct CommandedMotion {
   const JointVector& q;         ///< desired, at the start of this cycle
   const JointVector& velocity;  ///< the previous command
   bool is_followed;             ///< this cycle's command moves the arm; false: it stops, or rests
+  double return_share = 1.0;    ///< of the pull, see return_speed.h
 };
 
 /// The answer to contact: contact space, stiffness estimate, contact transition and law, added to
@@ -78,7 +79,7 @@ class ContactController {
   void passTransition(const Contact& contact, double period_s, ContactControllerState& state,
                       ContactReport& report, ControlLawInput& input) const noexcept;
   void passJointSpaceTransition(const TaskKinematics& kinematics, const Contact& contact,
-                                double period_s, ContactControllerState& state,
+                                double return_share, double period_s, ContactControllerState& state,
                                 ContactReport& report, ControlLawInput& input,
                                 Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.

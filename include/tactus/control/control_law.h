@@ -34,7 +34,7 @@ struct ControlLawOutput {
 /// u_n is scaled as a whole so that no component exceeds its speed, and V holds meanwhile.
 /// Integrals remember nothing that would move the arm later:
 ///   not followed:  V and I may fall, but not grow; where F_p = 0, V fades with T_t,max
-///   cut:           dV/dt = min(0, F_p / (T^2 c) - x_cut / T) down to V = 0, with x_cut > 0 the part
+///   cut:           dV/dt = min(0, F_p / (T^2 c) - x_cut / T) down to V = 0; x_cut > 0 is the part
 ///                  of the contact point's retreat that the arm's limits cut off a cycle ago; I
 ///                  likewise, with F_p - F_act
 /// kNullLimit: u_n alone; what it lacks is added by approach_limit.h.
