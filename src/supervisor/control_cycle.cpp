@@ -51,25 +51,13 @@ BrakeConfig brakeConfig(const HardwareConfig& hardware, double period_s) {
   return config;
 }
 
-JointVector maxFollowingErrors(const HardwareConfig& hardware) {
-  JointVector errors(static_cast<int>(hardware.drives.size()));
-  for (int joint = 0; joint < errors.size(); ++joint)
-    errors[joint] = hardware.drives[joint].max_following_error;
-  return errors;
-}
-
 }  // namespace
 
 ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareConfig& hardware,
                            double period_s)
     : controller_(controller),
       robot_(hardware, period_s),
-      q_commanded_(controller.q_start),
-      q_released_(controller.q_start),
-      max_following_error_(maxFollowingErrors(hardware)),
-      stop_way_(JointVector::Zero(q_commanded_.size())),
-      stop_deadline_s_(brakeDeadline_s(hardware)),
-      start_tolerance_(hardware.start_tolerance),
+      places_(controller.q_start, hardware),
       period_s_(period_s),
       max_late_cycles_(hardware.real_time.max_late_cycles),
       has_enable_line_(hardware.gpio && hardware.gpio->enable),
@@ -78,8 +66,8 @@ ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareCon
       mode_config_(modeConfig(controller.limits, hardware, period_s)),
       brake_config_(brakeConfig(hardware, period_s)),
       state_(controller_.initialState()) {
-  output_.velocity = JointVector::Zero(q_commanded_.size());
-  output_.q_desired = q_commanded_;
+  output_.velocity = JointVector::Zero(controller.q_start.size());
+  output_.q_desired = controller.q_start;
 }
 
 void ControlCycle::update(const CycleInput& input) noexcept {
@@ -97,7 +85,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   report_.fault = mode_.fault;
   control(input, before);
   updateBrakes();
-  rememberPlace();
+  rememberPlaces();
   const bool is_boot_new = mode_.mode == Mode::kBoot && mode_.cycles_in_mode == 0;
   if (is_boot_new) repeatRefusedTare();
   robot_.command(driveGoal(), is_boot_new || is_first_, output_.q_desired);
@@ -122,7 +110,7 @@ void ControlCycle::noteCulprit() noexcept {
   if (judged_.joint < 0) return;
   report_.drive = robot_.drive(judged_.joint);
   report_.q_measured = input_.q_measured[judged_.joint];
-  report_.q_expected = q_commanded_[judged_.joint];
+  report_.q_expected = places_.commanded()[judged_.joint];
 }
 
 Fault ControlCycle::judge(const CycleInput& input) noexcept {
@@ -161,7 +149,7 @@ Fault ControlCycle::judgeDrives() noexcept {
   const bool is_about_to_move = mode_.mode == Mode::kReady || mode_.mode == Mode::kEnabling ||
                                 (mode_.mode == Mode::kBoot && areConfigured());
   if (drives.fault != Fault::kNone || !is_about_to_move) return drives.fault;
-  judged_.joint = jointOutOfPlace();
+  judged_.joint = places_.outOfPlace(input_.q_measured);
   return judged_.joint < 0 ? Fault::kNone : Fault::kNotAtStart;
 }
 
@@ -204,35 +192,14 @@ void ControlCycle::repeatRefusedTare() noexcept {
   if (!is_started_ && tactile && tactile->tareState() == TareState::kRefused) tactile->startTare();
 }
 
-/// At the scene's start, or later where it was commanded to be or seen to rest: the task would pull
-/// an arm that somebody has pushed away back at once, as fast as its limits allow. The joint that
-/// is farthest from there, or -1.
-int ControlCycle::jointOutOfPlace() const noexcept {
-  const JointVector from_command = (input_.q_measured - q_commanded_).cwiseAbs();
-  const JointVector from_release = (input_.q_measured - q_released_).cwiseAbs();
-  const JointVector distance = from_command.cwiseMin(from_release);
-  if ((distance.array() <= start_tolerance_).all()) return -1;  // no NaN is in place
-  Eigen::Index joint = 0;
-  distance.maxCoeff(&joint);
-  return static_cast<int>(joint);
-}
-
-/// Each joint by its own drive: one that lies says nothing of the others, a joint that was let go
-/// may have been pushed, and one that went further than any stop was not stopped.
-void ControlCycle::rememberPlace() noexcept {
-  const bool is_commanding = isCommanding(mode_.mode);
+void ControlCycle::rememberPlaces() noexcept {
   if (!is_started_) return;
-  if (is_commanding) {
-    q_commanded_ = output_.q_desired;
-    stop_way_ = stop_deadline_s_ * output_.velocity.cwiseAbs() + max_following_error_;
-  }
-  for (int joint = 0; joint < q_released_.size(); ++joint) {
+  if (isCommanding(mode_.mode)) places_.command(output_.q_desired, output_.velocity);
+  for (int joint = 0; joint < places_.commanded().size(); ++joint) {
     const DriveReport& drive = robot_.drive(joint);
     const bool is_let_go = drive.is_off || drive.is_cut_off || mode_.mode == Mode::kBoot;
-    is_held_[joint] = is_commanding || (is_held_[joint] && !is_let_go);
-    const double way = std::abs(input_.q_measured[joint] - q_commanded_[joint]);
-    if (is_held_[joint] && robot_.isHolding(joint) && way <= stop_way_[joint])
-      q_released_[joint] = input_.q_measured[joint];
+    places_.observe(joint, input_.q_measured[joint], robot_.isHolding(joint),
+                    is_let_go && !isCommanding(mode_.mode));
   }
 }
 
@@ -254,7 +221,7 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   const bool is_running = mode_.mode == Mode::kRunning;
   if (!is_started_ && !is_running) {
     controller_.watchSensor(input_, period_s_, state_);
-    output_.q_desired = robot_.hasPositions() ? input_.q_measured : q_commanded_;
+    output_.q_desired = robot_.hasPositions() ? input_.q_measured : places_.commanded();
     return;
   }
   if (!is_started_) state_ = controller_.initialState();  // as a replay begins

@@ -7,6 +7,7 @@
 #include "tactus/control/controller.h"
 #include "tactus/supervisor/brake.h"
 #include "tactus/supervisor/cycle_record.h"
+#include "tactus/supervisor/joint_places.h"
 #include "tactus/supervisor/line_states.h"
 #include "tactus/supervisor/mode.h"
 
@@ -67,8 +68,7 @@ class ControlCycle {
   Fault judgeTactile() noexcept;
   ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
   bool areConfigured() const noexcept;
-  int jointOutOfPlace() const noexcept;
-  void rememberPlace() noexcept;
+  void rememberPlaces() noexcept;
   void coast(int missed_cycles) noexcept;
   bool hasFreshSample() const noexcept;
   void startTare() noexcept;
@@ -87,14 +87,7 @@ class ControlCycle {
 
   Controller controller_;
   CanRobot robot_;
-  JointVector q_commanded_;  ///< at last, in a mode that commands; at first where the scene starts
-  JointVector q_released_;   ///< of each joint, where its drive held it at last; likewise
-  JointVector max_following_error_;
-  JointVector stop_way_;  ///< the longest of a stop, from where each joint was commanded
-  double stop_deadline_s_;
-  /// Since the last command each joint's drive was neither off nor cut off.
-  std::array<bool, kMaxJoints> is_held_{};
-  double start_tolerance_;
+  JointPlaces places_;
   double period_s_;
   int max_late_cycles_;
   bool has_enable_line_;

@@ -1,0 +1,52 @@
+#include "tactus/supervisor/joint_places.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace tactus {
+namespace {
+
+HardwareConfig twoDrives() {
+  HardwareConfig hardware;
+  hardware.drives.resize(2);
+  hardware.start_tolerance = 0.02;
+  return hardware;
+}
+
+JointVector places(double first, double second) { return Eigen::Vector2d(first, second); }
+
+TEST(JointPlaces, AreTheStartAtFirst) {
+  const JointPlaces joints(places(1.0, -1.0), twoDrives());
+  EXPECT_EQ(joints.outOfPlace(places(1.019, -1.019)), -1);
+  EXPECT_EQ(joints.outOfPlace(places(1.021, -1.0)), 0);
+  EXPECT_EQ(joints.outOfPlace(places(1.03, -1.04)), 1) << "the farthest";
+  EXPECT_GE(joints.outOfPlace(places(1.0, std::numeric_limits<double>::quiet_NaN())), 0);
+}
+
+TEST(JointPlaces, FollowAJointAsLongAsItsDriveHoldsIt) {
+  JointPlaces joints(places(0, 0), twoDrives());
+  joints.command(places(0.5, 0.5), places(0.2, 0.2));
+  joints.observe(0, 0.55, true, false);
+  joints.observe(1, 0.55, false, false);  // says nothing
+  EXPECT_EQ(joints.outOfPlace(places(0.56, 0.5)), -1);
+  EXPECT_EQ(joints.outOfPlace(places(0.56, 0.56)), 1);
+  joints.observe(0, 0.56, false, true);  // let go
+  joints.observe(0, 0.6, true, false);   // and held again: somebody may have pushed it
+  EXPECT_EQ(joints.outOfPlace(places(0.6, 0.5)), 0);
+  joints.command(places(0.6, 0.5), places(0, 0));
+  EXPECT_EQ(joints.outOfPlace(places(0.6, 0.5)), -1);
+}
+
+TEST(JointPlaces, EndWhereNoStopLeadsTo) {
+  JointPlaces joints(places(0, 0), twoDrives());
+  joints.command(places(0, 0), places(0.1, 0.1));
+  const double longest = brakeDeadline_s(twoDrives()) * 0.1 + DriveConfig{}.max_following_error;
+  joints.observe(0, 0.99 * longest, true, false);
+  joints.observe(1, 1.01 * longest, true, false);
+  EXPECT_EQ(joints.outOfPlace(places(0.99 * longest, 0.0)), -1);
+  EXPECT_EQ(joints.outOfPlace(places(0.0, 1.01 * longest)), 1);
+}
+
+}  // namespace
+}  // namespace tactus
