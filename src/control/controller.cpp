@@ -78,6 +78,7 @@ ControllerState Controller::initialState(const JointVector& q) const {
 }
 
 void Controller::restart(ControllerState& state) const noexcept {
+  state.return_share = 0.0;
   if (contact_controller_) state.contact = contact_controller_->initialState();
 }
 

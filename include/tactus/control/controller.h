@@ -34,7 +34,7 @@ struct ControllerState {
   bool is_stopping = false;     ///< set by the caller: ramp to rest and stay there
   double waited_s = 0.0;        ///< how far the reference is behind the task's time
   double progress = 1.0;        ///< of the reference in the last cycle: 1 on time, 0 at rest
-  double return_share = 1.0;    ///< of beta; grows from 0 after place(), see return_speed.h
+  double return_share = 1.0;    ///< of beta; grows from 0 after restart(), see return_speed.h
   std::uint32_t sample_sequence = 0;
   double sample_age_s = 0.0;
   Fault sample_fault = Fault::kNone;  ///< of the newest sample
@@ -67,8 +67,9 @@ class Controller {
   /// For an arm that stands at q, near the configured start, m or rad.
   ControllerState initialState(const JointVector& q) const;
 
-  /// For an arm that its drives stop by themselves: forgets the contact, but neither the sensor's
-  /// newest sample and its age nor where the path has got to.
+  /// For an arm that its drives stop by themselves: forgets the contact, and will return to its
+  /// path gently (see return_speed.h); remembers the sensor's newest sample with its age, and where
+  /// the path has got to.
   void restart(ControllerState& state) const noexcept;
   /// For an arm that stands at q, wherever it was commanded to be, m or rad.
   void place(const JointVector& q, ControllerState& state) const noexcept;
