@@ -70,7 +70,6 @@ Controller::Controller(const ControllerConfig& config)
 ControllerState Controller::initialState(const JointVector& q) const {
   ControllerState state;
   place(q, state);
-  state.return_share = 1.0;
   if (config_.tactile_module)
     state.contact_point.position_m = 0.5 * config_.tactile_module->length_m;
   if (contact_controller_) state.contact = contact_controller_->initialState();
@@ -85,7 +84,6 @@ void Controller::restart(ControllerState& state) const noexcept {
 void Controller::place(const JointVector& q, ControllerState& state) const noexcept {
   state.q_desired = q.cwiseMax(config_.limits.lower).cwiseMin(config_.limits.upper);
   state.velocity_before = JointVector::Zero(config_.chain.size());
-  state.return_share = 0.0;
   state.fault = Fault::kNone;
 }
 
