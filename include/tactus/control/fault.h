@@ -40,7 +40,7 @@ enum class Reaction : std::uint8_t {
   kBrake,      ///< the same, and the brake line falls at once
 };
 
-/// One row of the fault table, which README and manual print.
+/// One row of the fault table, which docs/safety.md and the manual print.
 struct FaultRow {
   Fault fault;
   const char* name;       ///< as in the log and in summary.json
