@@ -11,7 +11,7 @@
 #include "tactus/scene/bus_load_text.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/json.h"
-#include "tactus/scene/key_table.h"
+#include "tactus/scene/key_words.h"
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/path_check.h"
 #include "tactus/scene/stability_check.h"
@@ -47,7 +47,7 @@ StartPose computeStart(const ControllerConfig& config) {
 
 std::vector<std::string> taskComponents(const TaskConfig& task) {
   std::vector<std::string> names;
-  for (int i = 0; i < task.size; ++i) names.push_back(componentNames()[task.components[i]]);
+  for (int i = 0; i < task.size; ++i) names.push_back(wordOf(kComponentWords, task.components[i]));
   return names;
 }
 

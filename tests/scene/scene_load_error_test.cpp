@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "true or false"},
         BrokenText{"duration_s: 13", "duration_s: 13\n  tactile_module: {seed: -1}",
                    "scene.yaml:19:26: simulation.tactile_module.seed: ",
-                   "'-1' is not a whole number", "a whole number"},
+                   "'-1' is out of range", "a whole number"},
         BrokenText{"robot: robot.yaml", "robot: ''", "scene.yaml:1:8: robot: ", "the text ''",
                    "text"},
         BrokenText{"    - {x_m: 0.7, y_m: 0.1, stiffness_N_per_m: 60}", "    - 60",

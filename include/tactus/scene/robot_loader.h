@@ -1,21 +1,24 @@
 #pragma once
 
-#include "tactus/scene/config_draft.h"
+#include "tactus/scene/robot_config.h"
 #include "tactus/scene/source_reader.h"
+#include "tactus/scene/table_reader.h"
 #include "tactus/scene/urdf_loader.h"
 #include "tactus/scene/yaml_tree.h"
 
 namespace tactus {
 
-/// A robot.yaml with its URDF; its other values are in the draft.
+/// A robot.yaml with its URDF.
 struct LoadedRobot {
   YamlNode root;  ///< for the places of values
+  RobotConfig config;
   UrdfChain chain;
   std::optional<HardwareConfig> hardware;  ///< absent without `can`
 };
 
-/// Reads the URDF of a robot.yaml and checks their values against each other. Throws InputError.
-LoadedRobot loadRobot(const SourceFile& file, SourceReader& reader, ConfigDraft& draft);
+/// Reads a robot.yaml and its URDF and checks their values against each other; adds its numbers to
+/// `numbers`. Throws InputError.
+LoadedRobot loadRobot(const SourceFile& file, SourceReader& reader, NamedNumbers& numbers);
 
 /// One value a moving joint as a vector. Throws InputError if the count is wrong.
 JointVector toJointVector(const std::vector<double>& values, const YamlNode& root,
