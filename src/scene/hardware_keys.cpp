@@ -39,6 +39,10 @@ Table<CanopenConfig> canopenKeys() {
              "for a drive to answer while it is configured", &Config::sdo_timeout_s),
       number("boot_timeout_s", "s", within(0.1, 600), "for all drives to be configured",
              &Config::boot_timeout_s),
+      number("stop_deadline_s", "s", above(0, 60),
+             "after a fault, longer than the longest quick stop: brakes are closed by then, "
+             "and drives not seen off are cut off from the bus",
+             &Config::stop_deadline_s),
   };
 }
 
@@ -113,10 +117,6 @@ Row<GpioConfig> brakeSection() {
       number("switching_s", "s", within(0, 5),
              "that the brakes take to open or to close; drives hold meanwhile",
              &Config::brake_switching_s),
-      number("deadline_s", "s", above(0, 60),
-             "after a fault, longer than the longest quick stop: brakes are closed by then, "
-             "and drives not seen off are cut off from the bus",
-             &Config::brake_deadline_s),
   };
   return optional(group<Config>("brake", "output, active: brakes released",
                                 join(inside(&Config::brake, outputKeys()), times),
