@@ -173,9 +173,13 @@ class BadInput(unittest.TestCase):
         fast = ("--set", f"{line}.speed_m_per_s=10", "--set", f"{line}.ramp_s=0.05")
         for scene, settings, warnings in ((GOOD, (), 0), (GOOD, fast, 1)):
             report = json.loads(self.run_tactus("check", "--json", scene, *settings).stdout)
-            self.assertEqual(len(report["path_warnings"]), warnings)
+            self.assertEqual(len(report["warnings"]), warnings)
             text = self.run_tactus("check", scene, *settings).stdout
             self.assertEqual(text.count("\nwarning  path not followed: at "), warnings)
+        both = (*fast, "--set", "stiffness.stiffest_N_per_m=25000")
+        report = json.loads(self.run_tactus("check", "--json", GOOD, *both).stdout)
+        self.assertEqual([w.split(" ")[0] for w in report["warnings"]], ["path", "phase"], report)
+        self.assertNotIn("warnings", report["stability"])
 
     def test_setting(self):
         start = "--set controller.damping:1:1: controller.damping: "
