@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "tactus/scene/hardware_loader.h"
@@ -70,11 +71,21 @@ void checkWithinLimits(const JointVector& q, const YamlNode& root, const std::st
   }
 }
 
-LoadedRobot loadRobot(const SourceFile& file, SourceReader& reader, NamedNumbers& numbers) {
+std::string SceneSettings::resolve(const std::string& named_in, std::string_view key,
+                                   const std::string& reference) const {
+  const bool is_set = std::ranges::count(overrides, key, &Override::key) > 0;
+  return resolvePath(is_set ? scene_path : named_in, reference);
+}
+
+LoadedRobot loadRobot(const SourceFile& file, const SceneSettings& settings, SourceReader& reader,
+                      NamedNumbers& numbers) {
   YamlNode root = parseYaml(file);
+  for (const Override& setting : settings.overrides) {
+    if (setting.key.starts_with(kRobotPrefix)) applyOverride(root, setting, kRobotPrefix.size());
+  }
   RobotConfig config = readRobotConfig(root, numbers);
-  const SourceFile urdf =
-      reader.read(resolvePath(file.path, config.urdf), "urdf", locate(root, "urdf"));
+  const SourceFile urdf = reader.read(settings.resolve(file.path, "robot.urdf", config.urdf),
+                                      "urdf", locate(root, "urdf"));
 
   const NamedFrame tip{config.tip, "tip", locate(root, "tip")};
   std::optional<NamedFrame> module_link;

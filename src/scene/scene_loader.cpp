@@ -50,15 +50,8 @@ void applyOverrides(YamlNode& root, const std::vector<Override>& overrides) {
       failAt({std::make_shared<std::string>("--set " + setting.key), 1, 1}, setting.key,
              "cannot be set here", "expected in a file");
     }
-    applyOverride(root, setting);
+    if (!setting.key.starts_with(kRobotPrefix)) applyOverride(root, setting);
   }
-}
-
-/// The robot's path is meant relative to the file that names it; on the command line, to the scene.
-std::string robotPath(const YamlNode& root, const std::string& scene_path, const std::string& robot,
-                      const std::vector<Override>& overrides) {
-  const bool is_overridden = std::ranges::count(overrides, "robot", &Override::key) > 0;
-  return resolvePath(is_overridden ? scene_path : *locate(root, "robot").file, robot);
 }
 
 JointVector readStart(const YamlNode& root, const SceneConfig& config, const LoadedRobot& robot) {
@@ -151,9 +144,11 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
   applyOverrides(root, overrides);
   NamedNumbers numbers;
   const SceneConfig config = readSceneConfig(root, numbers);
-  const std::string robot_path = robotPath(root, path, config.robot, overrides);
+  const SceneSettings settings{path, overrides};
+  const SourcePosition robot_at = locate(root, "robot");
+  const std::string robot_path = settings.resolve(*robot_at.file, "robot", config.robot);
   const LoadedRobot robot =
-      loadRobot(reader.read(robot_path, "robot", locate(root, "robot")), reader, numbers);
+      loadRobot(reader.read(robot_path, "robot", robot_at), settings, reader, numbers);
   const JointVector q_start = readStart(root, config, robot);
   checkScene(root, config, robot, q_start);
   const std::optional<HardwareConfig> hardware = chooseHardware(config, robot);
