@@ -6,6 +6,7 @@
 
 #include "tactus/canopen/drive_setup.h"
 #include "tactus/scene/bus_load_text.h"
+#include "tactus/scene/scene_checks.h"
 
 namespace tactus {
 namespace {
@@ -38,18 +39,42 @@ void checkTrackingGains(const YamlNode& root, double period_s,
   }
 }
 
-void checkBusLoads(const YamlNode& root, double period_s, const CanSection& can,
-                   const HardwareConfig& hardware) {
+bool isOverloaded(const BusLoad& load) {
   constexpr double kRounding = 1e-9;
+  return load.share() > kMaxBusLoad + kRounding;
+}
+
+/// How a bus is relieved: by the shortest cycle that overloads none and fits all else, or by other
+/// means where there is no such cycle.
+std::string cureOfOverload(double period_s, const RobotConfig& config,
+                           const HardwareConfig& hardware) {
+  constexpr int kStepsPerSecond = 100000;
+  constexpr int kMaxSteps = 2000;  // 0.02 s, the longest cycle
+  const double filter_rate_hz = electronicsOf(config).filter_rate_hz;
+  for (int steps = static_cast<int>(period_s * kStepsPerSecond); steps <= kMaxSteps; ++steps) {
+    const double longer_s = static_cast<double>(steps) / kStepsPerSecond;
+    if (longer_s <= period_s || longer_s > hardware.canopen.heartbeat_period_s ||
+        !interpolationPeriod(longer_s) ||
+        (hardware.tactile && !fitsModule(longer_s, filter_rate_hz)) ||
+        std::ranges::any_of(busLoads(hardware, longer_s), isOverloaded))
+      continue;
+    return fmt::format("a period_s of at least {}", longer_s);
+  }
+  return "fewer drives on this bus";
+}
+
+void checkBusLoads(const YamlNode& root, double period_s, const RobotConfig& config,
+                   const HardwareConfig& hardware) {
   const std::vector<BusLoad> loads = busLoads(hardware, period_s);
   for (std::size_t i = 0; i < loads.size(); ++i) {
-    if (loads[i].share() <= kMaxBusLoad + kRounding) continue;
+    if (!isOverloaded(loads[i])) continue;
     const std::string& interface = hardware.buses[i].interface;
-    const auto given = std::ranges::find(can.buses, interface, &BusConfig::interface);
-    const std::string key = fmt::format("can.buses[{}]", given - can.buses.begin());
+    const auto given = std::ranges::find(config.can->buses, interface, &BusConfig::interface);
+    const std::string key = fmt::format("can.buses[{}]", given - config.can->buses.begin());
     failAt(locate(root, key), key,
            fmt::format("{} is overloaded: {}", interface, describeBusLoad(loads[i], period_s)),
-           fmt::format("expected at most {:.4g} %", 100.0 * kMaxBusLoad));
+           fmt::format("expected at most {:.4g} %: {}", 100.0 * kMaxBusLoad,
+                       cureOfOverload(period_s, config, hardware)));
   }
 }
 
@@ -60,7 +85,7 @@ void checkHardware(const YamlNode& scene, const YamlNode& robot, double period_s
   checkCycle(scene, period_s);
   checkHeartbeat(robot, period_s, *config.can);
   checkTrackingGains(robot, period_s, config.drives.joints);
-  checkBusLoads(robot, period_s, *config.can, hardware);
+  checkBusLoads(robot, period_s, config, hardware);
 }
 
 }  // namespace tactus

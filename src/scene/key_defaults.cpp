@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdlib>
+
 namespace tactus {
 namespace {
 
-/// The shortest spelling that reads back the same: 1e6, not 1e+06.
+/// A short spelling that reads back the same: 1e6, not 1000000.0 or 1e+06.
 std::string numberText(double number) {
-  std::string text = fmt::format("{}", number);
+  std::string text = fmt::format("{:g}", number);
+  if (std::strtod(text.c_str(), nullptr) != number) return fmt::format("{}", number);
   for (const char* const padding : {"e+0", "e+"}) {
     if (const std::size_t at = text.find(padding); at != std::string::npos) {
       text.replace(at, std::string_view(padding).size(), "e");

@@ -175,14 +175,10 @@ void checkSimulatedModule(const Checked& c) {
   }
 }
 
-/// The simulated module filters a whole number of times a cycle, or once in a whole number of them.
 void checkPeriod(const Checked& c) {
   if (!c.scene.controller) return;
   const double filter_rate_hz = electronicsOf(c.robot.config).filter_rate_hz;
-  const double filter_steps = c.scene.period_s * filter_rate_hz;
-  const double ratio = std::max(filter_steps, 1.0 / filter_steps);
-  constexpr double kTolerance = 1e-7;
-  if (std::abs(ratio - std::round(ratio)) > kTolerance) {
+  if (!fitsModule(c.scene.period_s, filter_rate_hz)) {
     c.fail("period_s", fmt::format("{} s does not fit the tactile module", c.scene.period_s),
            fmt::format("a multiple or a whole part of its filter period of {} s",
                        1.0 / filter_rate_hz));
@@ -225,6 +221,13 @@ void checkObstacles(const Checked& c) {
 }
 
 }  // namespace
+
+bool fitsModule(double period_s, double filter_rate_hz) {
+  const double filter_steps = period_s * filter_rate_hz;
+  const double ratio = std::max(filter_steps, 1.0 / filter_steps);
+  constexpr double kTolerance = 1e-7;
+  return std::abs(ratio - std::round(ratio)) <= kTolerance;
+}
 
 void checkScene(const YamlNode& root, const SceneConfig& scene, const LoadedRobot& robot,
                 const JointVector& q_start) {

@@ -53,6 +53,20 @@ std::from_chars_result fromChars(std::string_view text, std::int64_t& value) {
   return std::from_chars(digits.data(), text.data() + text.size(), value, is_hex ? 16 : 10);
 }
 
+bool areDigits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// "0.1" of "0,1"; empty if the text is no number with a decimal comma.
+std::string withDecimalPoint(std::string text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) return "";
+  text[comma] = '.';
+  double number = 0.0;
+  const auto [stop, error] = fromChars(withoutPlus(text), number);
+  return error == std::errc() && stop == text.data() + text.size() ? text : "";
+}
+
 /// T: double or std::int64_t.
 template <class T>
 T parseNumber(const Reading& r, const YamlNode& node, const std::string& path) {
@@ -63,6 +77,11 @@ T parseNumber(const Reading& r, const YamlNode& node, const std::string& path) {
   const auto [stop, error] = fromChars(text, value);
   if (error == std::errc::result_out_of_range) {
     r.fail(node, path, inQuotes(node.text) + " is out of range");
+  }
+  const std::string point = withDecimalPoint(node.text);
+  if (!point.empty() && r.spec.type != ValueType::kInteger) {
+    failAt(node.at, path, inQuotes(node.text) + " is not a number but has a decimal comma",
+           "expected " + describeExpectation(r.spec) + ", with a decimal point: " + point);
   }
   if (error != std::errc() || stop != end) {
     r.fail(node, path, inQuotes(node.text) + " is not " + r.spec.numberNoun());
@@ -205,12 +224,23 @@ void readAbsent(const KeySpec& spec, const SourcePosition& at, const std::string
   std::visit(NumberAdder{path, file.numbers}, spec.target(owner));
 }
 
+/// {x_m: 0,7} is x_m: 0 and a key 7 without a value.
+void refuseDecimalComma(const YamlNode& node, const YamlEntry& entry, const std::string& prefix) {
+  if (!areDigits(entry.key) || &entry == &node.entries.front()) return;
+  const YamlEntry& before = *(&entry - 1);
+  if (entry.value.kind != Kind::kEmpty || !areDigits(before.value.text)) return;
+  const std::string digits = before.value.text + "," + entry.key;
+  failAt(before.value.at, prefix + before.key, inQuotes(digits) + " has a decimal comma",
+         "expected a decimal point: " + before.value.text + "." + entry.key);
+}
+
 void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
                        const std::string& prefix) {
   std::vector<std::string> known;
   for (const KeySpec& spec : keys) known.push_back(spec.key);
   for (const YamlEntry& entry : node.entries) {
     if (std::ranges::count(known, entry.key) > 0) continue;
+    refuseDecimalComma(node, entry, prefix);
     const std::string nearest = nearestWord(entry.key, known);
     failAt(entry.key_at, prefix + entry.key, "unknown key",
            known.empty()     ? "expected none here"

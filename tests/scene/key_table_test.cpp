@@ -128,7 +128,7 @@ std::string fullScene() {
   std::string scene = test::kSceneText;
   scene = test::replaced(scene, "{x_m: 0.7, y_m: 0.1, stiffness_N_per_m: 60}",
                          "{x_m: 1, y_m: 1, stiffness_N_per_m: 1, foam: [{stiffness_N_per_m: 1, "
-                         "until_force_N: 1}]}");
+                         "until_force_N: 1}], swing: {frequency_hz: 1}}");
   scene = test::replaced(scene, "redundancy:", "    waypoints: [{}]\nredundancy:");
   return scene + "  troubles: [{kind: drop, from_s: 1, until_s: 2}]\n";
 }

@@ -73,6 +73,13 @@ class BadInput(unittest.TestCase):
         start = f"{CONFIG}/robots/crops9/robot.yaml:19:7: can.buses[0]: can0 is overloaded: 3 x 115 "
         on_hardware = (["check", free], ["check", "--json", free], ["plant", free])
         self.expect_all_refuse(on_hardware, start, "period_s=0.0009")
+        error = self.run_tactus("check", free, "--set", "period_s=0.0009").stderr
+        shortest = re.search(r"expected at most 80 %: a period_s of at least ([0-9.]+) ", error)[1]
+        self.assertLess(float(shortest), 0.001)
+        accepted = self.run_tactus("check", free, "--set", f"period_s={shortest}")
+        self.assertEqual((accepted.returncode, accepted.stderr), (0, ""))
+        less = self.run_tactus("check", free, "--set", f"period_s={float(shortest) - 1e-5:.5f}")
+        self.assertEqual(less.returncode, 1)
         simulate = ("simulate", free, *SHORT, "--set", "period_s=0.00025", "-o", ".")
         replay = ("replay", f"{free.stem}/run.ulg")
         for command in (simulate, replay):
