@@ -11,7 +11,7 @@
 #include "tactus/scene/bus_load_text.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/json.h"
-#include "tactus/scene/key_table.h"
+#include "tactus/scene/key_words.h"
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/path_check.h"
 #include "tactus/scene/stability_check.h"
@@ -34,8 +34,8 @@ struct StartPose {
 /// What was found about a scene that is accepted.
 struct Findings {
   StartPose start;
-  std::vector<std::string> path_warnings;
   std::optional<StabilityReport> stability;
+  std::vector<std::string> warnings;  ///< of the path, then of the stability
 };
 
 StartPose computeStart(const ControllerConfig& config) {
@@ -45,9 +45,17 @@ StartPose computeStart(const ControllerConfig& config) {
           smallestSingularValueAtStart(config, JointVector::Ones(config.chain.size()))};
 }
 
+Findings examine(const Scene& scene) {
+  Findings findings{computeStart(scene.controller), checkStability(scene), checkPath(scene)};
+  if (!findings.stability) return findings;
+  const std::vector<std::string>& more = findings.stability->warnings;
+  findings.warnings.insert(findings.warnings.end(), more.begin(), more.end());
+  return findings;
+}
+
 std::vector<std::string> taskComponents(const TaskConfig& task) {
   std::vector<std::string> names;
-  for (int i = 0; i < task.size; ++i) names.push_back(componentNames()[task.components[i]]);
+  for (int i = 0; i < task.size; ++i) names.push_back(wordOf(kComponentWords, task.components[i]));
   return names;
 }
 
@@ -120,7 +128,6 @@ void writeStability(JsonWriter& json, const std::optional<StabilityReport>& stab
     json.endObject();
   }
   json.endArray();
-  writeNames(json, "warnings", stability->warnings);
   json.endObject();
 }
 
@@ -149,7 +156,7 @@ std::string checkJson(const Scene& scene, const Findings& findings) {
   for (const double x : findings.start.p_BaseTool) json.value(x);
   json.endArray();
   json.key("smallest_singular_value_at_start").value(findings.start.smallest_singular_value);
-  writeNames(json, "path_warnings", findings.path_warnings);
+  writeNames(json, "warnings", findings.warnings);
   writeStability(json, findings.stability);
   writeHardware(json, scene);
   json.endObject();
@@ -172,7 +179,6 @@ std::string stabilityText(const StabilityReport& stability) {
                     loop.name, margins.largest_stiffness_ratio, margins.gain_margin,
                     20.0 * std::log10(margins.gain_margin), loop.phaseMargin_deg()));
   }
-  for (const std::string& warning : stability.warnings) text += textLine("warning", warning);
   return text;
 }
 
@@ -194,8 +200,8 @@ std::string toText(const Scene& scene, const Findings& findings) {
   line("start", fmt::format("tool at ({:.4f}, {:.4f}, {:.4f}) m, smallest singular value {:.3g}",
                             start.p_BaseTool.x(), start.p_BaseTool.y(), start.p_BaseTool.z(),
                             start.smallest_singular_value));
-  for (const std::string& warning : findings.path_warnings) line("warning", warning);
   if (findings.stability) text += stabilityText(*findings.stability);
+  for (const std::string& warning : findings.warnings) line("warning", warning);
   if (!scene.hardware) return text;
   line("hardware", fmt::format("{}", fmt::join(hardwareStageNames(*scene.hardware), ", ")));
   const std::vector<BusLoad> loads = busLoads(*scene.hardware, scene.period_s);
@@ -207,8 +213,7 @@ std::string toText(const Scene& scene, const Findings& findings) {
 
 void runCheck(const CheckOptions& options) {
   const Scene scene = loadScene(options.scene, parseOverrides(options.settings));
-  const Findings findings = {computeStart(scene.controller), checkPath(scene),
-                             checkStability(scene)};
+  const Findings findings = examine(scene);
   checkLogSize(scene);
   const std::string report = options.json ? checkJson(scene, findings) : toText(scene, findings);
   std::fputs(report.c_str(), stdout);

@@ -73,6 +73,13 @@ class BadInput(unittest.TestCase):
         start = f"{CONFIG}/robots/crops9/robot.yaml:19:7: can.buses[0]: can0 is overloaded: 3 x 115 "
         on_hardware = (["check", free], ["check", "--json", free], ["plant", free])
         self.expect_all_refuse(on_hardware, start, "period_s=0.0009")
+        error = self.run_tactus("check", free, "--set", "period_s=0.0009").stderr
+        shortest = re.search(r"expected at most 80 %: a period_s of at least ([0-9.]+) ", error)[1]
+        self.assertLess(float(shortest), 0.001)
+        accepted = self.run_tactus("check", free, "--set", f"period_s={shortest}")
+        self.assertEqual((accepted.returncode, accepted.stderr), (0, ""))
+        less = self.run_tactus("check", free, "--set", f"period_s={float(shortest) - 1e-5:.5f}")
+        self.assertEqual(less.returncode, 1)
         simulate = ("simulate", free, *SHORT, "--set", "period_s=0.00025", "-o", ".")
         replay = ("replay", f"{free.stem}/run.ulg")
         for command in (simulate, replay):
@@ -173,9 +180,13 @@ class BadInput(unittest.TestCase):
         fast = ("--set", f"{line}.speed_m_per_s=10", "--set", f"{line}.ramp_s=0.05")
         for scene, settings, warnings in ((GOOD, (), 0), (GOOD, fast, 1)):
             report = json.loads(self.run_tactus("check", "--json", scene, *settings).stdout)
-            self.assertEqual(len(report["path_warnings"]), warnings)
+            self.assertEqual(len(report["warnings"]), warnings)
             text = self.run_tactus("check", scene, *settings).stdout
             self.assertEqual(text.count("\nwarning  path not followed: at "), warnings)
+        both = (*fast, "--set", "stiffness.stiffest_N_per_m=25000")
+        report = json.loads(self.run_tactus("check", "--json", GOOD, *both).stdout)
+        self.assertEqual([w.split(" ")[0] for w in report["warnings"]], ["path", "phase"], report)
+        self.assertNotIn("warnings", report["stability"])
 
     def test_setting(self):
         start = "--set controller.damping:1:1: controller.damping: "

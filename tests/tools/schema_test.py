@@ -294,7 +294,8 @@ class Keys(Case):
         text = output("keys", "controller.damping")
         self.assertEqual(text, "scene, see tactus-scene(5)\n  controller.damping\n"
                          "      a number > 0 and <= 10; default 0.5\n"
-                         "      d of (4), second order only\n")
+                         "      how little the force overshoots: damping of the target dynamics (4), second "
+                         "order only\n")
         self.assertEqual(output("keys", "damping"), text)
 
     def test_key_as_an_error_shows_it(self):
