@@ -124,7 +124,7 @@ Anchors, aliases, tags and second documents are not accepted.
 prints a part of what follows.
 Editors that know JSON schemas check and explain the keys while you type, with the first line of
 the example.
-Numbers in parentheses are equations of the paper: F. Sygulla, C. Schuetz, D. Rixen,
+Symbols and numbers in parentheses, of equations, are those of the paper: F. Sygulla, C. Schuetz, D. Rixen,
 .IR "Adaptive Motion Control in Uncertain Environments using Tactile Feedback" .
 )";
 

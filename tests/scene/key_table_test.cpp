@@ -135,7 +135,7 @@ std::string fullScene() {
 
 std::string fullRobot() {
   return test::replaced(test::kHardwareRobotText, "  brake: {line: 5}",
-                        "  enable: {line: 4}\n  brake: {line: 5}");
+                        "  enable: {line: 4}\n  brake: {line: 5}\n  heartbeat: {line: 6}");
 }
 
 TEST(KeyTable, NoNumberOutsideItsRangeIsRead) {

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "tactus/scene/key_table.h"
+#include "tactus/scene/key_row.h"
 #include "tactus/scene/key_words.h"
 
 /// Short spellings for the rows of the key tables.
@@ -15,81 +14,8 @@ namespace tactus::keys {
 inline constexpr double kMaxTime_s = 86400.0;
 inline constexpr double kMaxStiffness_N_per_m = 1e9;
 
-/// A row of the table of the struct S.
-template <class S>
-struct Row {
-  KeySpec spec;
-};
-
-template <class S>
-using Table = std::vector<Row<S>>;
-
-/// What stands in a member: of T, std::optional<T> and std::vector<T> T.
-template <class T>
-struct Content {
-  using type = T;
-  static constexpr bool kIsOptional = false;
-};
-template <class T>
-struct Content<std::optional<T>> {
-  using type = T;
-  static constexpr bool kIsOptional = true;
-};
-template <class T>
-struct Content<std::vector<T>> {
-  using type = T;
-  static constexpr bool kIsOptional = true;  // empty
-};
-template <class T>
-using ContentOf = typename Content<T>::type;
-
-/// The place of a member's value, which is made if it is optional.
-template <class T>
-T& make(T& member) {
-  return member;
-}
-template <class T>
-T& make(std::optional<T>& member) {
-  return member.emplace();
-}
-
-template <class S>
-std::vector<KeySpec> specsOf(Table<S> table) {
-  std::vector<KeySpec> specs;
-  for (Row<S>& row : table) specs.push_back(std::move(row.spec));
-  return specs;
-}
-
-template <class S, class... More>
-Table<S> join(Table<S> table, const More&... more) {
-  (table.insert(table.end(), more.begin(), more.end()), ...);
-  return table;
-}
-
 inline Range above(double lower, double upper) { return {lower, upper, true}; }
 inline Range within(double lower, double upper) { return {lower, upper, false}; }
-
-template <class S>
-Row<S> required(Row<S> row) {
-  row.spec.presence = Presence::kRequired;
-  return row;
-}
-/// Of a member whose initialiser means that there is none.
-template <class S>
-Row<S> optional(Row<S> row) {
-  row.spec.presence = Presence::kOptional;
-  return row;
-}
-template <class S>
-Row<S> withSymbol(std::string symbol, Row<S> row) {
-  row.spec.symbol = std::move(symbol);
-  return row;
-}
-template <class S>
-Row<S> onlyWith(Needs needs, Row<S> row) {
-  row.spec.needs = std::move(needs);
-  return row;
-}
 
 /// A value of a std::optional may be absent; any other has its initialiser as default.
 template <class S, class T>
@@ -99,9 +25,7 @@ Row<S> value(ValueType type, std::string key, std::string unit, std::string doc,
   row.spec.type = type;
   row.spec.unit = std::move(unit);
   row.spec.doc = std::move(doc);
-  constexpr bool kIsAbsent =
-      !std::is_same_v<T, ContentOf<T>> && !std::is_same_v<T, std::vector<double>>;
-  row.spec.presence = kIsAbsent ? Presence::kOptional : Presence::kDefaulted;
+  row.spec.presence = Content<T>::kIsOptional ? Presence::kOptional : Presence::kDefaulted;
   row.spec.target = [member](void* owner) -> Target {
     return &make(static_cast<S*>(owner)->*member);
   };
@@ -170,7 +94,7 @@ Row<S> oneAJoint(std::string key, std::string unit, Range range, std::string doc
       value(ValueType::kNumberList, std::move(key), std::move(unit), std::move(doc), member);
   row.spec.range = range;
   row.spec.count = {2, kMaxJoints, true};
-  return row.spec.presence == Presence::kOptional ? row : required(row);
+  return Content<T>::kIsOptional ? row : required(row);
 }
 
 /// Keys of the same struct S under a name of their own. `begin` is called if they are present.
@@ -213,30 +137,6 @@ Row<S> sectionList(std::string key, Count count, std::string doc, std::vector<T>
     return &(static_cast<S*>(owner)->*member).emplace_back();
   };
   return row;
-}
-
-/// Rows of a struct inside S, as rows of S.
-template <class S, class T>
-Table<S> inside(T S::*member, Table<ContentOf<T>> rows) {
-  Table<S> result;
-  for (auto& [spec] : rows) {
-    const auto inner = [member](void* owner) -> void* {
-      T& place = static_cast<S*>(owner)->*member;
-      if constexpr (Content<T>::kIsOptional) {
-        return &*place;
-      } else {
-        return &place;
-      }
-    };
-    if (spec.target) {
-      spec.target = [inner, target = spec.target](void* owner) { return target(inner(owner)); };
-    }
-    if (spec.enter) {
-      spec.enter = [inner, enter = spec.enter](void* owner) { return enter(inner(owner)); };
-    }
-    result.push_back({std::move(spec)});
-  }
-  return result;
 }
 
 }  // namespace tactus::keys
