@@ -209,6 +209,51 @@ class Incomplete(Report):
         self.assertNotIn("Missing: scenario2", output.read_text(encoding="utf-8"))
 
 
+class OneScene(Report):
+    """Several runs of it."""
+
+    def test_are_overlaid_by_the_names_of_their_folders(self):
+        for name in ("soft & slow", "stiff"):
+            write_run(self.runs, name, scene="mine")
+        self.assertEqual(self.report().returncode, 0)
+        section = self.page().split("<h2>Runs of one scene</h2>")[1].split("<h2>")[0]
+        self.assertIn("<h3>mine</h3>", section)
+        self.assertEqual(section.count("<svg"), 2)
+        for name in ("soft &amp; slow", "stiff"):
+            self.assertIn(f"{name}, peak 8.00 N", section)
+            self.assertIn(f"{name}, peak 3.00 mm", section)
+        self.assertNotIn("<h3>", self.page().split("<h2>Runs</h2>")[1])
+
+    def test_of_two_folders_have_their_folders_names(self):
+        folders = [self.scratch / name for name in ("before", "after")]
+        for folder in folders:
+            write_run(folder, "mine")
+            write_run(folder, "only_" + folder.name)
+        output = self.scratch / "page.html"
+        self.assertEqual(self.report(*folders, "-o", output).returncode, 0)
+        text = output.read_text(encoding="utf-8")
+        rows = re.findall(r'scope="row">([^<]+)<', text)
+        self.assertEqual(rows, ["after/mine", "before/mine", "only_after", "only_before"])
+        self.assertIn("before/mine, peak 8.00 N", text)
+
+    def test_leave_the_papers_figures_to_the_run_with_the_scenes_name(self):
+        for name, force in (("a_variation", "9.5"), ("scenario2_estimated", "8.0")):
+            text = table_text(lambda lines: [line.replace(",8.0,", f",{force},") for line in lines])
+            write_run(self.runs, name, text, scene="scenario2_estimated")
+        self.assertEqual(self.report().returncode, 0)
+        figure = self.page().split("Figure 5. ")[0]
+        self.assertIn("estimated, peak 8.00 N", figure)
+        self.assertNotIn("peak 9.50 N", figure)
+        self.assertIn("a_variation, peak 9.50 N", self.page())
+
+    def test_may_be_more_than_colours(self):
+        for number in range(20):
+            write_run(self.runs, f"run {number}", scene="mine")
+        self.assertEqual(self.report().returncode, 0)
+        for number in range(20):
+            self.assertIn(f"run {number}, peak 8.00 N", self.page())
+
+
 class Malformed(Report):
     def refuse_to_load(self, expected):
         """What refuse() prints; without a program for each of many cases."""
@@ -271,10 +316,11 @@ class Malformed(Report):
         (write_run(self.runs, "scenario1_none") / "run.ulg").unlink()
         self.refuse("run.ulg: missing")
 
-    def test_one_scene_twice(self):
+    def test_one_folder_twice(self):
         write_run(self.runs, "scenario1_none")
-        write_run(self.runs, "copy", scene="scenario1_none")
-        self.refuse("there twice")
+        result = self.report(self.runs, self.runs / ".")
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertIn("scenario1_none: is there twice, expected once", result.stderr)
 
     def test_program_that_is_not_there_or_fails(self):
         write_run(self.runs, "scenario1_none")
