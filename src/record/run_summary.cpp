@@ -45,7 +45,7 @@ void writeFigures(const RunFigures& figures, JsonWriter& json) {
 }  // namespace
 
 RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
-    : limits_(config.limits), contacts_(config.force_control.has_value(), expected_cycles) {}
+    : limits_(config.limits), contacts_(config.force_control, expected_cycles) {}
 
 void RunSummary::add(const CycleRecord& record) {
   addFigures(record);
