@@ -7,7 +7,6 @@
 
 #include "tactus/canopen/sdo_abort.h"
 #include "tactus/record/run_error.h"
-#include "tactus/record/tool_error.h"
 
 namespace tactus {
 namespace {
@@ -55,7 +54,10 @@ std::string describeMode(const ModeReport& report, const Scene& scene) {
 }
 
 Telemetry::Telemetry(const Scene& scene, const std::string& folder)
-    : scene_(scene), folder_(folder), summary_(scene.controller, 0) {
+    : scene_(scene),
+      folder_(folder),
+      summary_(scene.controller, 0),
+      rotation_error_(scene.controller) {
   if (!folder_.empty()) log_.emplace(scene, folder_);
 }
 
@@ -68,6 +70,7 @@ void Telemetry::drain(LoopLink& link) {
     loop_.write.add(cycle.write_ns);
     if (!record_.is_in_motion || !(log_ || status_file_.isWanted())) continue;
     fillToolError(scene_.controller, cycle);
+    rotation_error_.fill(cycle);
     if (log_) log_->write(cycle);
     log_ ? summary_.add(cycle) : summary_.addFigures(cycle);
   }

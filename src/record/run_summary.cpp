@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tactus/record/output_file.h"
+#include "tactus/record/tool_error.h"
 #include "tactus/scene/json.h"
 
 namespace tactus {
@@ -32,6 +33,11 @@ void writeFigures(const RunFigures& figures, JsonWriter& json) {
   json.key("tcp_error_max_m").value(figures.tcp_error_max_m);
   json.key("tcp_error_rms_m").value(figures.tcp_error_rms_m);
   json.key("tcp_error_final_m").value(figures.tcp_error_final_m);
+  if (const auto& rotation = figures.tcp_rotation_error) {
+    json.key("tcp_rotation_error_max_rad").value(rotation->max_rad);
+    json.key("tcp_rotation_error_rms_rad").value(rotation->rms_rad);
+    json.key("tcp_rotation_error_final_rad").value(rotation->final_rad);
+  }
   json.key("peak_joint_speed_squared").value(figures.peak_joint_speed_squared);
   json.key("joints_at_limit_cycles").value(figures.joints_at_limit_cycles);
   json.key("stiffness_final_N_per_m").value(figures.stiffness_final_N_per_m);
@@ -45,7 +51,9 @@ void writeFigures(const RunFigures& figures, JsonWriter& json) {
 }  // namespace
 
 RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
-    : limits_(config.limits), contacts_(config.force_control.has_value(), expected_cycles) {}
+    : limits_(config.limits), contacts_(config.force_control, expected_cycles) {
+  if (hasRotation(config.task)) figures_.tcp_rotation_error.emplace();
+}
 
 void RunSummary::add(const CycleRecord& record) {
   addFigures(record);
@@ -61,12 +69,22 @@ void RunSummary::addFigures(const CycleRecord& record) noexcept {
   figures_.final_force_N = record.force_sensor_N;
   figures_.stiffness_final_N_per_m = record.stiffness_N_per_m;
   figures_.fault = static_cast<Fault>(record.fault);
+  addToolError(record);
+  addJoints(record);
+  step_times_.add(record.step_ns);
+}
+
+void RunSummary::addToolError(const CycleRecord& record) noexcept {
   const double error_m = norm(record.tool_error_m);
   figures_.tcp_error_max_m = std::max(figures_.tcp_error_max_m, error_m);
   figures_.tcp_error_final_m = error_m;
   squared_error_sum_m2_ += error_m * error_m;
-  addJoints(record);
-  step_times_.add(record.step_ns);
+  if (!figures_.tcp_rotation_error) return;
+  const double error_rad = record.tool_rotation_error_rad;
+  RotationError& rotation = *figures_.tcp_rotation_error;
+  rotation.max_rad = std::max(rotation.max_rad, error_rad);
+  rotation.final_rad = error_rad;
+  squared_rotation_sum_rad2_ += error_rad * error_rad;
 }
 
 void RunSummary::addJoints(const CycleRecord& record) noexcept {
@@ -84,8 +102,10 @@ void RunSummary::addJoints(const CycleRecord& record) noexcept {
 RunFigures RunSummary::figures() const {
   RunFigures figures = figures_;
   if (figures.cycles > 0) {
-    figures.tcp_error_rms_m =
-        std::sqrt(squared_error_sum_m2_ / static_cast<double>(figures.cycles));
+    const auto cycles = static_cast<double>(figures.cycles);
+    figures.tcp_error_rms_m = std::sqrt(squared_error_sum_m2_ / cycles);
+    if (figures.tcp_rotation_error)
+      figures.tcp_rotation_error->rms_rad = std::sqrt(squared_rotation_sum_rad2_ / cycles);
   }
   figures.contacts = contacts_.contacts();
   figures.step_time_ns = timeFigures(step_times_);

@@ -284,6 +284,23 @@ class BadInput(unittest.TestCase):
             self.assertEqual(result.returncode, 3, result)
             self.assertEqual(result.stderr.count(b"\n"), 1, result)
 
+    def test_names_of_runs(self):
+        base = ["simulate", GOOD, "-o", "out", *SHORT]
+        for name in (".", "..", "a/b", "/a"):
+            self.expect_all_refuse([base + ["--name", name]], f"{name}:1:1: --name: ")
+        self.assertEqual(self.run_tactus(*base, "--name", "").returncode, 1)
+        self.expect_all_refuse([base + [SECOND, "--name", "a"]],
+                               "a:1:1: --name: one folder for 2 scenes, expected one scene")
+
+    def test_named_runs_of_one_scene_stay_side_by_side(self):
+        for name in ((), ("--name", "stiff & slow")):
+            result = self.run_tactus("simulate", GOOD, *SHORT, "-o", "out", *name)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for name in ("scenario1_null_space", "stiff & slow"):
+            summary = json.loads((self.folder / "out" / name / "summary.json").read_text())
+            self.assertEqual(summary["scene"], "scenario1_null_space")
+            self.assertTrue((self.folder / "out" / name / "run.ulg").exists())
+
     def test_same_name_twice(self):
         result = self.run_tactus("simulate", GOOD, self.copy_of_good(), "-o", "out")
         self.assertEqual((result.returncode, result.stdout), (1, ""), result)

@@ -9,6 +9,7 @@
 #include "tactus/daemon/service_notify.h"
 #include "tactus/record/run_log.h"
 #include "tactus/record/run_summary.h"
+#include "tactus/record/tool_error.h"
 #include "tactus/scene/scene.h"
 
 namespace tactus {
@@ -38,6 +39,7 @@ class Telemetry {
   std::string description_;
   std::optional<RunLog> log_;
   RunSummary summary_;
+  ToolRotationError rotation_error_;
   LoopFigures loop_;
   LoopRecord record_;
 };
