@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <system_error>
@@ -103,19 +104,18 @@ int simulateScenes(const SimulateOptions& options) {
   const std::vector<fs::path> folders = prepareFolders(options, scenes);
   int exit_code = kExitDone;
   if (!options.json) printHeading();
-  std::string json;  // printed at the end, so that a failed run leaves no unfinished list
+  Json json = Json::array();  // printed at the end, so that a failed run leaves no unfinished list
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const SimulationResult result = simulateScene(scenes[i], folders[i]);
     if (result.figures.fault != Fault::kNone) exit_code = kExitFault;
     if (options.json) {
-      json += json.empty() ? "[" : ",";
-      json += summaryJson(scenes[i], result.figures, result.real_time_factor);
+      json.push_back(summaryJson(scenes[i], result.figures, result.real_time_factor));
     } else {
       printRow(scenes[i].name, result);
       std::fflush(stdout);
     }
   }
-  if (options.json) fmt::print("{}]\n", json);
+  if (options.json) std::fputs(jsonText(json).c_str(), stdout);
   return exit_code;
 }
 

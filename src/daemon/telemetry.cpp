@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "tactus/canopen/sdo_abort.h"
@@ -101,8 +102,8 @@ void Telemetry::finish(Fault fault, LoopFigures loop) {
   figures.fault = fault;
   const std::string path = folder_ + "/summary.json";
   try {
-    const HardwareFigures hardware{log_->state(),
-                                   [&](JsonWriter& json) { writeLoopFigures(loop, json); }};
+    const Json loop_json = loopJson(loop);
+    const HardwareFigures hardware{log_->state(), loop_json};
     writeSummary(path, scene_, figures, 1.0, &hardware);
   } catch (const std::runtime_error& error) {
     std::remove(path.c_str());     // half of one

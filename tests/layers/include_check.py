@@ -24,16 +24,16 @@ LAYERS = {
     "io": ({"supervisor", "canopen", "control", "math"}, {"Eigen", "gpiod.h"}),
     "rt": ({"math"}, {"seccomp.h", "malloc.h"}),
     "scene": ({"analysis", "plant", "canopen", "sim", "control", "math"},
-              {"Eigen", "yaml-cpp", "pugixml.hpp", "fmt"}),
+              {"Eigen", "yaml-cpp", "pugixml.hpp", "fmt", "nlohmann"}),
     "record": ({"supervisor", "scene", "plant", "canopen", "sim", "control", "math"},
-               {"Eigen", "fmt"}),
+               {"Eigen", "fmt", "nlohmann"}),
     "doctor": ({"io", "rt", "canopen", "math"}, {"fmt"}),
     "daemon": ({"record", "supervisor", "scene", "io", "rt", "canopen", "control", "math"},
-               {"Eigen", "CLI", "fmt", "systemd"}),
+               {"Eigen", "CLI", "fmt", "nlohmann", "systemd"}),
     "cli": ({"daemon", "doctor", "record", "supervisor", "scene", "io", "rt", "analysis", "plant",
-             "canopen", "sim", "control", "math"}, {"Eigen", "CLI", "fmt", "yaml-cpp"}),
+             "canopen", "sim", "control", "math"}, {"Eigen", "CLI", "fmt", "nlohmann"}),
     "bench": ({"cli", "record", "supervisor", "scene", "analysis", "sim", "control", "math"},
-              {"Eigen", "CLI", "fmt", "kdl", "valgrind"}),
+              {"Eigen", "CLI", "fmt", "nlohmann", "kdl", "valgrind"}),
 }
 
 # The standard library is open to every layer but for these: what the cycle runs gets time and input

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "tactus/record/contact_list.h"
 #include "tactus/record/run_log.h"
 #include "tactus/record/time_figures.h"
+#include "tactus/scene/json.h"
 #include "tactus/scene/scene.h"
 #include "tactus/supervisor/cycle_record.h"
 
@@ -60,12 +60,12 @@ class RunSummary {
 /// What only a run on hardware has.
 struct HardwareFigures {
   const LogState& log;
-  std::function<void(JsonWriter& json)> write_loop;  ///< the member "loop"
+  const Json& loop;  ///< the member "loop"
 };
 
-/// The text of summary.json. real_time_factor: duration of the run over the time it took.
-std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
-                        const HardwareFigures* hardware = nullptr);
+/// What summary.json holds. real_time_factor: duration of the run over the time it took.
+Json summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
+                 const HardwareFigures* hardware = nullptr);
 
 /// Writes it to a file; throws InputError if that cannot be opened, RunError if not written.
 void writeSummary(const std::string& path, const Scene& scene, const RunFigures& figures,
