@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tactus/record/fault_text.h"
 #include "tactus/record/output_file.h"
 
 namespace tactus {
@@ -57,7 +58,6 @@ void RunSummary::addFigures(const CycleRecord& record) noexcept {
   }
   figures_.final_force_N = record.force_sensor_N;
   figures_.stiffness_final_N_per_m = record.stiffness_N_per_m;
-  figures_.fault = static_cast<Fault>(record.fault);
   const double error_m = norm(record.tool_error_m);
   figures_.tcp_error_max_m = std::max(figures_.tcp_error_max_m, error_m);
   figures_.tcp_error_final_m = error_m;
@@ -102,7 +102,8 @@ Json summaryJson(const Scene& scene, const RunFigures& figures, double real_time
     json["log"] = logJson(hardware->log, "complete");
   }
   json["real_time_factor"] = real_time_factor;
-  json["outcome"] = figures.fault == Fault::kNone ? "completed" : faultName(figures.fault);
+  json["outcome"] = figures.end.fault == Fault::kNone ? "completed" : faultName(figures.end.fault);
+  json["fault"] = faultJson(figures.end, scene);
   return json;
 }
 

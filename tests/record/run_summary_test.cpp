@@ -127,12 +127,14 @@ TEST(SummaryJson, HasTheKeysOfTheContractInTheirOrder) {
                                              "contacts",
                                              "step_time_ns",
                                              "real_time_factor",
-                                             "outcome"};
+                                             "outcome",
+                                             "fault"};
   std::vector<std::string> keys;
   for (const auto& entry : json) keys.push_back(entry.first.as<std::string>());
   EXPECT_EQ(keys, expected);
   EXPECT_EQ(json["real_time_factor"].as<double>(), 512.5);
   EXPECT_EQ(json["outcome"].as<std::string>(), "completed");
+  EXPECT_TRUE(json["fault"].IsNull());
 }
 
 TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
@@ -142,7 +144,8 @@ TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
   figures.tcp_error_max_m = std::numeric_limits<double>::denorm_min();
   figures.tcp_error_final_m = std::numeric_limits<double>::quiet_NaN();
   figures.contacts = {{1.0, 2.5, 1.0 / 3.0, 0.25}};
-  figures.fault = Fault::kTactileStale;
+  figures.end.fault = Fault::kTactileStale;
+  figures.end.detail = {0.021, 0.02, "s"};
   const std::string text = jsonText(summaryJson(scene(), figures, 1.0));
   const YAML::Node json = YAML::Load(text);
   EXPECT_EQ(json["cycles"].as<long long>(), 13000);
@@ -151,6 +154,7 @@ TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
   EXPECT_TRUE(json["tcp_error_final_m"].IsNull());
   EXPECT_EQ(json["contacts"][0]["peak_force_N"].as<double>(), 1.0 / 3.0);
   EXPECT_EQ(json["outcome"].as<std::string>(), "tactile_stale");
+  EXPECT_EQ(json["fault"]["value"].as<double>(), 0.021);
 }
 
 TEST(SummaryJson, EscapesWhateverASceneIsCalled) {

@@ -27,6 +27,7 @@ def build_page(runs):
             error_figure(runs)]
     if of_paper:
         body.append(runs_table(of_paper))
+    body += faults_section(runs)
     if further:
         body += ["<h2>Further runs, not of the paper</h2>" if of_paper else "<h2>Runs</h2>",
                  runs_table(further), *further_figures(further)]
@@ -113,6 +114,23 @@ def runs_table(runs):
                      number(summary["tcp_error_max_m"], 3, 1e3), number(times["median"], 0),
                      number(times["p99"], 0), number(summary["real_time_factor"], 0)])
     return table(heads, rows, "runs")
+
+
+def faults_section(runs):
+    """Of the runs that a fault has ended."""
+    rows = []
+    for scene, run in sorted(runs.items()):
+        if fault := run.summary.get("fault"):
+            unit = fault["unit"] or ""
+            rows.append([scene, fault["name"], number(fault["time_s"], 3),
+                         fault["joint"] or fault["bus"] or "", with_unit(fault["value"], unit),
+                         with_unit(fault["limit"], unit), fault["description"]])
+    heads = ["Scene", "Fault", "At, s", "Joint or bus", "Value", "Limit", "In words"]
+    return ["<h2>Faults</h2>", table(heads, rows, "faults")] if rows else []
+
+
+def with_unit(value, unit):
+    return "" if value is None else f"{value:.6g} {unit}"
 
 
 def number(value, digits, scale=1.0):

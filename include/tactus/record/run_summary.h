@@ -11,6 +11,7 @@
 #include "tactus/scene/json.h"
 #include "tactus/scene/scene.h"
 #include "tactus/supervisor/cycle_record.h"
+#include "tactus/supervisor/mode_report.h"
 
 namespace tactus {
 
@@ -30,7 +31,7 @@ struct RunFigures {
   double stiffness_at_peak_N_per_m = 0.0;  ///< in the (first) cycle of the peak force
   std::vector<ContactSummary> contacts;
   TimeFigures step_time_ns;
-  Fault fault = Fault::kNone;  ///< of the last cycle; a fault stays until the end
+  FaultReport end;  ///< the fault that ended the run, for who runs it to fill in; none: as planned
 };
 
 /// Collects the figures of a run, cycle by cycle.
