@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -112,19 +113,12 @@ void makePage(const fs::path& folder, bool is_quiet) {
   }
 }
 
-std::string toJson(const std::vector<StudyResult>& results) {
-  JsonWriter json;
-  json.beginObject();
-  json.key("goals");
-  writeJson(goalTable(results), json);
+Json toJson(const std::vector<StudyResult>& results) {
+  Json json = {{"goals", tableJson(goalTable(results))}};
   for (const StudyResult& result : results) {
-    for (const Table& table : result.tables) {
-      json.key(table.name);
-      writeJson(table, json);
-    }
+    for (const Table& table : result.tables) json[table.name] = tableJson(table);
   }
-  json.endObject();
-  return json.text();
+  return json;
 }
 
 void printGoals(const std::vector<StudyResult>& results) {
@@ -153,7 +147,7 @@ void bench(const Options& options) {
     results.push_back(study->run(bench_options));
   }
   if (options.json) {
-    std::fputs(toJson(results).c_str(), stdout);
+    std::fputs(jsonText(toJson(results)).c_str(), stdout);
   } else {
     printGoals(results);
   }

@@ -83,8 +83,8 @@ LoopRun runWithPeriod(const Scene& original, double period_s) {
   const Ripple ripple = lastRipple(samples, result.figures, scene.period_s);
   run.ripple_N = ripple.deviation;
   run.ripple_Hz = ripple.frequency_Hz;
-  if (result.figures.fault != Fault::kNone) {
-    run.outcome = faultName(result.figures.fault);
+  if (result.figures.end.fault != Fault::kNone) {
+    run.outcome = faultName(result.figures.end.fault);
   } else {
     run.outcome = ripple.deviation > kMaxRipple_N ? "limit cycle" : "stable";
   }

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
-
-#include "tactus/scene/json.h"
 
 namespace tactus {
 namespace {
@@ -81,17 +80,14 @@ std::string csvText(const Table& table) {
   return text;
 }
 
-void writeJson(const Table& table, JsonWriter& json) {
-  json.beginArray();
+Json tableJson(const Table& table) {
+  Json json = Json::array();
   for (const std::vector<Cell>& row : table.rows) {
-    json.beginObject();
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      json.key(table.columns.at(i));
-      std::visit([&json](const auto& value) { json.value(value); }, row[i]);
-    }
-    json.endObject();
+    Json& row_json = json.emplace_back(Json::object());
+    for (std::size_t i = 0; i < row.size(); ++i)
+      std::visit([&](const auto& value) { row_json[table.columns.at(i)] = value; }, row[i]);
   }
-  json.endArray();
+  return json;
 }
 
 }  // namespace tactus

@@ -100,7 +100,7 @@ void Drive::receiveEmergency(const CanFrame& frame) noexcept {
   }
   report_.emergency_code = emergency->code;
   const bool is_new = phase_ == Phase::kConfigured && !has_old_fault_;
-  if (is_new && emergency->code != 0) fail(Fault::kDriveFault);
+  if (is_new && emergency->code != 0) fail(Fault::kDriveFault, emergencyDetail());
 }
 
 void Drive::observe(double position) noexcept {
@@ -127,7 +127,8 @@ void Drive::update(DriveGoal goal, bool restart, double velocity, double positio
   if (phase_ == Phase::kRestarting && goal != DriveGoal::kSilent) makeRestart(out);
   if (phase_ != Phase::kConfigured) return;
   const bool is_finite = std::isfinite(velocity) && std::isfinite(position);
-  if (isRunning(goal) && !is_finite) fail(Fault::kCommandNotFinite);
+  if (isRunning(goal) && !is_finite)
+    fail(Fault::kCommandNotFinite, {velocity, config_.max_velocity, "m/s or rad/s"});
   const DriveCommand command{controlWord(goal), velocityCounts(goal, velocity, position)};
   if (goal != DriveGoal::kSilent) out.push(commandFrame(config_.node_id, command));
 }
@@ -257,7 +258,7 @@ void Drive::watchFault() noexcept {
   const bool may_reset = goal_ == DriveGoal::kEnabled && has_old_fault_;
   if (may_reset) ++reset_cycles_;
   const bool is_given_up = reset_cycles_ > (may_reset ? answer_timeout_cycles_ : 0);
-  if (!has_old_fault_ || is_given_up) fail(Fault::kDriveFault);
+  if (!has_old_fault_ || is_given_up) fail(Fault::kDriveFault, emergencyDetail());
 }
 
 void Drive::watchOperation() noexcept {
@@ -270,8 +271,9 @@ void Drive::watchOperation() noexcept {
 
 void Drive::watchPosition(double position) noexcept {
   if (!std::isfinite(position)) return fail(Fault::kCommandNotFinite);
-  const bool is_far = std::abs(position - report_.position) > config_.max_following_error;
-  if (feedback_ && is_far) fail(Fault::kFollowingError);
+  const double distance = std::abs(position - report_.position);
+  const double limit = config_.max_following_error;
+  if (feedback_ && distance > limit) fail(Fault::kFollowingError, {distance, limit, "m or rad"});
 }
 
 bool Drive::isRunning(DriveGoal goal) const noexcept {
@@ -298,8 +300,16 @@ std::int32_t Drive::velocityCounts(DriveGoal goal, double velocity, double posit
   return velocity_counts_.next(std::clamp(tracking, -config_.max_velocity, config_.max_velocity));
 }
 
-void Drive::fail(Fault fault) noexcept {
-  if (report_.fault == Fault::kNone) report_.fault = fault;
+void Drive::fail(Fault fault, const FaultDetail& detail) noexcept {
+  if (report_.fault != Fault::kNone) return;
+  report_.fault = fault;
+  report_.detail = detail;
+}
+
+/// Nothing without an EMCY: the status word tells no reason.
+FaultDetail Drive::emergencyDetail() const noexcept {
+  if (report_.emergency_code == 0) return {};
+  return {.value = static_cast<double>(report_.emergency_code), .unit = "emergency code"};
 }
 
 }  // namespace tactus

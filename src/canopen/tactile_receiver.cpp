@@ -126,14 +126,22 @@ void TactileReceiver::average(const Wrench& raw) noexcept {
   const Eigen::Vector2d force = raw.head<2>();
   tare_low_ = tare_count_ == 0 ? force : tare_low_.cwiseMin(force);
   tare_high_ = tare_count_ == 0 ? force : tare_high_.cwiseMax(force);
-  const bool is_calm = force.norm() <= config_.tare_max_offset_N &&
-                       (tare_high_ - tare_low_).norm() <= config_.tare_max_spread_N;
-  if (fault_ != Fault::kNone || !is_calm) {
-    tare_state_ = TareState::kRefused;
-    return;
-  }
+  const double offset_N = force.norm();
+  const double spread_N = (tare_high_ - tare_low_).norm();
+  const bool is_calm =
+      offset_N <= config_.tare_max_offset_N && spread_N <= config_.tare_max_spread_N;
+  if (fault_ != Fault::kNone || !is_calm) return refuseTare(offset_N, spread_N);
   tare_sum_ += raw;
   if (++tare_count_ >= config_.tare_samples) endTare();
+}
+
+void TactileReceiver::refuseTare(double offset_N, double spread_N) noexcept {
+  tare_state_ = TareState::kRefused;
+  tare_refusal_ = {};
+  if (spread_N > config_.tare_max_spread_N)
+    tare_refusal_ = {spread_N, config_.tare_max_spread_N, "N"};
+  if (offset_N > config_.tare_max_offset_N)
+    tare_refusal_ = {offset_N, config_.tare_max_offset_N, "N"};
 }
 
 /// Filters begin anew, as the step of the offset would ring in them as a force.

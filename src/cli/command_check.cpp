@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "tactus/cli/commands.h"
 #include "tactus/record/log_size.h"
@@ -59,76 +60,54 @@ std::vector<std::string> taskComponents(const TaskConfig& task) {
   return names;
 }
 
-void writeNames(JsonWriter& json, const char* key, const std::vector<std::string>& names) {
-  json.key(key).beginArray();
-  for (const std::string& name : names) json.value(name);
-  json.endArray();
-}
-
-void writeJoint(JsonWriter& json, const Scene& scene, int i) {
+Json jointJson(const Scene& scene, int i) {
   const ControllerConfig& config = scene.controller;
   const bool is_prismatic = config.chain.type(i) == JointType::kPrismatic;
-  json.beginObject();
-  json.key("name").value(scene.joint_names[i]);
-  json.key("type").value(is_prismatic ? "prismatic" : "revolute");
-  json.key("start").value(config.q_start[i]);
-  json.key("lower").value(config.limits.lower[i]);
-  json.key("upper").value(config.limits.upper[i]);
-  json.key("max_velocity").value(config.limits.max_velocity[i]);
-  json.key("max_acceleration").value(config.limits.max_acceleration[i]);
-  json.endObject();
+  return {{"name", scene.joint_names[i]},
+          {"type", is_prismatic ? "prismatic" : "revolute"},
+          {"start", config.q_start[i]},
+          {"lower", config.limits.lower[i]},
+          {"upper", config.limits.upper[i]},
+          {"max_velocity", config.limits.max_velocity[i]},
+          {"max_acceleration", config.limits.max_acceleration[i]}};
 }
 
-void writeBusLoad(JsonWriter& json, const std::string& interface, const BusLoad& load) {
-  json.beginObject();
-  json.key("interface").value(interface);
-  json.key("bit_rate_per_s").value(load.bit_rate_per_s);
-  json.key("terms").beginArray();
+Json busLoadJson(const std::string& interface, const BusLoad& load) {
+  Json terms = Json::array();
   for (const BusLoadTerm& term : load.terms) {
-    json.beginObject();
-    json.key("name").value(term.name);
-    json.key("frames").value(term.frames);
-    json.key("bits_a_frame").value(worstCaseBits(term.data_bytes));
-    json.key("period_s").value(term.period_s);
-    json.endObject();
+    terms.push_back({{"name", term.name},
+                     {"frames", term.frames},
+                     {"bits_a_frame", worstCaseBits(term.data_bytes)},
+                     {"period_s", term.period_s}});
   }
-  json.endArray();
-  json.key("bits_per_s").value(load.bitsPerSecond());
-  json.key("share").value(load.share());
-  json.key("max_share").value(kMaxBusLoad);
-  json.endObject();
+  return {{"interface", interface}, {"bit_rate_per_s", load.bit_rate_per_s},
+          {"terms", terms},         {"bits_per_s", load.bitsPerSecond()},
+          {"share", load.share()},  {"max_share", kMaxBusLoad}};
 }
 
 /// Nothing for a robot that only simulates.
-void writeHardware(JsonWriter& json, const Scene& scene) {
+void addHardware(const Scene& scene, Json& json) {
   if (!scene.hardware) return;
-  writeNames(json, "hardware_stages", hardwareStageNames(*scene.hardware));
+  json["hardware_stages"] = hardwareStageNames(*scene.hardware);
   const std::vector<BusLoad> loads = busLoads(*scene.hardware, scene.period_s);
-  json.key("buses").beginArray();
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    writeBusLoad(json, scene.hardware->buses[i].interface, loads[i]);
-  }
-  json.endArray();
+  Json& buses = json["buses"] = Json::array();
+  for (std::size_t i = 0; i < loads.size(); ++i)
+    buses.push_back(busLoadJson(scene.hardware->buses[i].interface, loads[i]));
 }
 
-/// Nothing for a scene without force control.
-void writeStability(JsonWriter& json, const std::optional<StabilityReport>& stability) {
-  if (!stability) return;
-  json.key("stability").beginObject();
-  json.key("stiffest_N_per_m").value(stability->stiffest_N_per_m);
-  json.key("stiffness_N_per_m").value(stability->stiffness_N_per_m);
-  json.key("stiffness_ratio").value(stability->ratio());
-  json.key("loops").beginArray();
-  for (const LoopReport& loop : stability->loops) {
-    json.beginObject();
-    json.key("name").value(loop.name);
-    json.key("largest_stiffness_ratio").value(loop.margins.largest_stiffness_ratio);
-    json.key("gain_margin").value(loop.margins.gain_margin);
-    json.key("phase_margin_deg").value(loop.phaseMargin_deg());
-    json.endObject();
+Json stabilityJson(const StabilityReport& stability) {
+  Json loops = Json::array();
+  for (const LoopReport& loop : stability.loops) {
+    loops.push_back({{"name", loop.name},
+                     {"largest_stiffness_ratio", loop.margins.largest_stiffness_ratio},
+                     {"gain_margin", loop.margins.gain_margin},
+                     {"phase_margin_deg", loop.phaseMargin_deg()}});
   }
-  json.endArray();
-  json.endObject();
+  return {{"stiffest_N_per_m", stability.stiffest_N_per_m},
+          {"stiffness_N_per_m", stability.stiffness_N_per_m},
+          {"stiffness_ratio", stability.ratio()},
+          {"loops", loops},
+          {"warnings", stability.warnings}};
 }
 
 /// The scene first, then what it extends, the robot, the URDF.
@@ -138,29 +117,25 @@ std::vector<std::string> filesOf(const Scene& scene) {
   return paths;
 }
 
-std::string checkJson(const Scene& scene, const Findings& findings) {
-  JsonWriter json;
-  json.beginObject();
-  json.key("scene").value(scene.name);
-  json.key("robot").value(scene.robot_name);
-  writeNames(json, "files", filesOf(scene));
-  json.key("variant").value(scene.variant);
-  writeNames(json, "stages", stageNames(scene.controller));
-  json.key("period_s").value(scene.period_s);
-  json.key("duration_s").value(scene.duration_s);
-  writeNames(json, "task", taskComponents(scene.controller.task));
-  json.key("joints").beginArray();
-  for (int i = 0; i < scene.controller.chain.size(); ++i) writeJoint(json, scene, i);
-  json.endArray();
-  json.key("tool_start_m").beginArray();
-  for (const double x : findings.start.p_BaseTool) json.value(x);
-  json.endArray();
-  json.key("smallest_singular_value_at_start").value(findings.start.smallest_singular_value);
-  writeNames(json, "warnings", findings.warnings);
-  writeStability(json, findings.stability);
-  writeHardware(json, scene);
-  json.endObject();
-  return json.text();
+Json checkJson(const Scene& scene, const Findings& findings) {
+  const Vector3& tool = findings.start.p_BaseTool;
+  Json joints = Json::array();
+  for (int i = 0; i < scene.controller.chain.size(); ++i) joints.push_back(jointJson(scene, i));
+  Json json = {{"scene", scene.name},
+               {"robot", scene.robot_name},
+               {"files", filesOf(scene)},
+               {"variant", scene.variant},
+               {"stages", stageNames(scene.controller)},
+               {"period_s", scene.period_s},
+               {"duration_s", scene.duration_s},
+               {"task", taskComponents(scene.controller.task)},
+               {"joints", joints},
+               {"tool_start_m", {tool.x(), tool.y(), tool.z()}},
+               {"smallest_singular_value_at_start", findings.start.smallest_singular_value},
+               {"warnings", findings.warnings}};
+  if (findings.stability) json["stability"] = stabilityJson(*findings.stability);
+  addHardware(scene, json);
+  return json;
 }
 
 std::string textLine(const std::string& name, const std::string& value) {
@@ -215,7 +190,8 @@ void runCheck(const CheckOptions& options) {
   const Scene scene = loadScene(options.scene, parseOverrides(options.settings));
   const Findings findings = examine(scene);
   checkLogSize(scene);
-  const std::string report = options.json ? checkJson(scene, findings) : toText(scene, findings);
+  const std::string report =
+      options.json ? jsonText(checkJson(scene, findings)) : toText(scene, findings);
   std::fputs(report.c_str(), stdout);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -90,7 +91,7 @@ bool runDoctor(const DoctorOptions& options) {
   const std::vector<Finding> times = judgeLoop(measured, budget_s(scene));
   findings.insert(findings.end(), times.begin(), times.end());
   const std::string report =
-      options.json ? doctorJson(findings, measured) : doctorText(findings, measured);
+      options.json ? jsonText(doctorJson(findings, measured)) : doctorText(findings, measured);
   std::fputs(report.c_str(), stdout);
   return isFit(findings);
 }

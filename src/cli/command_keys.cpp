@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -107,42 +108,33 @@ const char* presenceName(Presence presence) {
   return "";
 }
 
-void writeRow(JsonWriter& json, const FileFormat& format, const KeyRow& row) {
+Json textOrNull(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+Json rowJson(const FileFormat& format, const KeyRow& row) {
   const KeySpec& spec = *row.spec;
-  const auto textOrNull = [&json](const char* key, const std::string& text) {
-    json.key(key);
-    text.empty() ? json.null() : json.value(text);
-  };
-  json.beginObject();
-  json.key("file").value(format.name);
-  json.key("key").value(row.path);
-  json.key("type").value(typeName(spec.type));
-  textOrNull("unit", spec.unit);
-  json.key("lower").value(spec.range.lower);  // null: none
-  json.key("is_lower_open").value(spec.range.lower_open);
-  json.key("upper").value(spec.range.upper);
-  json.key("min_count").value(spec.count.min);
-  json.key("max_count").value(spec.count.max);
-  json.key("is_one_a_joint").value(spec.count.one_a_joint);
-  json.key("columns").value(spec.columns);
-  json.key("choices").beginArray();
-  for (const std::string& choice : spec.choices) json.value(choice);
-  json.endArray();
-  json.key("presence").value(presenceName(spec.presence));
-  textOrNull("default", spec.default_value);
-  textOrNull("symbol", spec.symbol);
-  json.key("meaning").value(spec.doc);
-  json.endObject();
+  return {{"file", format.name},
+          {"key", row.path},
+          {"type", typeName(spec.type)},
+          {"unit", textOrNull(spec.unit)},
+          {"lower", spec.range.lower},  // null: none
+          {"is_lower_open", spec.range.lower_open},
+          {"upper", spec.range.upper},
+          {"min_count", spec.count.min},
+          {"max_count", spec.count.max},
+          {"is_one_a_joint", spec.count.one_a_joint},
+          {"columns", spec.columns},
+          {"choices", spec.choices},
+          {"presence", presenceName(spec.presence)},
+          {"default", textOrNull(spec.default_value)},
+          {"meaning", spec.doc}};
 }
 
-std::string toJson(const std::vector<Selection>& selections) {
-  JsonWriter json;
-  json.beginArray();
+Json toJson(const std::vector<Selection>& selections) {
+  Json json = Json::array();
   for (const Selection& selection : selections) {
-    for (const KeyRow& row : selection.rows) writeRow(json, selection.format, row);
+    for (const KeyRow& row : selection.rows) json.push_back(rowJson(selection.format, row));
   }
-  json.endArray();
-  return json.text();
+  return json;
 }
 
 std::string toText(const std::vector<Selection>& selections) {
@@ -166,7 +158,7 @@ std::string describe(const KeysOptions& options) {
   if (!options.manual.empty()) return manualPage(formatOf(options.manual));
   if (!options.schema.empty()) return jsonSchema(formatOf(options.schema));
   const std::vector<Selection> selections = select(options.paths);
-  return options.json ? toJson(selections) : toText(selections);
+  return options.json ? jsonText(toJson(selections)) : toText(selections);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,18 +24,11 @@ struct PlantOptions {
   bool json = false;
 };
 
-std::string countersJson(const PlantRunResult& result) {
-  JsonWriter json;
-  json.beginObject();
-  const auto count = [&json](const char* name, std::uint64_t number) {
-    json.key(name).value(static_cast<long long>(number));
-  };
-  count("stale_setpoints_applied", result.plant.stale_setpoints_applied);
-  count("frames_refused", result.plant.frames_refused);
-  count("frames_not_taken", result.plant.frames_not_taken);
-  count("interface_refused", result.interface_refused);
-  json.endObject();
-  return json.text();
+Json countersJson(const PlantRunResult& result) {
+  return {{"stale_setpoints_applied", result.plant.stale_setpoints_applied},
+          {"frames_refused", result.plant.frames_refused},
+          {"frames_not_taken", result.plant.frames_not_taken},
+          {"interface_refused", result.interface_refused}};
 }
 
 void printCounters(const PlantRunResult& result) {
@@ -50,7 +44,7 @@ void play(const PlantOptions& options) {
     const PlantRunResult result =
         runPlant(scene, options.e_stop_file, options.json ? stderr : stdout);
     if (options.json) {
-      std::fputs(countersJson(result).c_str(), stdout);
+      std::fputs(jsonText(countersJson(result)).c_str(), stdout);
     } else {
       printCounters(result);
     }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -131,56 +132,38 @@ ReplayResult replayLogs(const ReplayOptions& options) {
   return replay->finish();
 }
 
-void writeDifference(const ReplayDifference& difference, JsonWriter& json) {
-  json.beginObject();
-  json.key("column").value(difference.column);
-  json.key("cycle").value(difference.cycle);
-  json.key("t_s").value(difference.t_s);
-  json.key("recorded").value(difference.recorded);
-  json.key("replayed").value(difference.replayed);
-  json.endObject();
+Json differenceJson(const ReplayDifference& difference) {
+  return {{"column", difference.column},
+          {"cycle", difference.cycle},
+          {"t_s", difference.t_s},
+          {"recorded", difference.recorded},
+          {"replayed", difference.replayed}};
 }
 
-void writeList(const char* name, const std::vector<std::string>& texts, JsonWriter& json) {
-  json.key(name).beginArray();
-  for (const std::string& text : texts) json.value(text);
-  json.endArray();
-}
-
-void writeStretches(const std::vector<UnknownStretch>& stretches, JsonWriter& json) {
-  json.key("not_replayed").beginArray();
+Json stretchesJson(const std::vector<UnknownStretch>& stretches) {
+  Json json = Json::array();
   for (const UnknownStretch& stretch : stretches) {
-    json.beginObject();
-    json.key("from_s").value(stretch.from_s);
-    json.key("to_s").value(stretch.to_s);
-    json.key("reason").value(stretch.reason);
-    json.endObject();
+    json.push_back(
+        {{"from_s", stretch.from_s}, {"to_s", stretch.to_s}, {"reason", stretch.reason}});
   }
-  json.endArray();
+  return json;
 }
 
-std::string jsonReport(const ReplayOptions& options, const ReplayResult& result) {
+Json replayJson(const ReplayOptions& options, const ReplayResult& result) {
   const ReplayComparison& comparison = result.comparison;
-  JsonWriter json;
-  json.beginObject();
-  writeList("logs", options.logs, json);
-  writeList("set", options.settings, json);
-  json.key("cycles").value(comparison.cycles() + comparison.skipped());
-  json.key("cut_off").value(result.cut_off);
-  json.key("compared_cycles").value(comparison.cycles());
-  writeStretches(result.unknown, json);
-  json.key("differing_cycles").value(comparison.differingCycles());
-  json.key("first_difference");
-  if (comparison.first()) {
-    writeDifference(*comparison.first(), json);
-  } else {
-    json.null();
-  }
-  json.key("largest_differences").beginArray();
-  for (const ReplayDifference& largest : comparison.largest()) writeDifference(largest, json);
-  json.endArray();
-  json.endObject();
-  return json.text();
+  const auto& first = comparison.first();
+  Json largest = Json::array();
+  for (const ReplayDifference& difference : comparison.largest())
+    largest.push_back(differenceJson(difference));
+  return {{"logs", options.logs},
+          {"set", options.settings},
+          {"cycles", comparison.cycles() + comparison.skipped()},
+          {"cut_off", result.cut_off},
+          {"compared_cycles", comparison.cycles()},
+          {"not_replayed", stretchesJson(result.unknown)},
+          {"differing_cycles", comparison.differingCycles()},
+          {"first_difference", first ? differenceJson(*first) : Json()},
+          {"largest_differences", largest}};
 }
 
 std::string stretchesText(const ReplayResult& result) {
@@ -227,7 +210,7 @@ int runReplay(const ReplayOptions& options) {
   }
   const ReplayComparison& comparison = result.comparison;
   const std::string report = options.json
-                                 ? jsonReport(options, result)
+                                 ? jsonText(replayJson(options, result))
                                  : stretchesText(result) + differencesText(options, comparison);
   fmt::print(options.output == "-" ? stderr : stdout, "{}", report);
   return options.settings.empty() && comparison.first() ? kExitFault : kExitDone;

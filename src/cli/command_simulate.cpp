@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "tactus/cli/commands.h"
 #include "tactus/cli/simulation.h"
+#include "tactus/record/fault_text.h"
 #include "tactus/record/run_folder.h"
 #include "tactus/record/run_summary.h"
 #include "tactus/scene/command_scene.h"
@@ -91,12 +93,12 @@ void printHeading() {
   fmt::print("{:<28} {:>9} {:>9} {:>10} {:>10} {:>8}\n", "", "N", "N", "mm", "mm", "than real");
 }
 
-void printRow(const std::string& name, const SimulationResult& result) {
+void printRow(const Scene& scene, const SimulationResult& result) {
   const RunFigures& figures = result.figures;
-  fmt::print("{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", name, figures.peak_force_N,
-             figures.final_force_N, 1e3 * figures.tcp_error_max_m, 1e3 * figures.tcp_error_final_m,
-             result.real_time_factor,
-             figures.fault == Fault::kNone ? "completed" : faultName(figures.fault));
+  fmt::print("{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", scene.name,
+             figures.peak_force_N, figures.final_force_N, 1e3 * figures.tcp_error_max_m,
+             1e3 * figures.tcp_error_final_m, result.real_time_factor,
+             figures.end.fault == Fault::kNone ? "completed" : faultEvent(figures.end, scene));
 }
 
 SimulationResult simulateScene(const Scene& scene, const fs::path& folder) {
@@ -114,19 +116,18 @@ int simulateScenes(const SimulateOptions& options) {
   const std::vector<fs::path> folders = prepareFolders(options, scenes);
   int exit_code = kExitDone;
   if (!options.json) printHeading();
-  std::string json;  // printed at the end, so that a failed run leaves no unfinished list
+  Json json = Json::array();  // printed at the end, so that a failed run leaves no unfinished list
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const SimulationResult result = simulateScene(scenes[i], folders[i]);
-    if (result.figures.fault != Fault::kNone) exit_code = kExitFault;
+    if (result.figures.end.fault != Fault::kNone) exit_code = kExitFault;
     if (options.json) {
-      json += json.empty() ? "[" : ",";
-      json += summaryJson(scenes[i], result.figures, result.real_time_factor);
+      json.push_back(summaryJson(scenes[i], result.figures, result.real_time_factor));
     } else {
-      printRow(scenes[i].name, result);
+      printRow(scenes[i], result);
       std::fflush(stdout);
     }
   }
-  if (options.json) fmt::print("{}]\n", json);
+  if (options.json) std::fputs(jsonText(json).c_str(), stdout);
   return exit_code;
 }
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <unistd.h>
-#include <yaml-cpp/yaml.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -14,6 +13,7 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 
@@ -56,20 +56,25 @@ std::string readStatus(const std::string& path) {
 }
 
 /// null stands for what JSON has no number for.
-double number(const YAML::Node& parent, const char* name) {
-  const YAML::Node node = parent[name];
-  return node.IsDefined() && node.IsNull() ? std::numeric_limits<double>::quiet_NaN()
-                                           : node.as<double>();
+double numberAt(const Json& parent, const char* name) {
+  const Json& value = parent.at(name);
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
-std::string timesLine(const char* name, const YAML::Node& times) {
-  const auto microseconds = [&](const char* figure) { return 1e-3 * number(times, figure); };
+std::string textAt(const Json& parent, const char* name) {
+  return escaped(parent.at(name).get<std::string>());
+}
+
+long long countAt(const Json& parent, const char* name) { return parent.at(name).get<long long>(); }
+
+std::string timesLine(const char* name, const Json& times) {
+  const auto microseconds = [&](const char* figure) { return 1e-3 * numberAt(times, figure); };
   return fmt::format("{:<8} {:.1f} us, 99 % below {:.1f} us, at worst {:.1f} us\n", name,
                      microseconds("median"), microseconds("p99"), microseconds("max"));
 }
 
-std::string motionText(const YAML::Node& motion) {
-  const auto of = [&](const char* name) { return number(motion, name); };
+std::string motionText(const Json& motion) {
+  const auto of = [&](const char* name) { return numberAt(motion, name); };
   return fmt::format(
       "force    {:.2f} N, at most {:.2f} N so far; obstacle taken for {:.0f} N/m\n"
       "tool     {:.1f} mm off its path, at most {:.1f} mm\n",
@@ -77,23 +82,23 @@ std::string motionText(const YAML::Node& motion) {
       1e3 * of("tcp_error_max_m"));
 }
 
-std::string logText(const YAML::Node& log) {
-  const int files = log["files"].as<int>();
-  std::string text = fmt::format("log      {}", escaped(log["state"].as<std::string>()));
-  if (log["reason"]) text += ": " + escaped(log["reason"].as<std::string>());
-  return text + fmt::format("; {} file{}\n", files, files == 1 ? "" : "s");
+std::string logText(const Json& log) {
+  const long long files = countAt(log, "files");
+  std::string shown = "log      " + textAt(log, "state");
+  if (log.contains("reason")) shown += ": " + textAt(log, "reason");
+  return shown + fmt::format("; {} file{}\n", files, files == 1 ? "" : "s");
 }
 
-std::string statusText(const YAML::Node& status) {
-  const auto text = [&](const char* name) { return escaped(status[name].as<std::string>()); };
-  std::string shown = fmt::format("{} ({}), process {}\n{}\n", text("scene"), text("variant"),
-                                  text("pid"), text("description"));
-  if (status["motion"]) shown += motionText(status["motion"]);
-  shown += fmt::format("cycles   {}, {} missed, {} not logged\n", text("cycles"),
-                       text("missed_cycles"), text("dropped_records"));
-  if (status["log"]) shown += logText(status["log"]);
-  return shown + timesLine("wakes", status["wake_latency_ns"]) +
-         timesLine("step", status["control_ns"]);
+std::string statusText(const Json& status) {
+  std::string shown =
+      fmt::format("{} ({}), process {}\n{}\n", textAt(status, "scene"), textAt(status, "variant"),
+                  countAt(status, "pid"), textAt(status, "description"));
+  if (status.contains("motion")) shown += motionText(status.at("motion"));
+  shown += fmt::format("cycles   {}, {} missed, {} not logged\n", countAt(status, "cycles"),
+                       countAt(status, "missed_cycles"), countAt(status, "dropped_records"));
+  if (status.contains("log")) shown += logText(status.at("log"));
+  return shown + timesLine("wakes", status.at("wake_latency_ns")) +
+         timesLine("step", status.at("control_ns"));
 }
 
 struct Shown {
@@ -105,14 +110,14 @@ struct Shown {
 Shown readShown(const std::string& path, bool as_json) {
   const std::string json = readStatus(path);
   try {
-    const YAML::Node status = YAML::Load(json);  // JSON is YAML, too
+    const Json status = Json::parse(json);
     Shown shown;
-    shown.age_s = monotonicTime_s() - number(status, "monotonic_s");
-    shown.is_well = status["fault"].as<std::string>() == faultName(Fault::kNone);
+    shown.age_s = monotonicTime_s() - numberAt(status, "monotonic_s");
+    shown.is_well = textAt(status, "fault") == faultName(Fault::kNone);
     shown.text = statusText(status);  // also to see that all is there
     if (as_json) shown.text = json;
     return shown;
-  } catch (const YAML::Exception&) {
+  } catch (const Json::exception&) {
     throw RunError(fmt::format("{}: not the status of a daemon", escaped(path)));
   }
 }

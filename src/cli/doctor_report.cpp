@@ -6,9 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "tactus/record/time_figures.h"
-#include "tactus/scene/json.h"
 
 namespace tactus {
 namespace {
@@ -66,38 +66,30 @@ std::string findingText(const Finding& finding) {
   return text;
 }
 
-void writeHistogram(const char* name, const Histogram& times, JsonWriter& json) {
-  json.key(name).beginArray();
+Json histogramJson(const Histogram& times) {
+  Json json = Json::array();
   times.forEachBucket([&](std::int64_t highest_ns, std::uint64_t count) {
-    json.beginObject();
-    json.key("up_to_ns").value(static_cast<long long>(highest_ns));
-    json.key("count").value(static_cast<long long>(count));
-    json.endObject();
+    json.push_back({{"up_to_ns", highest_ns}, {"count", count}});
   });
-  json.endArray();
+  return json;
 }
 
-void writeFinding(const Finding& finding, JsonWriter& json) {
-  json.beginObject();
-  json.key("name").value(finding.name);
-  json.key("level").value(levelName(finding.level));
-  json.key("what").value(finding.what);
-  if (!finding.why_it_matters.empty()) json.key("why_it_matters").value(finding.why_it_matters);
-  if (!finding.how_to_mend.empty()) json.key("how_to_mend").value(finding.how_to_mend);
-  json.endObject();
+Json findingJson(const Finding& finding) {
+  Json json = {{"name", finding.name}, {"level", levelName(finding.level)}, {"what", finding.what}};
+  if (!finding.why_it_matters.empty()) json["why_it_matters"] = finding.why_it_matters;
+  if (!finding.how_to_mend.empty()) json["how_to_mend"] = finding.how_to_mend;
+  return json;
 }
 
-void writeMeasured(const LoopMeasurement& measured, JsonWriter& json) {
-  json.key("loop").beginObject();
-  json.key("period_s").value(measured.period_s);
-  json.key("cycles").value(measured.cycles);
-  json.key("missed_cycles").value(measured.missed_cycles);
-  json.key("page_faults").value(measured.page_faults);
-  writeTimes("wake_latency_ns", timeFigures(measured.wake_latency), json);
-  writeTimes("step_ns", timeFigures(measured.step), json);
-  writeHistogram("wake_latency_histogram", measured.wake_latency, json);
-  writeHistogram("step_histogram", measured.step, json);
-  json.endObject();
+Json measuredJson(const LoopMeasurement& measured) {
+  return {{"period_s", measured.period_s},
+          {"cycles", measured.cycles},
+          {"missed_cycles", measured.missed_cycles},
+          {"page_faults", measured.page_faults},
+          {"wake_latency_ns", timesJson(timeFigures(measured.wake_latency))},
+          {"step_ns", timesJson(timeFigures(measured.step))},
+          {"wake_latency_histogram", histogramJson(measured.wake_latency)},
+          {"step_histogram", histogramJson(measured.step)}};
 }
 
 }  // namespace
@@ -117,16 +109,11 @@ std::string doctorText(const std::vector<Finding>& findings, const LoopMeasureme
   return text;
 }
 
-std::string doctorJson(const std::vector<Finding>& findings, const LoopMeasurement& measured) {
-  JsonWriter json;
-  json.beginObject();
-  json.key("fit").value(isFit(findings));
-  json.key("findings").beginArray();
-  for (const Finding& finding : findings) writeFinding(finding, json);
-  json.endArray();
-  writeMeasured(measured, json);
-  json.endObject();
-  return json.text();
+Json doctorJson(const std::vector<Finding>& findings, const LoopMeasurement& measured) {
+  Json json = {{"fit", isFit(findings)}, {"findings", Json::array()}};
+  for (const Finding& finding : findings) json["findings"].push_back(findingJson(finding));
+  json["loop"] = measuredJson(measured);
+  return json;
 }
 
 }  // namespace tactus

@@ -23,6 +23,15 @@ std::int64_t nanoseconds(Clock::duration duration) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
 }
 
+/// The first fault of a run; a later one is not asked for.
+void noteFault(const ControllerOutput& output, double t_s, FaultReport& end) {
+  if (output.fault == Fault::kNone || end.fault != Fault::kNone) return;
+  end.fault = output.fault;
+  end.time_s = t_s;
+  end.joint = output.fault_detail.joint;
+  end.detail = output.fault_detail;
+}
+
 bool isOver(const ControllerOutput& output) {
   return output.fault != Fault::kNone && output.velocity.isZero(0.0);
 }
@@ -40,6 +49,7 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
   RobotInput input;
   ControllerOutput output;
   CycleRecord record;
+  FaultReport end;
 
   const Clock::time_point start = Clock::now();
   long long cycle = 0;
@@ -50,6 +60,7 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
     controller.update(input, t_s, scene.period_s, state, output);
     record.step_ns = nanoseconds(Clock::now() - before);
     const Vector3 error = toolError(scene.controller.task, output.w_d, robot.toolPosition());
+    noteFault(output, t_s, end);
     robot.write(output.velocity);
     fillRecord(t_s, input, output, error, record);
     rotation_error.fill(record);
@@ -58,7 +69,9 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
   }
   const double wall_s = 1e-9 * static_cast<double>(nanoseconds(Clock::now() - start));
   const double simulated_s = static_cast<double>(cycle) * scene.period_s;
-  return {summary.figures(), simulated_s / wall_s};
+  SimulationResult result{summary.figures(), simulated_s / wall_s};
+  result.figures.end = end;
+  return result;
 }
 
 SimulationResult simulate(const Scene& scene, const std::string& log_path,

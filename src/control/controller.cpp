@@ -44,6 +44,13 @@ void replaceRotation(const TaskConfig& task, const Vector3& rotation_vector,
     if (task.components[i] >= 3) w[i] = rotation_vector[task.components[i] - 3];
 }
 
+/// |F|, N; not finite if any reading is.
+double judgedForce_N(const TactileSample& sample) noexcept {
+  const bool is_finite = std::isfinite(sample.moment_y_Nm) && std::isfinite(sample.moment_z_Nm);
+  return is_finite ? std::hypot(sample.force_y_N, sample.force_z_N)
+                   : std::numeric_limits<double>::quiet_NaN();
+}
+
 /// How far the tool is from its reference, m.
 double lag_m(const TaskConfig& task, const TaskVector& error) noexcept {
   double squared = 0.0;
@@ -151,7 +158,10 @@ void Controller::respond(const RobotInput& input, double period_s, PreparedCycle
   output.contact = {};
   if (config_.tactile_module) {
     const Fault fault = readTactileModule(input, period_s, state);
-    if (state.fault == Fault::kNone) state.fault = fault;
+    if (state.fault == Fault::kNone && fault != Fault::kNone) {
+      state.fault = fault;
+      output.fault_detail = state.sample_detail;
+    }
     output.contact.force_sensor_N = state.contact_point.force_N;
     output.contact.contact_position_m = state.contact_point.position_m;
     output.contact.contact_direction = state.contact_point.direction;
@@ -185,12 +195,23 @@ void Controller::limit(const Motion& motion, double period_s, ControllerState& s
     const double cut_m_per_s = wanted_m_per_s - retreat(motion.a, output.velocity);
     state.contact.cut_m_per_s = mayMove(state) && cut_m_per_s > 0.0 ? cut_m_per_s : 0.0;
   }
-  if (!finite) state.fault = Fault::kCommandNotFinite;
-
+  if (!finite) {
+    state.fault = Fault::kCommandNotFinite;
+    output.fault_detail = notFinite(motion);
+  }
   output.fault = state.fault;
   output.q_desired = state.q_desired;
   state.velocity_before = output.velocity;
   passTime(period_s, state);
+}
+
+FaultDetail Controller::notFinite(const Motion& motion) const noexcept {
+  for (int i = 0; i < config_.chain.size(); ++i) {
+    if (std::isfinite(motion.v_scaled[i])) continue;
+    const bool is_prismatic = config_.chain.type(i) == JointType::kPrismatic;
+    return {motion.v_scaled[i], config_.limits.max_velocity[i], is_prismatic ? "m/s" : "rad/s", i};
+  }
+  return {};
 }
 
 void Controller::passTime(double duration_s, ControllerState& state) const noexcept {
@@ -264,7 +285,9 @@ Fault Controller::readTactileModule(const RobotInput& input, double period_s,
   state.contact_point.interval_s = 0.0;
   if (input.tactile.sequence == state.sample_sequence) {
     state.sample_age_s += period_s;
-    return state.sample_age_s > module.max_sample_age_s ? Fault::kTactileStale : state.sample_fault;
+    if (state.sample_age_s <= module.max_sample_age_s) return state.sample_fault;
+    state.sample_detail = {state.sample_age_s, module.max_sample_age_s, "s"};
+    return Fault::kTactileStale;
   }
   state.sample_sequence = input.tactile.sequence;
   const double interval_s = state.sample_age_s + period_s;
@@ -274,6 +297,8 @@ Fault Controller::readTactileModule(const RobotInput& input, double period_s,
   if (is_valid) {
     locateContact(input.tactile, module.length_m, state.contact_point);
     state.contact_point.interval_s = interval_s;
+  } else {
+    state.sample_detail = {judgedForce_N(input.tactile), module.max_force_N, "N"};
   }
   return state.sample_fault;
 }

@@ -188,10 +188,10 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   thread.join();
   telemetry.drain(link);
   nameForbiddenCall(filter);
-  const Fault fault = loop->report().fault;
-  telemetry.finish(fault,
+  const FaultReport& end = loop->report();
+  telemetry.finish(end,
                    loopFigures(scene, *loop, link, thread, processTime_ns() - process_start_ns));
-  return fault;
+  return end.fault;
 }
 
 }  // namespace tactus

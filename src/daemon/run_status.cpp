@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "tactus/record/output_file.h"
 #include "tactus/record/time_figures.h"
@@ -16,40 +17,35 @@ namespace {
 
 constexpr double kStatusPeriod_s = 0.5;
 
-void writeMotion(const RunFigures& figures, JsonWriter& json) {
-  json.key("motion").beginObject();
-  json.key("cycles").value(figures.cycles);
-  json.key("force_N").value(figures.final_force_N);
-  json.key("peak_force_N").value(figures.peak_force_N);
-  json.key("stiffness_N_per_m").value(figures.stiffness_final_N_per_m);
-  json.key("tcp_error_m").value(figures.tcp_error_final_m);
-  json.key("tcp_error_max_m").value(figures.tcp_error_max_m);
-  json.endObject();
+Json motionJson(const RunFigures& figures) {
+  return {{"cycles", figures.cycles},
+          {"force_N", figures.final_force_N},
+          {"peak_force_N", figures.peak_force_N},
+          {"stiffness_N_per_m", figures.stiffness_final_N_per_m},
+          {"tcp_error_m", figures.tcp_error_final_m},
+          {"tcp_error_max_m", figures.tcp_error_max_m}};
 }
 
 }  // namespace
 
 double monotonicTime_s() noexcept { return 1e-9 * static_cast<double>(now_ns()); }
 
-std::string statusJson(const RunStatus& status, double monotonic_s) {
-  JsonWriter json;
-  json.beginObject();
-  json.key("scene").value(status.scene.name);
-  json.key("variant").value(status.scene.variant);
-  json.key("pid").value(static_cast<long long>(::getpid()));
-  json.key("monotonic_s").value(monotonic_s);
-  json.key("mode").value(modeName(status.mode));
-  json.key("fault").value(faultName(status.fault));
-  json.key("description").value(status.description);
-  json.key("cycles").value(status.loop.cycles);
-  json.key("missed_cycles").value(status.loop.missed_cycles);
-  json.key("dropped_records").value(status.loop.dropped_records);
-  writeTimes("wake_latency_ns", timeFigures(status.loop.wake_latency), json);
-  writeTimes("control_ns", timeFigures(status.loop.control), json);
-  if (status.figures) writeMotion(*status.figures, json);
-  if (status.log) writeLogState(*status.log, "writing", json);
-  json.endObject();
-  return json.text();
+Json statusJson(const RunStatus& status, double monotonic_s) {
+  Json json = {{"scene", status.scene.name},
+               {"variant", status.scene.variant},
+               {"pid", ::getpid()},
+               {"monotonic_s", monotonic_s},
+               {"mode", modeName(status.mode)},
+               {"fault", faultName(status.fault)},
+               {"description", status.description},
+               {"cycles", status.loop.cycles},
+               {"missed_cycles", status.loop.missed_cycles},
+               {"dropped_records", status.loop.dropped_records},
+               {"wake_latency_ns", timesJson(timeFigures(status.loop.wake_latency))},
+               {"control_ns", timesJson(timeFigures(status.loop.control))}};
+  if (status.figures) json["motion"] = motionJson(*status.figures);
+  if (status.log) json["log"] = logJson(*status.log, "writing");
+  return json;
 }
 
 StatusFile::StatusFile() {
@@ -71,7 +67,7 @@ void StatusFile::write(const RunStatus& status) {
   try {
     const std::string next = path_ + ".next";
     OutputFile file(next);
-    file.append(statusJson(status, written_s_));
+    file.append(jsonText(statusJson(status, written_s_)));
     file.close();
     std::filesystem::rename(next, path_);
   } catch (const std::exception& error) {

@@ -3,55 +3,13 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "tactus/canopen/sdo_abort.h"
+#include "tactus/record/fault_text.h"
 #include "tactus/record/run_error.h"
 
 namespace tactus {
-namespace {
-
-std::string describeRefusal(const SetupFailure& failure) {
-  return fmt::format(", object {:04X}:{:02X}: {}", failure.index, failure.subindex,
-                     failure.abort_code == 0 ? "no answer" : sdoAbortName(failure.abort_code));
-}
-
-std::string describeDrive(const ModeReport& report, const Scene& scene) {
-  const DriveConfig& drive = scene.hardware->drives[report.joint];
-  std::string text =
-      fmt::format("drive {} on {} (joint {})", drive.node_id,
-                  scene.hardware->buses[drive.bus].interface, scene.joint_names[report.joint]);
-  if (report.drive.emergency_code != 0)
-    text += fmt::format(", emergency code 0x{:04X}", report.drive.emergency_code);
-  if (report.fault == Fault::kDriveSetupRefused)
-    text += describeRefusal(report.drive.setup_failure);
-  return text + fmt::format(", {}", driveStateName(report.drive.state));
-}
-
-std::string describePlace(const ModeReport& report, const Scene& scene) {
-  const bool is_prismatic = scene.controller.chain.type(report.joint) == JointType::kPrismatic;
-  return fmt::format("joint {} is at {:.6g} {}, expected within {:g} of {:.6g}",
-                     scene.joint_names[report.joint], report.q_measured, is_prismatic ? "m" : "rad",
-                     scene.hardware->start_tolerance, report.q_expected);
-}
-
-std::string describeCulprit(const ModeReport& report, const Scene& scene) {
-  if (report.joint >= 0 && report.fault == Fault::kNotAtStart)
-    return ", " + describePlace(report, scene);
-  if (report.joint >= 0) return ", " + describeDrive(report, scene);
-  if (report.bus >= 0) return ", " + scene.hardware->buses[report.bus].interface;
-  return "";
-}
-
-}  // namespace
-
-std::string describeMode(const ModeReport& report, const Scene& scene) {
-  std::string text = modeName(report.mode);
-  if (report.fault == Fault::kNone) return text;
-  const FaultRow& row = faultRow(report.fault);
-  return text + fmt::format(": {}{}: {}; reaction: {}", row.name, describeCulprit(report, scene),
-                            row.detection, reactionName(row.reaction));
-}
 
 Telemetry::Telemetry(const Scene& scene, const std::string& folder)
     : scene_(scene),
@@ -93,7 +51,7 @@ void Telemetry::showStatus(const LoopLink& link) {
                       figures.cycles > 0 ? &figures : nullptr, log_ ? &log_->state() : nullptr});
 }
 
-void Telemetry::finish(Fault fault, LoopFigures loop) {
+void Telemetry::finish(const FaultReport& end, LoopFigures loop) {
   if (!log_) return;
   log_->close();
   loop.wake_latency = loop_.wake_latency;
@@ -101,11 +59,11 @@ void Telemetry::finish(Fault fault, LoopFigures loop) {
   loop.control = loop_.control;
   loop.write = loop_.write;
   RunFigures figures = summary_.figures();
-  figures.fault = fault;
+  figures.end = end;
   const std::string path = folder_ + "/summary.json";
   try {
-    const HardwareFigures hardware{log_->state(),
-                                   [&](JsonWriter& json) { writeLoopFigures(loop, json); }};
+    const Json loop_json = loopJson(loop);
+    const HardwareFigures hardware{log_->state(), loop_json};
     writeSummary(path, scene_, figures, 1.0, &hardware);
   } catch (const std::runtime_error& error) {
     std::remove(path.c_str());     // half of one

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <system_error>
 #include <utility>
@@ -43,13 +44,12 @@ void rename(const std::string& from, const std::string& to) {
 
 std::string logName(int age) { return age == 0 ? "run.ulg" : fmt::format("run.{}.ulg", age); }
 
-void writeLogState(const LogState& state, const char* unless_stopped, JsonWriter& json) {
-  json.key("log").beginObject();
-  json.key("state").value(state.stop_reason.empty() ? unless_stopped : "stopped");
-  if (!state.stop_reason.empty()) json.key("reason").value(state.stop_reason);
-  json.key("files").value(state.files);
-  json.key("removed_files").value(state.removed_files);
-  json.endObject();
+Json logJson(const LogState& state, const char* unless_stopped) {
+  Json json = {{"state", state.stop_reason.empty() ? unless_stopped : "stopped"}};
+  if (!state.stop_reason.empty()) json["reason"] = state.stop_reason;
+  json["files"] = state.files;
+  json["removed_files"] = state.removed_files;
+  return json;
 }
 
 RunLog::RunLog(const Scene& scene, std::string folder)

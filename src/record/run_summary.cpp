@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "tactus/record/fault_text.h"
 #include "tactus/record/output_file.h"
 #include "tactus/record/tool_error.h"
-#include "tactus/scene/json.h"
 
 namespace tactus {
 namespace {
@@ -17,35 +18,32 @@ double norm(const double (&vector)[3]) noexcept {
   return std::sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
 }
 
-void writeContact(const ContactSummary& contact, JsonWriter& json) {
-  json.beginObject();
-  json.key("start_s").value(contact.start_s);
-  json.key("end_s").value(contact.end_s);
-  json.key("peak_force_N").value(contact.peak_force_N);
-  json.key("settling_s").value(contact.settling_s);
-  json.endObject();
+Json contactJson(const ContactSummary& contact) {
+  return {{"start_s", contact.start_s},
+          {"end_s", contact.end_s},
+          {"peak_force_N", contact.peak_force_N},
+          {"settling_s", contact.settling_s}};
 }
 
-void writeFigures(const RunFigures& figures, JsonWriter& json) {
-  json.key("cycles").value(figures.cycles);
-  json.key("peak_force_N").value(figures.peak_force_N);
-  json.key("final_force_N").value(figures.final_force_N);
-  json.key("tcp_error_max_m").value(figures.tcp_error_max_m);
-  json.key("tcp_error_rms_m").value(figures.tcp_error_rms_m);
-  json.key("tcp_error_final_m").value(figures.tcp_error_final_m);
+void addTo(Json& json, const RunFigures& figures) {
+  json["cycles"] = figures.cycles;
+  json["peak_force_N"] = figures.peak_force_N;
+  json["final_force_N"] = figures.final_force_N;
+  json["tcp_error_max_m"] = figures.tcp_error_max_m;
+  json["tcp_error_rms_m"] = figures.tcp_error_rms_m;
+  json["tcp_error_final_m"] = figures.tcp_error_final_m;
   if (const auto& rotation = figures.tcp_rotation_error) {
-    json.key("tcp_rotation_error_max_rad").value(rotation->max_rad);
-    json.key("tcp_rotation_error_rms_rad").value(rotation->rms_rad);
-    json.key("tcp_rotation_error_final_rad").value(rotation->final_rad);
+    json["tcp_rotation_error_max_rad"] = rotation->max_rad;
+    json["tcp_rotation_error_rms_rad"] = rotation->rms_rad;
+    json["tcp_rotation_error_final_rad"] = rotation->final_rad;
   }
-  json.key("peak_joint_speed_squared").value(figures.peak_joint_speed_squared);
-  json.key("joints_at_limit_cycles").value(figures.joints_at_limit_cycles);
-  json.key("stiffness_final_N_per_m").value(figures.stiffness_final_N_per_m);
-  json.key("stiffness_at_peak_N_per_m").value(figures.stiffness_at_peak_N_per_m);
-  json.key("contacts").beginArray();
-  for (const ContactSummary& contact : figures.contacts) writeContact(contact, json);
-  json.endArray();
-  writeTimes("step_time_ns", figures.step_time_ns, json);
+  json["peak_joint_speed_squared"] = figures.peak_joint_speed_squared;
+  json["joints_at_limit_cycles"] = figures.joints_at_limit_cycles;
+  json["stiffness_final_N_per_m"] = figures.stiffness_final_N_per_m;
+  json["stiffness_at_peak_N_per_m"] = figures.stiffness_at_peak_N_per_m;
+  Json& contacts = json["contacts"] = Json::array();
+  for (const ContactSummary& contact : figures.contacts) contacts.push_back(contactJson(contact));
+  json["step_time_ns"] = timesJson(figures.step_time_ns);
 }
 
 }  // namespace
@@ -68,7 +66,6 @@ void RunSummary::addFigures(const CycleRecord& record) noexcept {
   }
   figures_.final_force_N = record.force_sensor_N;
   figures_.stiffness_final_N_per_m = record.stiffness_N_per_m;
-  figures_.fault = static_cast<Fault>(record.fault);
   addToolError(record);
   addJoints(record);
   step_times_.add(record.step_ns);
@@ -112,33 +109,28 @@ RunFigures RunSummary::figures() const {
   return figures;
 }
 
-std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
-                        const HardwareFigures* hardware) {
-  JsonWriter json;
-  json.beginObject();
-  json.key("scene").value(scene.name);
-  json.key("variant").value(scene.variant);
-  json.key("stages").beginArray();
-  for (const std::string& stage : stageNames(scene.controller)) json.value(stage);
+Json summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
+                 const HardwareFigures* hardware) {
+  std::vector<std::string> stages = stageNames(scene.controller);
   if (hardware) {
-    for (const std::string& stage : hardwareStageNames(*scene.hardware)) json.value(stage);
+    for (const std::string& stage : hardwareStageNames(*scene.hardware)) stages.push_back(stage);
   }
-  json.endArray();
-  writeFigures(figures, json);
+  Json json = {{"scene", scene.name}, {"variant", scene.variant}, {"stages", stages}};
+  addTo(json, figures);
   if (hardware) {
-    hardware->write_loop(json);
-    writeLogState(hardware->log, "complete", json);
+    json["loop"] = hardware->loop;
+    json["log"] = logJson(hardware->log, "complete");
   }
-  json.key("real_time_factor").value(real_time_factor);
-  json.key("outcome").value(figures.fault == Fault::kNone ? "completed" : faultName(figures.fault));
-  json.endObject();
-  return json.text();
+  json["real_time_factor"] = real_time_factor;
+  json["outcome"] = figures.end.fault == Fault::kNone ? "completed" : faultName(figures.end.fault);
+  json["fault"] = faultJson(figures.end, scene);
+  return json;
 }
 
 void writeSummary(const std::string& path, const Scene& scene, const RunFigures& figures,
                   double real_time_factor, const HardwareFigures* hardware) {
   OutputFile file(path);
-  file.append(summaryJson(scene, figures, real_time_factor, hardware));
+  file.append(jsonText(summaryJson(scene, figures, real_time_factor, hardware)));
   file.close();
 }
 

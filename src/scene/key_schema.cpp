@@ -1,4 +1,6 @@
+#include <cmath>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "tactus/scene/json.h"
 #include "tactus/scene/key_docs.h"
@@ -12,83 +14,77 @@ using Keys = std::vector<KeySpec>;
 /// Whether required keys have to be there: not in a scene that may have them from its base.
 enum class Completeness { kPartial, kComplete };
 
-void writeWords(JsonWriter& json, const std::vector<std::string>& words, bool or_null = false) {
-  json.beginArray();
-  for (const std::string& word : words) json.value(word);
-  if (or_null) json.null();
-  json.endArray();
+/// Whole numbers without a fraction, as a reader of integers expects them.
+Json numberJson(double number) {
+  const bool is_whole = std::abs(number) < 1e15 && number == std::floor(number);
+  return is_whole ? Json(static_cast<long long>(number)) : Json(number);
 }
 
 /// Type and, where `key: null` says that the key is absent, null.
-void writeType(JsonWriter& json, const char* type, bool or_null) {
-  json.key("type");
-  or_null ? writeWords(json, {type, "null"}) : json.value(type);
+Json typeJson(const char* type, bool or_null) {
+  return or_null ? Json::array({type, "null"}) : Json(type);
 }
 
-void writeRange(JsonWriter& json, const Range& range) {
-  json.key(range.lower_open ? "exclusiveMinimum" : "minimum").value(range.lower);
-  json.key("maximum").value(range.upper);
+Json choicesJson(const std::vector<std::string>& choices, bool or_null) {
+  Json json = choices;
+  if (or_null) json.push_back(nullptr);
+  return json;
 }
 
-void writeCount(JsonWriter& json, int min, int max) {
-  json.key("minItems").value(min);
-  json.key("maxItems").value(max);
+void addRange(const Range& range, Json& schema) {
+  schema[range.lower_open ? "exclusiveMinimum" : "minimum"] = numberJson(range.lower);
+  schema["maximum"] = numberJson(range.upper);
 }
 
-void writeNumbers(JsonWriter& json, const Range& range) {
-  json.key("items").beginObject();
-  writeType(json, "number", false);
-  writeRange(json, range);
-  json.endObject();
+void addCount(int min, int max, Json& schema) {
+  schema["minItems"] = min;
+  schema["maxItems"] = max;
+}
+
+Json numberSchema(const Range& range) {
+  Json schema = {{"type", "number"}};
+  addRange(range, schema);
+  return schema;
 }
 
 /// A default as the table holds it, in YAML.
-void writeYaml(JsonWriter& json, const YamlNode& node) {
+Json yamlJson(const YamlNode& node) {
   if (node.kind == YamlNode::Kind::kList) {
-    json.beginArray();
-    for (const YamlNode& item : node.items) writeYaml(json, item);
-    json.endArray();
-    return;
+    Json list = Json::array();
+    for (const YamlNode& item : node.items) list.push_back(yamlJson(item));
+    return list;
   }
   const std::string& text = node.text;
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);  // 0x100, too
-  if (end == text.c_str() + text.size()) {
-    json.value(number);
-  } else if (text == "true" || text == "false") {
-    json.value(text == "true");
-  } else {
-    json.value(text);
-  }
+  if (end == text.c_str() + text.size()) return numberJson(number);
+  return text == "true" || text == "false" ? Json(text == "true") : Json(text);
 }
 
-void writeSection(JsonWriter& json, const Keys& keys, Completeness completeness);
-
-void writeChoices(JsonWriter& json, const std::vector<std::string>& choices, bool or_null) {
-  json.key("enum");
-  writeWords(json, choices, or_null);
-}
+void addSection(const Keys& keys, Completeness completeness, Json& schema);
 
 /// What an entry of a list may be.
-void writeItems(JsonWriter& json, const KeySpec& spec) {
-  json.key("items").beginObject();
-  if (spec.type == ValueType::kChoiceList) {
-    writeChoices(json, spec.choices, false);
+Json itemSchema(const KeySpec& spec) {
+  Json schema = Json::object();
+  if (spec.type == ValueType::kNumberList) {
+    schema = numberSchema(spec.range);
+  } else if (spec.type == ValueType::kChoiceList) {
+    schema["enum"] = choicesJson(spec.choices, false);
   } else if (spec.type == ValueType::kNumberTable) {
-    writeType(json, "array", false);
-    writeCount(json, spec.columns, spec.columns);
-    writeNumbers(json, spec.range);
+    schema["type"] = "array";
+    addCount(spec.columns, spec.columns, schema);
+    schema["items"] = numberSchema(spec.range);
   } else {  // sections: no list is merged with that of a base
-    writeType(json, "object", false);
-    writeSection(json, spec.keys, Completeness::kComplete);
+    schema["type"] = "object";
+    addSection(spec.keys, Completeness::kComplete, schema);
   }
-  json.endObject();
+  return schema;
 }
 
-void writeList(JsonWriter& json, const KeySpec& spec) {
-  writeCount(json, spec.count.min, spec.count.max);
-  if (spec.type == ValueType::kChoiceList) json.key("uniqueItems").value(true);
-  spec.type == ValueType::kNumberList ? writeNumbers(json, spec.range) : writeItems(json, spec);
+void addList(const KeySpec& spec, Json& schema) {
+  addCount(spec.count.min, spec.count.max, schema);
+  if (spec.type == ValueType::kChoiceList) schema["uniqueItems"] = true;
+  schema["items"] = itemSchema(spec);
 }
 
 const char* schemaType(ValueType type) {
@@ -109,97 +105,69 @@ const char* schemaType(ValueType type) {
   }
 }
 
-void writeKey(JsonWriter& json, const KeySpec& spec, Completeness completeness) {
+Json keySchema(const KeySpec& spec, Completeness completeness) {
   const bool or_null =
       spec.presence != Presence::kRequired || completeness == Completeness::kPartial;
-  json.beginObject();
-  json.key("description").value(spec.doc + (spec.unit.empty() ? "" : " [" + spec.unit + "]"));
-  writeType(json, schemaType(spec.type), or_null);
+  Json schema = {{"description", spec.doc + (spec.unit.empty() ? "" : " [" + spec.unit + "]")},
+                 {"type", typeJson(schemaType(spec.type), or_null)}};
   if (spec.type == ValueType::kNumber || spec.type == ValueType::kInteger) {
-    writeRange(json, spec.range);
+    addRange(spec.range, schema);
   } else if (spec.type == ValueType::kText) {
-    json.key("minLength").value(1);
+    schema["minLength"] = 1;
   } else if (spec.type == ValueType::kChoice) {
-    writeChoices(json, spec.choices, or_null);
+    schema["enum"] = choicesJson(spec.choices, or_null);
   } else if (spec.type == ValueType::kSection) {
-    writeSection(json, spec.keys, completeness);
+    addSection(spec.keys, completeness, schema);
   } else if (spec.type != ValueType::kBoolean) {
-    writeList(json, spec);
+    addList(spec, schema);
   }
-  if (!spec.default_value.empty()) {
-    json.key("default");
-    writeYaml(json, parseYaml({"the default", spec.default_value}));
-  }
-  json.endObject();
+  if (!spec.default_value.empty())
+    schema["default"] = yamlJson(parseYaml({"the default", spec.default_value}));
+  return schema;
 }
 
-void writeRequired(JsonWriter& json, const Keys& keys) {
+void addRequired(const Keys& keys, Json& schema) {
   std::vector<std::string> required;
   for (const KeySpec& spec : keys) {
     if (spec.presence == Presence::kRequired) required.push_back(spec.key);
   }
-  if (required.empty()) return;
-  json.key("required");
-  writeWords(json, required);
+  if (!required.empty()) schema["required"] = required;
 }
 
-void writeSection(JsonWriter& json, const Keys& keys, Completeness completeness) {
-  json.key("properties").beginObject();
-  for (const KeySpec& spec : keys) {
-    json.key(spec.key);
-    writeKey(json, spec, completeness);
-  }
-  json.endObject();
-  json.key("additionalProperties").value(false);
-  if (completeness == Completeness::kComplete) writeRequired(json, keys);
+void addSection(const Keys& keys, Completeness completeness, Json& schema) {
+  Json& properties = schema["properties"] = Json::object();
+  for (const KeySpec& spec : keys) properties[spec.key] = keySchema(spec, completeness);
+  schema["additionalProperties"] = false;
+  if (completeness == Completeness::kComplete) addRequired(keys, schema);
 }
 
 /// Of a file that may be partial and is not: its required keys, all the way down.
-void writeAllRequired(JsonWriter& json, const Keys& keys) {
-  writeRequired(json, keys);
-  json.key("properties").beginObject();
+void addAllRequired(const Keys& keys, Json& schema) {
+  addRequired(keys, schema);
+  Json& properties = schema["properties"] = Json::object();
   for (const KeySpec& spec : keys) {
-    json.key(spec.key).beginObject();
-    if (spec.presence == Presence::kRequired) {
-      json.key("not").beginObject();
-      writeType(json, "null", false);
-      json.endObject();
-    }
-    if (spec.type == ValueType::kSection) writeAllRequired(json, spec.keys);
-    json.endObject();
+    Json& property = properties[spec.key] = Json::object();
+    if (spec.presence == Presence::kRequired) property["not"] = {{"type", "null"}};
+    if (spec.type == ValueType::kSection) addAllRequired(spec.keys, property);
   }
-  json.endObject();
 }
 
 /// A file that extends another may have its required keys from there.
-void writeUnlessExtending(JsonWriter& json, const Keys& keys) {
-  json.key("if").beginObject();
-  json.key("required");
-  writeWords(json, {"extends"});
-  json.key("properties").beginObject();
-  json.key("extends").beginObject();
-  writeType(json, "string", false);
-  json.endObject();
-  json.endObject();
-  json.endObject();
-  json.key("else").beginObject();
-  writeAllRequired(json, keys);
-  json.endObject();
+void addUnlessExtending(const Keys& keys, Json& schema) {
+  schema["if"] = {{"required", {"extends"}}, {"properties", {{"extends", {{"type", "string"}}}}}};
+  addAllRequired(keys, schema["else"]);
 }
 
 }  // namespace
 
 std::string jsonSchema(const FileFormat& format) {
   const bool may_extend = format.keys.front().key == "extends";
-  JsonWriter json;
-  json.beginObject();
-  json.key("$schema").value("https://json-schema.org/draft/2020-12/schema");
-  json.key("title").value("Tactus " + std::string(format.name));
-  writeType(json, "object", false);
-  writeSection(json, format.keys, may_extend ? Completeness::kPartial : Completeness::kComplete);
-  if (may_extend) writeUnlessExtending(json, format.keys);
-  json.endObject();
-  return json.text();
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                 {"title", "Tactus " + std::string(format.name)},
+                 {"type", "object"}};
+  addSection(format.keys, may_extend ? Completeness::kPartial : Completeness::kComplete, schema);
+  if (may_extend) addUnlessExtending(format.keys, schema);
+  return jsonText(schema);
 }
 
 }  // namespace tactus

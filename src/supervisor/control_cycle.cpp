@@ -51,6 +51,13 @@ BrakeConfig brakeConfig(const HardwareConfig& hardware, double period_s) {
   return config;
 }
 
+std::array<const char*, kMaxJoints> jointUnits(const SerialChain& chain) {
+  std::array<const char*, kMaxJoints> units{};
+  for (int joint = 0; joint < chain.size(); ++joint)
+    units[joint] = chain.type(joint) == JointType::kPrismatic ? "m" : "rad";
+  return units;
+}
+
 }  // namespace
 
 ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareConfig& hardware,
@@ -58,6 +65,7 @@ ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareCon
     : controller_(controller),
       robot_(hardware, period_s),
       places_(controller.q_start, hardware),
+      joint_units_(jointUnits(controller.chain)),
       period_s_(period_s),
       max_late_cycles_(hardware.real_time.max_late_cycles),
       has_enable_line_(hardware.gpio && hardware.gpio->enable),
@@ -84,6 +92,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   report_.mode = mode_.mode;
   report_.fault = mode_.fault;
   control(input, before);
+  if (is_new_fault && mode_.fault != Fault::kNone && is_started_) report_.time_s = record_.t_s;
   updateBrakes();
   rememberPlaces();
   const bool is_boot_new = mode_.mode == Mode::kBoot && mode_.cycles_in_mode == 0;
@@ -105,6 +114,8 @@ void ControlCycle::prepare() noexcept {
 }
 
 void ControlCycle::noteCulprit() noexcept {
+  report_ = {};
+  report_.detail = judged_.detail;
   report_.joint = judged_.joint;
   report_.bus = judged_.bus;
   if (judged_.joint < 0) return;
@@ -120,16 +131,24 @@ Fault ControlCycle::judge(const CycleInput& input) noexcept {
   if (input.are_lines_lost && found(Fault::kGpioLost)) return judged_.fault;
   if (found(judgeBuses(input)) || found(judgeDrives())) return judged_.fault;
   if (input.has_forbidden_call && found(Fault::kForbiddenSystemCall)) return judged_.fault;
-  const bool is_moving = mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding;
-  const bool is_late = mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_;
-  if (is_late && found(Fault::kOverrun)) return judged_.fault;
-  if (found(judgeTactile())) return judged_.fault;
-  if (is_moving) {
-    found(output_.fault);
-  } else if (mode_.mode != Mode::kBoot) {
-    found(state_.sample_fault);  // nothing starts on a reading that would stop it
+  if (mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_) {
+    judged_.detail = {static_cast<double>(input.late_in_a_row),
+                      static_cast<double>(max_late_cycles_), "cycles"};
+    return judged_.fault = Fault::kOverrun;
   }
-  return judged_.fault;
+  if (found(judgeTactile()) || found(judgeController())) return judged_.fault;
+  return Fault::kNone;
+}
+
+/// Of the last cycle. At rest nothing starts on a reading that would stop it.
+Fault ControlCycle::judgeController() noexcept {
+  if (mode_.mode == Mode::kBoot) return Fault::kNone;
+  const bool is_moving = mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding;
+  const Fault fault = is_moving ? output_.fault : state_.sample_fault;
+  if (fault == Fault::kNone) return fault;
+  judged_.detail = is_moving ? output_.fault_detail : state_.sample_detail;
+  judged_.joint = judged_.detail.joint;
+  return fault;
 }
 
 Fault ControlCycle::judgeBuses(const CycleInput& input) noexcept {
@@ -148,18 +167,33 @@ Fault ControlCycle::judgeDrives() noexcept {
   judged_.joint = drives.joint;
   const bool is_about_to_move = mode_.mode == Mode::kReady || mode_.mode == Mode::kEnabling ||
                                 (mode_.mode == Mode::kBoot && areConfigured());
+  if (drives.fault != Fault::kNone) judged_.detail = robot_.drive(drives.joint).detail;
+  if (drives.fault == Fault::kFollowingError) judged_.detail.unit = joint_units_[drives.joint];
   if (drives.fault != Fault::kNone || !is_about_to_move) return drives.fault;
-  judged_.joint = places_.outOfPlace(input_.q_measured);
-  return judged_.joint < 0 ? Fault::kNone : Fault::kNotAtStart;
+  const int joint = judged_.joint = places_.outOfPlace(input_.q_measured);
+  if (joint < 0) return Fault::kNone;
+  judged_.detail = {std::abs(input_.q_measured[joint] - places_.commanded()[joint]),
+                    places_.tolerance(), joint_units_[joint]};
+  return Fault::kNotAtStart;
 }
 
 Fault ControlCycle::judgeTactile() noexcept {
   TactileReceiver* const tactile = robot_.tactile();
   if (!tactile) return Fault::kNone;
-  if (mode_.mode != Mode::kBoot) return hasFreshSample() ? tactile->fault() : Fault::kTactileStale;
-  if (tactile->tareState() == TareState::kRefused) return Fault::kTareRefused;
+  const bool is_boot = mode_.mode == Mode::kBoot;
+  if (!is_boot && hasFreshSample()) return tactile->fault();
+  if (is_boot && tactile->tareState() == TareState::kRefused) {
+    judged_.detail = tactile->tareRefusal();
+    return Fault::kTareRefused;
+  }
   const bool is_late = mode_.cycles_in_mode >= mode_config_.boot_cycles;
-  return is_late && robot_.drives().are_configured ? Fault::kTactileStale : Fault::kNone;
+  if (is_boot && !(is_late && robot_.drives().are_configured)) return Fault::kNone;
+  judged_.detail = sampleAge();
+  return Fault::kTactileStale;
+}
+
+FaultDetail ControlCycle::sampleAge() const noexcept {
+  return {controller_.sampleAge_s(input_, period_s_, state_), max_sample_age_s_, "s"};
 }
 
 /// The drives kept the last command, and the sensor's sample grew older.

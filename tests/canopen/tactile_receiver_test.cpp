@@ -378,6 +378,8 @@ TEST(TactileReceiver, RefusesToTareInContactWhileUnsteadyOrFaulty) {
   const std::vector<Counts> rest(50, forceY(0.5));
   ASSERT_EQ(tare(receiver, sequence, rest), TareState::kDone);
   EXPECT_EQ(tare(receiver, sequence, std::vector<Counts>(50, forceY(2.01))), TareState::kRefused);
+  EXPECT_NEAR(receiver.tareRefusal().value, 2.01, 1e-9);
+  EXPECT_EQ(receiver.tareRefusal().limit, 2.0);
 
   for (const std::size_t place : {std::size_t{0}, std::size_t{20}, std::size_t{49}}) {
     std::vector<Counts> touched = rest;
@@ -385,8 +387,12 @@ TEST(TactileReceiver, RefusesToTareInContactWhileUnsteadyOrFaulty) {
     EXPECT_EQ(tare(receiver, sequence, touched), TareState::kRefused);
     touched[place] = forceY(0.71);
     EXPECT_EQ(tare(receiver, sequence, touched), TareState::kRefused);
+    EXPECT_NEAR(receiver.tareRefusal().value, 0.21, 1e-9) << "spread";
+    EXPECT_EQ(receiver.tareRefusal().limit, 0.2);
+    EXPECT_STREQ(receiver.tareRefusal().unit, "N");
     touched[place] = {8388607, 8388107};  // F as at rest
     EXPECT_EQ(tare(receiver, sequence, touched), TareState::kRefused);
+    EXPECT_STREQ(receiver.tareRefusal().unit, "") << "no force is at fault";
   }
   std::vector<Counts> turning;  // |F| stays, F does not
   for (int i = 0; i < 50; ++i) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "support/allocation_guard.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
@@ -25,7 +27,7 @@ const std::vector<Finding> kFindings = {{"kernel", Level::kOk, "6.1, PREEMPT_RT"
                                         {"disk", Level::kWarning, "\"full\"", "why", "how"}};
 
 TEST(DoctorReport, JsonHoldsFindingsFiguresAndDistributions) {
-  const std::string json = doctorJson(kFindings, someMeasurement());
+  const std::string json = jsonText(doctorJson(kFindings, someMeasurement()));
   for (const char* part :
        {"\"fit\": true", "\"name\": \"kernel\"", "\"level\": \"warning\"", R"("what": "\"full\"")",
         "\"why_it_matters\": \"why\"", "\"how_to_mend\": \"how\"", "\"cycles\": 2", "\"max\": 3000",
@@ -42,7 +44,8 @@ TEST(DoctorReport, TextSaysTheVerdictLast) {
   std::vector<Finding> worse = kFindings;
   worse.push_back({"kernel", Level::kNotFit, "x", "why", "how"});
   EXPECT_TRUE(doctorText(worse, someMeasurement()).ends_with("NOT FIT: 1 to mend, 1 warning\n"));
-  EXPECT_NE(doctorJson(worse, someMeasurement()).find("\"fit\": false"), std::string::npos);
+  EXPECT_NE(jsonText(doctorJson(worse, someMeasurement())).find("\"fit\": false"),
+            std::string::npos);
 }
 
 TEST(DoctorReport, ARunWithoutACycleIsReportedToo) {

@@ -40,7 +40,7 @@ TEST_P(PaperScene, AgreesWithReference) {
   const test::TemporaryFile log(GetParam().scene);
   const RunFigures figures = run(GetParam().scene, log.path());
   EXPECT_EQ(figures.cycles, 13000);
-  EXPECT_EQ(figures.fault, Fault::kNone);
+  EXPECT_EQ(figures.end.fault, Fault::kNone);
   EXPECT_EQ(figures.joints_at_limit_cycles, 0);
   expectNear(figures.peak_force_N, GetParam().peak_force_N, "peak force, N");
   expectNear(figures.final_force_N, GetParam().final_force_N, "final force, N");
@@ -91,7 +91,7 @@ double largestToolError_m(const std::string& log, double from_s, double to_s) {
 TEST(PaperScenes, JointSpaceRestsWhereThePaperDoes) {
   const test::TemporaryFile log;
   const RunFigures figures = run("scenario1_joint_space", log.path());
-  EXPECT_EQ(figures.fault, Fault::kNone);
+  EXPECT_EQ(figures.end.fault, Fault::kNone);
   EXPECT_NEAR(figures.final_force_N, 0.7, 0.2);
   EXPECT_EQ(figures.joints_at_limit_cycles, 0);
   EXPECT_LT(figures.peak_joint_speed_squared, 25.0);
@@ -104,7 +104,7 @@ TEST(PaperScenes, JointSpaceReturnsWhenTheBandVanishes) {
           {{"simulation.obstacles",
             "[{x_m: 0.70771, y_m: 0.00265, stiffness_N_per_m: 60, vanishes_s: 10}]"},
            {"simulation.duration_s", "16"}});
-  EXPECT_EQ(figures.fault, Fault::kNone);
+  EXPECT_EQ(figures.end.fault, Fault::kNone);
   EXPECT_EQ(figures.joints_at_limit_cycles, 0);
   EXPECT_LT(figures.peak_joint_speed_squared, 25.0);
   EXPECT_LT(largestToolError_m(log.path(), 13.0, 16.0), 1e-3);

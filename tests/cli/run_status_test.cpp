@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "support/command_run.h"
 #include "support/shipped_scene.h"
@@ -105,16 +106,16 @@ TEST_F(RunStatusFile, NamesAFaultAndEndsSo) {
 
 TEST_F(RunStatusFile, AStatusThatIsOldIsNone) {
   const std::string description = "running";
-  std::ofstream(path()) << statusJson(
-      {scene_, Mode::kRunning, Fault::kNone, description, {}, nullptr}, monotonicTime_s() - 60.0);
+  std::ofstream(path()) << jsonText(statusJson(
+      {scene_, Mode::kRunning, Fault::kNone, description, {}, nullptr}, monotonicTime_s() - 60.0));
   EXPECT_EQ(errorOfRun(), path() + ": no word from the daemon for 60 s");
   EXPECT_NE(output_.find("running"), std::string::npos) << "the last word is worth knowing";
 }
 
 TEST_F(RunStatusFile, AStatusOfTheTimeToComeIsNone) {
   const std::string description = "running";
-  std::ofstream(path()) << statusJson(
-      {scene_, Mode::kRunning, Fault::kNone, description, {}, nullptr}, monotonicTime_s() + 60.0);
+  std::ofstream(path()) << jsonText(statusJson(
+      {scene_, Mode::kRunning, Fault::kNone, description, {}, nullptr}, monotonicTime_s() + 60.0));
   EXPECT_EQ(errorOfRun(), path() + ": no word from the daemon for 60 s") << "before a reboot";
 }
 

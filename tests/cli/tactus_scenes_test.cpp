@@ -30,7 +30,7 @@ class TactusScene : public testing::TestWithParam<Expectation> {};
 TEST_P(TactusScene, NeverSlamsAndRestsAtTheActivationForce) {
   const test::TemporaryFile log(GetParam().scene);
   const RunFigures figures = run(GetParam().scene, log.path());
-  EXPECT_EQ(figures.fault, Fault::kNone);
+  EXPECT_EQ(figures.end.fault, Fault::kNone);
   EXPECT_LT(figures.peak_force_N, GetParam().peak_force_N);
   EXPECT_NEAR(figures.final_force_N, kGoal_N, 0.01);
   EXPECT_NEAR(figures.tcp_error_final_m, GetParam().tcp_error_final_m, 1e-3)

@@ -98,6 +98,27 @@ TEST(ControllerFaults, ForceBeyondTheModulesRange) {
   arm.expectRestForGood(Fault::kTactileInvalid);
 }
 
+TEST(ControllerFaults, TellTheOffendingForceForGood) {
+  MovingArm arm(193);
+  const double max_force_N = arm.config().tactile_module->max_force_N;
+  RobotInput input = spoilt(arm.touch(), &TactileSample::force_y_N, 3.0 * max_force_N);
+  input.tactile.force_z_N = -4.0 * max_force_N;
+  arm.step(input);
+  arm.expectRestForGood(Fault::kTactileInvalid);
+  const FaultDetail& detail = arm.output().fault_detail;
+  EXPECT_DOUBLE_EQ(detail.value, 5.0 * max_force_N);
+  EXPECT_EQ(detail.limit, max_force_N);
+  EXPECT_STREQ(detail.unit, "N");
+  EXPECT_EQ(detail.joint, -1);
+}
+
+TEST(ControllerFaults, AMomentThatIsNoNumberIsNotToldAsAForce) {
+  MovingArm arm(193);
+  arm.step(spoilt(arm.touch(), &TactileSample::moment_y_Nm, kNaN));
+  EXPECT_TRUE(std::isnan(arm.output().fault_detail.value));
+  EXPECT_STREQ(arm.output().fault_detail.unit, "N");
+}
+
 TEST(ControllerFaults, SampleThatIsTooOld) {
   MovingArm arm(194);
   RobotInput old = arm.touch();
@@ -112,6 +133,10 @@ TEST(ControllerFaults, SampleThatIsTooOld) {
   arm.step(old);
   EXPECT_EQ(arm.output().fault, Fault::kTactileStale);
   arm.expectRestForGood(Fault::kTactileStale);
+  EXPECT_GT(arm.output().fault_detail.value, 0.02);
+  EXPECT_LT(arm.output().fault_detail.value, 0.02 + 1.5 * kPeriod_s);
+  EXPECT_EQ(arm.output().fault_detail.limit, 0.02);
+  EXPECT_STREQ(arm.output().fault_detail.unit, "s");
 }
 
 TEST(ControllerFaults, ModuleThatNeverSpeaks) {
@@ -142,6 +167,9 @@ TEST(ControllerFaults, CommandThatIsNoNumber) {
       ASSERT_TRUE(output.velocity.allFinite());
     }
     EXPECT_EQ(output.velocity.norm(), 0.0);
+    EXPECT_FALSE(std::isfinite(output.fault_detail.value));
+    EXPECT_GE(output.fault_detail.joint, 0);
+    EXPECT_GT(output.fault_detail.limit, 0.0);
   }
 }
 

@@ -82,7 +82,7 @@ TEST_F(TelemetryLog, AFullDiskStopsTheLogAndNothingElse) {
     link_->reports.push({});  // which is shown at once
     telemetry.drain(*link_);
     std::filesystem::rename(path(kStatusName), path("last_status"));
-    telemetry.finish(Fault::kNone, {});
+    telemetry.finish({}, {});
     return true;
   });
   EXPECT_TRUE(has_ended);
@@ -111,7 +111,7 @@ TEST_F(TelemetryLog, ASummaryThatCannotBeWrittenIsSaidWithTheLogComplete) {
   telemetry.drain(*link_);
   std::filesystem::create_directories(path("summary.json/in_the_way"));
   try {
-    telemetry.finish(Fault::kNone, {});
+    telemetry.finish({}, {});
     ADD_FAILURE();
   } catch (const RunError& error) {
     EXPECT_NE(std::string(error.what()).find(path("summary.json")), std::string::npos);
@@ -125,7 +125,7 @@ TEST_F(TelemetryLog, HalfASummaryIsNone) {
     Telemetry telemetry(scene_, folder_);
     test::setLimit(RLIMIT_FSIZE, 100);
     try {
-      telemetry.finish(Fault::kNone, {});
+      telemetry.finish({}, {});
     } catch (const RunError&) {
       return true;
     }
@@ -139,7 +139,7 @@ TEST_F(TelemetryLog, OneThatWasWrittenToTheEndIsComplete) {
   Telemetry telemetry(scene_, folder_);
   cycle(3);
   telemetry.drain(*link_);
-  telemetry.finish(Fault::kNone, {});
+  telemetry.finish({}, {});
   const YAML::Node log = YAML::Load(content("summary.json"))["log"];
   EXPECT_EQ(log["state"].as<std::string>(), "complete");
   EXPECT_EQ(log["files"].as<int>(), 1);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "support/crops9.h"
 #include "support/telemetry.h"
@@ -126,7 +127,7 @@ Scene scene() {
 }
 
 TEST(SummaryJson, HasTheKeysOfTheContractInTheirOrder) {
-  const YAML::Node json = YAML::Load(summaryJson(scene(), RunFigures(), 512.5));
+  const YAML::Node json = YAML::Load(jsonText(summaryJson(scene(), RunFigures(), 512.5)));
   const std::vector<std::string> expected = {"scene",
                                              "variant",
                                              "stages",
@@ -143,12 +144,14 @@ TEST(SummaryJson, HasTheKeysOfTheContractInTheirOrder) {
                                              "contacts",
                                              "step_time_ns",
                                              "real_time_factor",
-                                             "outcome"};
+                                             "outcome",
+                                             "fault"};
   std::vector<std::string> keys;
   for (const auto& entry : json) keys.push_back(entry.first.as<std::string>());
   EXPECT_EQ(keys, expected);
   EXPECT_EQ(json["real_time_factor"].as<double>(), 512.5);
   EXPECT_EQ(json["outcome"].as<std::string>(), "completed");
+  EXPECT_TRUE(json["fault"].IsNull());
 }
 
 TEST(SummaryJson, HoldsTheRotationErrorOfATaskWithOne) {
@@ -167,8 +170,9 @@ TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
   figures.tcp_error_max_m = std::numeric_limits<double>::denorm_min();
   figures.tcp_error_final_m = std::numeric_limits<double>::quiet_NaN();
   figures.contacts = {{1.0, 2.5, 1.0 / 3.0, 0.25}};
-  figures.fault = Fault::kTactileStale;
-  const std::string text = summaryJson(scene(), figures, 1.0);
+  figures.end.fault = Fault::kTactileStale;
+  figures.end.detail = {0.021, 0.02, "s"};
+  const std::string text = jsonText(summaryJson(scene(), figures, 1.0));
   const YAML::Node json = YAML::Load(text);
   EXPECT_EQ(json["cycles"].as<long long>(), 13000);
   EXPECT_EQ(json["peak_force_N"].as<double>(), 0.1 + 0.2);
@@ -176,11 +180,13 @@ TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
   EXPECT_TRUE(json["tcp_error_final_m"].IsNull());
   EXPECT_EQ(json["contacts"][0]["peak_force_N"].as<double>(), 1.0 / 3.0);
   EXPECT_EQ(json["outcome"].as<std::string>(), "tactile_stale");
+  EXPECT_EQ(json["fault"]["value"].as<double>(), 0.021);
 }
 
 TEST(SummaryJson, EscapesWhateverASceneIsCalled) {
-  const std::string text = summaryJson(scene(), RunFigures(), 1.0);
-  EXPECT_NE(text.find(R"("scene": "a \"b\"\u000a\u0001\\\ufffd")"), std::string::npos) << text;
+  const std::string text = jsonText(summaryJson(scene(), RunFigures(), 1.0));
+  EXPECT_NE(text.find("\"scene\": \"a \\\"b\\\"\\n\\u0001\\\\\xef\xbf\xbd\""), std::string::npos)
+      << text;
 }
 
 TEST(WriteSummary, ReportsAFullDisk) {

@@ -2,50 +2,36 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 namespace tactus {
 namespace {
 
-TEST(JsonString, EscapesWhatWouldBreakIt) {
-  EXPECT_EQ(jsonString("plain"), R"("plain")");
-  EXPECT_EQ(jsonString("\"\\\n\t\x1f"), R"("\"\\\u000a\u0009\u001f")");
-  EXPECT_EQ(jsonString(std::string("a\0b", 3)), R"("a\u0000b")");
-  EXPECT_EQ(jsonString("\xc3\xa9"), "\"\xc3\xa9\"");
-  EXPECT_EQ(jsonString("\xc3"), R"("\ufffd")");
-  EXPECT_EQ(jsonString("\xff\xfe"), R"("\ufffd\ufffd")");
-}
-
-TEST(JsonWriter, NestsObjectsAndArrays) {
-  JsonWriter json;
-  json.beginObject();
-  json.key("a").value(1);
-  json.key("b").beginArray();
-  json.value("x");
-  json.value(true);
-  json.null();
-  json.beginObject();
-  json.endObject();
-  json.endArray();
-  json.key("c").beginArray();
-  json.endArray();
-  json.endObject();
-  EXPECT_EQ(json.text(),
-            "{\n  \"a\": 1,\n  \"b\": [\n    \"x\",\n    true,\n    null,\n    {}\n  ],\n"
+TEST(JsonText, KeepsTheOrderOfMembersAndIndents) {
+  const Json json = {{"b", 1}, {"a", {"x", true, nullptr, Json::object()}}, {"c", Json::array()}};
+  EXPECT_EQ(jsonText(json),
+            "{\n  \"b\": 1,\n  \"a\": [\n    \"x\",\n    true,\n    null,\n    {}\n  ],\n"
             "  \"c\": []\n}\n");
 }
 
-TEST(JsonWriter, NumbersAreShortestAndFinite) {
-  const auto written = [](double number) {
-    JsonWriter json;
-    json.value(number);
-    return json.text();
-  };
-  EXPECT_EQ(written(0.1), "0.1\n");
-  EXPECT_EQ(written(7000.0), "7000\n");
-  EXPECT_EQ(written(-0.0), "-0\n");
-  EXPECT_EQ(written(std::numeric_limits<double>::infinity()), "null\n");
-  EXPECT_EQ(written(std::numeric_limits<double>::quiet_NaN()), "null\n");
+TEST(JsonText, EscapesWhatWouldBreakAText) {
+  EXPECT_EQ(jsonText("\"\\\n\x1f"), "\"\\\"\\\\\\n\\u001f\"\n");
+  EXPECT_EQ(jsonText(std::string("a\0b", 3)), "\"a\\u0000b\"\n");
+  EXPECT_EQ(jsonText("\xc3\xa9"), "\"\xc3\xa9\"\n");
+  EXPECT_EQ(jsonText("\xff\xfe"), "\"\xef\xbf\xbd\xef\xbf\xbd\"\n") << "no UTF-8";
+}
+
+TEST(JsonText, NumbersKeepEveryBitOrAreNull) {
+  for (const double number : {0.1 + 0.2, -0.0, 1.0 / 3.0, std::numeric_limits<double>::denorm_min(),
+                              std::numeric_limits<double>::max()}) {
+    const double read = Json::parse(jsonText(number)).get<double>();
+    EXPECT_EQ(std::memcmp(&read, &number, sizeof(double)), 0) << jsonText(number);
+  }
+  EXPECT_EQ(jsonText(0.1), "0.1\n");
+  EXPECT_EQ(jsonText(std::numeric_limits<double>::infinity()), "null\n");
+  EXPECT_EQ(jsonText(std::numeric_limits<double>::quiet_NaN()), "null\n");
 }
 
 }  // namespace

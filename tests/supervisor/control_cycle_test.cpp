@@ -10,7 +10,7 @@
 #include "support/random.h"
 #include "support/shipped_scene.h"
 #include "support/virtual_robot_cell.h"
-#include "tactus/daemon/telemetry.h"
+#include "tactus/record/fault_text.h"
 #include "tactus/record/replay.h"
 
 namespace tactus {

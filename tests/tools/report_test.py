@@ -149,6 +149,42 @@ class WholePage(Report):
         self.assertEqual(re.findall(r'scope="row">(\w+)<', further), ["free_motion"])
 
 
+FAULT = {"name": "following_error", "time_s": 3.214, "joint": "j<5>", "bus": "can1",
+         "value": 0.0613, "limit": 0.05, "unit": "rad", "description": "a & b"}
+
+
+class Faults(Report):
+    def test_are_told_with_time_place_value_and_limit(self):
+        write_run(self.runs, "x", fault=FAULT)
+        write_run(self.runs, "y", fault=dict.fromkeys(FAULT) | {"name": "gpio_lost",
+                                                                "description": "c"})
+        write_run(self.runs, "z", fault=None)
+        result = self.report()
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        section = self.page().split("<h2>Faults</h2>")[1].split("</table>")[0]
+        rows = re.findall(r"<tr>(<th scope=.row.*?)</tr>", section)
+        cells = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in rows]
+        self.assertEqual(cells, [
+            ["x", "following_error", "3.214", "j&lt;5&gt;", "0.0613 rad", "0.05 rad", "a &amp; b"],
+            ["y", "gpio_lost", "", "", "", "", "c"]])
+
+    def test_no_fault_no_section(self):
+        write_run(self.runs, "x")
+        self.assertEqual(self.report().returncode, 0)
+        self.assertNotIn("Faults", self.page())
+
+    def test_a_fault_that_is_none_is_refused(self):
+        for change, expected in (({"name": 3}, "fault.name"), ({"joint": 3}, "fault.joint"),
+                                 ({"value": "x"}, "value: x"), ({"time_s": 1e999}, "time_s: inf")):
+            with self.subTest(change=change):
+                shutil.rmtree(self.runs, ignore_errors=True)
+                write_run(self.runs, "x", fault=FAULT | change)
+                self.refuse(expected)
+        shutil.rmtree(self.runs)
+        write_run(self.runs, "x", fault="tactile_stale")
+        self.refuse("fault: no object")
+
+
 class Incomplete(Report):
     def test_names_the_missing_runs(self):
         write_run(self.runs, "scenario2_assumed")

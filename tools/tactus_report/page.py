@@ -30,6 +30,7 @@ def build_page(loaded):
             error_figure(loaded)]
     if of_paper:
         body.append(runs_table([run for run in loaded if run.scene in PAPER_SCENES]))
+    body += faults_section(loaded)
     if further:
         body += ["<h2>Further runs, not of the paper</h2>" if of_paper else "<h2>Runs</h2>",
                  runs_table([run for run in loaded if run.scene not in PAPER_SCENES]),
@@ -135,6 +136,23 @@ def runs_table(loaded):
                      number(summary["tcp_error_max_m"], 3, 1e3), number(times["median"], 0),
                      number(times["p99"], 0), number(summary["real_time_factor"], 0)])
     return table(heads, rows, "runs")
+
+
+def faults_section(runs):
+    """Of the runs that a fault has ended."""
+    rows = []
+    for run in runs:
+        if fault := run.summary.get("fault"):
+            unit = fault["unit"] or ""
+            rows.append([run.name, fault["name"], number(fault["time_s"], 3),
+                         fault["joint"] or fault["bus"] or "", with_unit(fault["value"], unit),
+                         with_unit(fault["limit"], unit), fault["description"]])
+    heads = ["Run", "Fault", "At, s", "Joint or bus", "Value", "Limit", "In words"]
+    return ["<h2>Faults</h2>", table(heads, rows, "faults")] if rows else []
+
+
+def with_unit(value, unit):
+    return "" if value is None else f"{value:.6g} {unit}"
 
 
 def number(value, digits, scale=1.0):

@@ -114,7 +114,24 @@ def read_summary(path):
         raise InputError(f"{path}: step_time_ns: missing or no object, expected min to max")
     for key in STEP_TIMES:
         check_number(path, key, times)
+    check_fault(path, summary.get("fault"))
     return summary
+
+
+def check_fault(path, fault):
+    """Absent or null: the run had none."""
+    if fault is None:
+        return
+    if not isinstance(fault, dict):
+        raise InputError(f"{path}: fault: no object, expected name to description, or null")
+    for key in ("name", "description"):
+        if not isinstance(fault.get(key), str):
+            raise InputError(f"{path}: fault.{key}: missing or no text, expected words")
+    for key in ("joint", "bus", "unit"):
+        if not isinstance(fault.get(key, 0), str | None):
+            raise InputError(f"{path}: fault.{key}: missing or no text, expected a name or null")
+    for key in ("time_s", "value", "limit"):
+        check_number(path, key, fault)
 
 
 def check_number(path, key, values):

@@ -21,7 +21,8 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
     list(direction_name, direction);
   };
   const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
-               sample_sequence, sample_age_s, sample_fault, contact_point, contact] = state;
+               sample_sequence, sample_age_s, sample_fault, sample_detail, contact_point, contact] =
+      state;
   visit("waited_s", 0, waited_s);
   visit("progress", 0, progress);
   visit("return_share", 0, return_share);

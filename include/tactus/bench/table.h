@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-namespace tactus {
+#include "tactus/scene/json.h"
 
-class JsonWriter;
+namespace tactus {
 
 /// A number or a word. A number that is not finite was not measured: its place stays empty.
 using Cell = std::variant<double, std::string>;
@@ -43,6 +43,6 @@ std::vector<std::array<double, 2>> findPoints(const Table& table, std::string_vi
 /// RFC 4180; numbers are the shortest decimals that read back bit for bit.
 std::string csvText(const Table& table);
 
-void writeJson(const Table& table, JsonWriter& json);
+Json tableJson(const Table& table);
 
 }  // namespace tactus

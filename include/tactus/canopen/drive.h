@@ -42,6 +42,7 @@ struct DriveReport {
   /// kCommandNotFinite if a setpoint was NaN or infinite; the first one stays until kConfigure
   /// starts anew.
   Fault fault = Fault::kNone;
+  FaultDetail detail;                ///< of that fault: what it was judged by
   std::uint16_t emergency_code = 0;  ///< of the last EMCY, 0: none
   SetupFailure setup_failure;
 };
@@ -129,7 +130,8 @@ class Drive {
   bool isRunning(DriveGoal goal) const noexcept;
   std::uint16_t controlWord(DriveGoal goal) const noexcept;
   std::int32_t velocityCounts(DriveGoal goal, double velocity, double position) noexcept;
-  void fail(Fault fault) noexcept;
+  void fail(Fault fault, const FaultDetail& detail = {}) noexcept;
+  FaultDetail emergencyDetail() const noexcept;
 
   DriveConfig config_;
   int heartbeat_timeout_cycles_;

@@ -52,6 +52,8 @@ class TactileReceiver {
   /// diagonal of the rectangle that holds all F) or a faulty sample refuses it.
   void startTare() noexcept;
   TareState tareState() const noexcept { return tare_state_; }
+  /// Of the last refusal: offset or spread; none if a faulty sample refused it.
+  const FaultDetail& tareRefusal() const noexcept { return tare_refusal_; }
 
   /// The newest complete sample, tared and filtered; its sequence counts samples from 1.
   const TactileSample& sample() const noexcept { return sample_; }
@@ -81,6 +83,7 @@ class TactileReceiver {
   void forgetNumbers() noexcept;
   void publish(const Wrench& raw) noexcept;
   void average(const Wrench& raw) noexcept;
+  void refuseTare(double offset_N, double spread_N) noexcept;
   void endTare() noexcept;
 
   CanTactileConfig config_;
@@ -98,6 +101,7 @@ class TactileReceiver {
   int tare_count_ = 0;
   Wrench tare_sum_ = Wrench::Zero();
   Eigen::Vector2d tare_low_, tare_high_;  ///< F_y and F_z so far
+  FaultDetail tare_refusal_;
 
   TactileSample sample_;
   Fault fault_ = Fault::kNone;

@@ -5,6 +5,7 @@
 
 #include "tactus/doctor/finding.h"
 #include "tactus/doctor/loop_measurement.h"
+#include "tactus/scene/json.h"
 
 namespace tactus {
 
@@ -13,6 +14,6 @@ namespace tactus {
 std::string doctorText(const std::vector<Finding>& findings, const LoopMeasurement& measured);
 
 /// The same for scripts.
-std::string doctorJson(const std::vector<Finding>& findings, const LoopMeasurement& measured);
+Json doctorJson(const std::vector<Finding>& findings, const LoopMeasurement& measured);
 
 }  // namespace tactus

@@ -24,6 +24,7 @@ struct ControllerOutput {
   double path_time_s = 0.0;    ///< of the reference: the task's time less the time it waited
   ContactReport contact;
   Fault fault = Fault::kNone;
+  FaultDetail fault_detail;  ///< of the fault; set in its first cycle, then left alone
 };
 
 /// Everything that a controller remembers from one cycle to the next.
@@ -38,6 +39,7 @@ struct ControllerState {
   std::uint32_t sample_sequence = 0;
   double sample_age_s = 0.0;
   Fault sample_fault = Fault::kNone;  ///< of the newest sample
+  FaultDetail sample_detail;          ///< of that fault, or of a sample too old
   ContactPointState contact_point;
   ContactControllerState contact;
 };
@@ -109,6 +111,7 @@ class Controller {
                         Motion& motion) const noexcept;
   Fault readTactileModule(const RobotInput& input, double period_s,
                           ControllerState& state) const noexcept;
+  FaultDetail notFinite(const Motion& motion) const noexcept;
   void limit(const Motion& motion, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
   void passTime(double duration_s, ControllerState& state) const noexcept;

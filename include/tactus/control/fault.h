@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 namespace tactus {
 
@@ -38,6 +39,14 @@ enum class Reaction : std::uint8_t {
   kRamp,       ///< the same, then drives disabled
   kQuickStop,  ///< zero setpoint and quick stop by the drives at once, then disabled
   kBrake,      ///< the same, and the brake line falls at once
+};
+
+/// What a fault was judged by. Without a unit the fault has no value.
+struct FaultDetail {
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< that was seen
+  double limit = std::numeric_limits<double>::quiet_NaN();  ///< the largest allowed; NaN: none
+  const char* unit = "";                                    ///< of both
+  int joint = -1;                                           ///< whose value; -1: nobody's
 };
 
 /// One row of the fault table, which docs/safety.md and the manual print.

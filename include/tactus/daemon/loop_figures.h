@@ -32,6 +32,6 @@ struct LoopFigures {
 };
 
 /// The member "loop" of summary.json.
-void writeLoopFigures(const LoopFigures& figures, JsonWriter& json);
+Json loopJson(const LoopFigures& figures);
 
 }  // namespace tactus

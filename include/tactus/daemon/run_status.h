@@ -5,6 +5,7 @@
 #include "tactus/daemon/loop_figures.h"
 #include "tactus/record/run_log.h"
 #include "tactus/record/run_summary.h"
+#include "tactus/scene/json.h"
 #include "tactus/supervisor/mode.h"
 
 namespace tactus {
@@ -21,7 +22,7 @@ struct RunStatus {
 };
 
 /// With the daemon's process and the machine's monotonic clock, by which a reader sees its age.
-std::string statusJson(const RunStatus& status, double monotonic_s);
+Json statusJson(const RunStatus& status, double monotonic_s);
 
 /// The file that `tactus status` reads, replaced as a whole and removed at the end. It is in the
 /// folder that the service manager makes (RuntimeDirectory=) and names in RUNTIME_DIRECTORY;

@@ -24,9 +24,10 @@ class Telemetry {
   /// Takes what the loop has handed over since the last call, and leaves it with the kernel.
   void drain(LoopLink& link);
 
-  /// After the loop's end: closes the log and writes the summary. `fault` is the run's; `loop` has
-  /// all but the times. Throws RunError if the summary cannot be written.
-  void finish(Fault fault, LoopFigures loop);
+  /// After the loop's end: closes the log and writes the summary. `end` is the fault that ended
+  /// the run, if any; `loop` has all but the times. Throws RunError if the summary cannot be
+  /// written.
+  void finish(const FaultReport& end, LoopFigures loop);
 
  private:
   void showStatus(const LoopLink& link);
@@ -43,8 +44,5 @@ class Telemetry {
   LoopFigures loop_;
   LoopRecord record_;
 };
-
-/// "fault: drive_silent, drive 2 on can1 (joint j5), no feedback ...: quick stop" and so on.
-std::string describeMode(const ModeReport& report, const Scene& scene);
 
 }  // namespace tactus

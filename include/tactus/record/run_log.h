@@ -18,7 +18,7 @@ struct LogState {
 };
 
 /// The member "log" of summary.json and status.json. `unless_stopped` is its state then.
-void writeLogState(const LogState& state, const char* unless_stopped, JsonWriter& json);
+Json logJson(const LogState& state, const char* unless_stopped);
 
 /// A daemon's log: run.ulg, and what was cut off it when it had grown to LogConfig::max_bytes, as
 /// run.1.ulg (the newest of them), run.2.ulg and so on. Each file has all definitions; infos `run`

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,8 +9,10 @@
 #include "tactus/record/contact_list.h"
 #include "tactus/record/run_log.h"
 #include "tactus/record/time_figures.h"
+#include "tactus/scene/json.h"
 #include "tactus/scene/scene.h"
 #include "tactus/supervisor/cycle_record.h"
+#include "tactus/supervisor/mode_report.h"
 
 namespace tactus {
 
@@ -37,7 +38,7 @@ struct RunFigures {
   double stiffness_at_peak_N_per_m = 0.0;  ///< in the (first) cycle of the peak force
   std::vector<ContactSummary> contacts;
   TimeFigures step_time_ns;
-  Fault fault = Fault::kNone;  ///< of the last cycle; a fault stays until the end
+  FaultReport end;  ///< the fault that ended the run, for who runs it to fill in; none: as planned
 };
 
 /// Collects the figures of a run, cycle by cycle.
@@ -68,12 +69,12 @@ class RunSummary {
 /// What only a run on hardware has.
 struct HardwareFigures {
   const LogState& log;
-  std::function<void(JsonWriter& json)> write_loop;  ///< the member "loop"
+  const Json& loop;  ///< the member "loop"
 };
 
-/// The text of summary.json. real_time_factor: duration of the run over the time it took.
-std::string summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
-                        const HardwareFigures* hardware = nullptr);
+/// What summary.json holds. real_time_factor: duration of the run over the time it took.
+Json summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,
+                 const HardwareFigures* hardware = nullptr);
 
 /// Writes it to a file; throws InputError if that cannot be opened, RunError if not written.
 void writeSummary(const std::string& path, const Scene& scene, const RunFigures& figures,

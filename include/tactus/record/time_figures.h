@@ -12,7 +12,7 @@ struct TimeFigures {
 
 TimeFigures timeFigures(const Histogram& times) noexcept;
 
-/// A member `name` of the open object, with the four figures as its members.
-void writeTimes(const char* name, const TimeFigures& times, JsonWriter& json);
+/// An object with the four figures as its members.
+Json timesJson(const TimeFigures& times);
 
 }  // namespace tactus

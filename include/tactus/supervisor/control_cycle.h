@@ -10,6 +10,7 @@
 #include "tactus/supervisor/joint_places.h"
 #include "tactus/supervisor/line_states.h"
 #include "tactus/supervisor/mode.h"
+#include "tactus/supervisor/mode_report.h"
 
 namespace tactus {
 
@@ -22,17 +23,6 @@ struct CycleInput {
   int missed_cycles = 0;                      ///< skipped just before this one
   int late_in_a_row = 0;                      ///< this one included
   bool has_forbidden_call = false;            ///< the loop left its list of system calls
-};
-
-/// Where the loop is and why; `joint` or `bus` tells of whom the fault speaks, -1: of nobody.
-struct ModeReport {
-  Mode mode = Mode::kBoot;
-  Fault fault = Fault::kNone;
-  int joint = -1;
-  int bus = -1;
-  DriveReport drive;        ///< of that joint, as it was
-  double q_measured = 0.0;  ///< of that joint, m or rad
-  double q_expected = 0.0;  ///< where it was commanded to be at last, or where the scene starts
 };
 
 /// One cycle of the daemon between frames in and frames out: read - judge - control - limit -
@@ -66,6 +56,8 @@ class ControlCycle {
   Fault judgeBuses(const CycleInput& input) noexcept;
   Fault judgeDrives() noexcept;
   Fault judgeTactile() noexcept;
+  Fault judgeController() noexcept;
+  FaultDetail sampleAge() const noexcept;
   ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
   bool areConfigured() const noexcept;
   void rememberPlaces() noexcept;
@@ -83,11 +75,13 @@ class ControlCycle {
     Fault fault = Fault::kNone;
     int joint = -1;
     int bus = -1;
+    FaultDetail detail;
   };
 
   Controller controller_;
   CanRobot robot_;
   JointPlaces places_;
+  std::array<const char*, kMaxJoints> joint_units_;
   double period_s_;
   int max_late_cycles_;
   bool has_enable_line_;

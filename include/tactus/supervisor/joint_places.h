@@ -28,6 +28,7 @@ class JointPlaces {
   int outOfPlace(const JointVector& q_measured) const noexcept;
 
   const JointVector& commanded() const noexcept { return q_commanded_; }
+  double tolerance() const noexcept { return tolerance_; }  ///< m or rad
 
  private:
   JointVector q_commanded_;

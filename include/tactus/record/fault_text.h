@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include "tactus/scene/json.h"
+#include "tactus/scene/scene.h"
+#include "tactus/supervisor/mode_report.h"
+
+/// What people and scripts read of a fault: time, place, value and limit.
+namespace tactus {
+
+/// "tactile_invalid, at 3.214 s, 102.5 N, at most 100 N"; the time where the log has it.
+std::string faultEvent(const FaultReport& report, const Scene& scene);
+
+/// The same, what that fault is, and how the arm comes to rest.
+std::string describeFault(const FaultReport& report, const Scene& scene);
+
+/// "running", or "fault: drive_silent, drive 2 on can1 (joint j5), ...: no feedback ..." and so on.
+std::string describeMode(const ModeReport& report, const Scene& scene);
+
+/// The member "fault" of summary.json: name, time_s, joint, bus, value, limit, unit, description;
+/// null for what is not known, and as a whole without a fault.
+Json faultJson(const FaultReport& report, const Scene& scene);
+
+}  // namespace tactus

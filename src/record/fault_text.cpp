@@ -1,0 +1,99 @@
+#include "tactus/record/fault_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tactus/canopen/sdo_abort.h"
+
+namespace tactus {
+namespace {
+
+/// Whether `drive` of the report tells of this fault.
+bool isOfDrive(Fault fault) {
+  return fault >= Fault::kDriveSilent && fault <= Fault::kDriveSetupRefused;
+}
+
+std::string describeRefusal(const SetupFailure& failure) {
+  return fmt::format(", object {:04X}:{:02X}: {}", failure.index, failure.subindex,
+                     failure.abort_code == 0 ? "no answer" : sdoAbortName(failure.abort_code));
+}
+
+std::string describeDrive(const FaultReport& report, const Scene& scene) {
+  const DriveConfig& drive = scene.hardware->drives[report.joint];
+  std::string text =
+      fmt::format("drive {} on {} (joint {})", drive.node_id,
+                  scene.hardware->buses[drive.bus].interface, scene.joint_names[report.joint]);
+  if (report.drive.emergency_code != 0)
+    text += fmt::format(", emergency code 0x{:04X}", report.drive.emergency_code);
+  if (report.fault == Fault::kDriveSetupRefused)
+    text += describeRefusal(report.drive.setup_failure);
+  return text + fmt::format(", {}", driveStateName(report.drive.state));
+}
+
+std::string describePlace(const FaultReport& report, const Scene& scene) {
+  const bool is_prismatic = scene.controller.chain.type(report.joint) == JointType::kPrismatic;
+  return fmt::format("joint {} is at {:.6g} {}, expected within {:g} of {:.6g}",
+                     scene.joint_names[report.joint], report.q_measured, is_prismatic ? "m" : "rad",
+                     scene.hardware->start_tolerance, report.q_expected);
+}
+
+std::string describeCulprit(const FaultReport& report, const Scene& scene) {
+  if (report.joint >= 0 && report.fault == Fault::kNotAtStart)
+    return ", " + describePlace(report, scene);
+  if (report.joint >= 0 && isOfDrive(report.fault)) return ", " + describeDrive(report, scene);
+  if (report.joint >= 0) return ", joint " + scene.joint_names[report.joint];
+  if (report.bus >= 0) return ", " + scene.hardware->buses[report.bus].interface;
+  return "";
+}
+
+std::string describeValue(const FaultReport& report) {
+  const FaultDetail& detail = report.detail;
+  const bool is_said = report.fault == Fault::kNotAtStart || report.fault == Fault::kDriveFault;
+  if (is_said || *detail.unit == '\0') return "";  // with the place
+  const std::string text = fmt::format(", {:.6g} {}", detail.value, detail.unit);
+  if (std::isnan(detail.limit)) return text;
+  return text + fmt::format(", at most {:.6g} {}", detail.limit, detail.unit);
+}
+
+/// Of a drive's fault that of the drive.
+Json busName(const FaultReport& report, const Scene& scene) {
+  int bus = report.bus;
+  if (report.joint >= 0 && isOfDrive(report.fault)) bus = scene.hardware->drives[report.joint].bus;
+  return bus < 0 ? Json() : Json(scene.hardware->buses[bus].interface);
+}
+
+}  // namespace
+
+std::string faultEvent(const FaultReport& report, const Scene& scene) {
+  std::string text = faultName(report.fault) + describeCulprit(report, scene);
+  if (std::isfinite(report.time_s)) text += fmt::format(", at {:.9g} s", report.time_s);
+  return text + describeValue(report);
+}
+
+std::string describeFault(const FaultReport& report, const Scene& scene) {
+  const FaultRow& row = faultRow(report.fault);
+  return fmt::format("{}: {}; reaction: {}", faultEvent(report, scene), row.detection,
+                     reactionName(row.reaction));
+}
+
+std::string describeMode(const ModeReport& report, const Scene& scene) {
+  const std::string mode = modeName(report.mode);
+  return report.fault == Fault::kNone ? mode : mode + ": " + describeFault(report, scene);
+}
+
+Json faultJson(const FaultReport& report, const Scene& scene) {
+  if (report.fault == Fault::kNone) return nullptr;
+  const std::string unit = report.detail.unit;
+  return {{"name", faultName(report.fault)},
+          {"time_s", report.time_s},
+          {"joint", report.joint < 0 ? Json() : Json(scene.joint_names[report.joint])},
+          {"bus", busName(report, scene)},
+          {"value", report.detail.value},
+          {"limit", report.detail.limit},
+          {"unit", unit.empty() ? Json() : Json(unit)},
+          {"description", describeFault(report, scene)}};
+}
+
+}  // namespace tactus

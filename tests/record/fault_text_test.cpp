@@ -1,0 +1,101 @@
+#include "tactus/record/fault_text.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/shipped_scene.h"
+
+namespace tactus {
+namespace {
+
+FaultReport forceTooLarge() {
+  FaultReport report;
+  report.fault = Fault::kTactileInvalid;
+  report.time_s = 3.214;
+  report.detail = {102.5, 100.0, "N"};
+  return report;
+}
+
+FaultReport ofDrive(Fault fault, const FaultDetail& detail) {
+  FaultReport report;
+  report.fault = fault;
+  report.joint = 4;
+  report.detail = detail;
+  report.drive.state = DriveState::kOperationEnabled;
+  return report;
+}
+
+class FaultText : public ::testing::Test {
+ protected:
+  const Scene scene_ = test::shippedScene("scenario1_null_space");
+};
+
+TEST_F(FaultText, TellsTimeValueAndLimit) {
+  EXPECT_EQ(faultEvent(forceTooLarge(), scene_),
+            "tactile_invalid, at 3.214 s, 102.5 N, at most 100 N");
+  ModeReport report;
+  static_cast<FaultReport&>(report) = forceTooLarge();
+  report.mode = Mode::kHolding;
+  EXPECT_EQ(describeMode(report, scene_),
+            "holding: tactile_invalid, at 3.214 s, 102.5 N, at most 100 N: a reading not finite or "
+            "beyond max_force_N; reaction: hold");
+  report.fault = Fault::kNone;
+  EXPECT_EQ(describeMode(report, scene_), "holding");
+}
+
+TEST_F(FaultText, NamesDriveBusAndJoint) {
+  const FaultReport report = ofDrive(Fault::kFollowingError, {0.0613, 0.05, "rad"});
+  EXPECT_EQ(faultEvent(report, scene_),
+            "following_error, drive 2 on can1 (joint j5), operation enabled, 0.0613 rad, at most "
+            "0.05 rad")
+      << "before the arm has moved it has no time";
+  const Json json = faultJson(report, scene_);
+  EXPECT_EQ(json.at("joint"), "j5");
+  EXPECT_EQ(json.at("bus"), "can1");
+  EXPECT_EQ(jsonText(json.at("time_s")), "null\n");
+}
+
+TEST_F(FaultText, NamesABus) {
+  FaultReport report;
+  report.fault = Fault::kBusOff;
+  report.bus = 2;
+  EXPECT_EQ(faultEvent(report, scene_), "bus_off, can2");
+  const Json json = faultJson(report, scene_);
+  EXPECT_EQ(json.at("bus"), "can2");
+  EXPECT_TRUE(json.at("joint").is_null());
+  EXPECT_TRUE(json.at("unit").is_null());
+  EXPECT_EQ(jsonText(json.at("value")), "null\n");
+}
+
+TEST_F(FaultText, TellsAnEmergencyCodeOnce) {
+  FaultReport report = ofDrive(Fault::kDriveFault, {.value = 0x8611, .unit = "emergency code"});
+  report.drive.emergency_code = 0x8611;
+  EXPECT_EQ(faultEvent(report, scene_),
+            "drive_fault, drive 2 on can1 (joint j5), emergency code 0x8611, operation enabled");
+  EXPECT_EQ(faultJson(report, scene_).at("value"), 0x8611);
+}
+
+TEST_F(FaultText, OfTheLawNamesTheJointAlone) {
+  FaultReport report = ofDrive(Fault::kCommandNotFinite, {});
+  EXPECT_EQ(faultEvent(report, scene_), "command_not_finite, joint j5");
+  EXPECT_TRUE(faultJson(report, scene_).at("bus").is_null());
+}
+
+TEST_F(FaultText, AsJsonHasTheMembersOfTheContract) {
+  const Json json = faultJson(forceTooLarge(), scene_);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  EXPECT_EQ(keys, (std::vector<std::string>{"name", "time_s", "joint", "bus", "value", "limit",
+                                            "unit", "description"}));
+  EXPECT_EQ(json.at("name"), "tactile_invalid");
+  EXPECT_EQ(json.at("time_s"), 3.214);
+  EXPECT_EQ(json.at("value"), 102.5);
+  EXPECT_EQ(json.at("limit"), 100.0);
+  EXPECT_EQ(json.at("unit"), "N");
+  EXPECT_EQ(json.at("description"), describeFault(forceTooLarge(), scene_));
+  EXPECT_TRUE(faultJson({}, scene_).is_null());
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include "support/shipped_scene.h"
+#include "support/virtual_robot_cell.h"
+
+/// What the report says of a fault: time, place, value and limit.
+namespace tactus {
+namespace {
+
+using test::VirtualRobotCell;
+
+VirtualRobotCell runningArm() {
+  VirtualRobotCell cell(test::shippedScene("scenario1_multi_space"));
+  EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  for (int i = 0; i < 200; ++i) cell.step();
+  EXPECT_TRUE(std::isnan(cell.cycle.report().time_s)) << "no fault yet";
+  return cell;
+}
+
+/// The report of the first cycle with a fault, which has the time of that cycle's record.
+ModeReport firstFault(VirtualRobotCell& cell) {
+  for (int i = 0; i < 100 && cell.cycle.report().fault == Fault::kNone; ++i) cell.step();
+  const ModeReport report = cell.cycle.report();
+  EXPECT_EQ(report.time_s, cell.cycle.record().t_s);
+  for (int i = 0; i < 50; ++i) cell.step();
+  EXPECT_EQ(cell.cycle.report().time_s, report.time_s) << "it stays that of the fault";
+  EXPECT_EQ(cell.cycle.report().detail.value, report.detail.value);
+  return report;
+}
+
+void spoilFrames(VirtualRobotCell& cell, int bus, std::uint32_t id, std::size_t byte,
+                 std::uint8_t flip) {
+  cell.on_frame = [=](int of_bus, CanFrame& frame) {
+    if (of_bus == bus && frame.id == id) frame.data[byte] ^= flip;
+  };
+}
+
+TEST(FaultDetails, OfAForceBeyondTheRange) {
+  VirtualRobotCell cell = runningArm();
+  cell.on_frame = [](int bus, CanFrame& frame) {  // 80 N on each of two cells of one side
+    if (bus != 3 || (frame.id != 0x100 && frame.id != 0x102)) return;
+    frame.data[2] = 0x00;
+    frame.data[3] = 0x12;
+    frame.data[4] = 0x7A;
+  };
+  const ModeReport report = firstFault(cell);
+  EXPECT_EQ(report.fault, Fault::kTactileInvalid);
+  EXPECT_GT(report.detail.value, report.detail.limit);
+  EXPECT_LT(report.detail.value, 1e4);
+  EXPECT_EQ(report.detail.limit,
+            test::shippedScene("scenario1_multi_space").controller.tactile_module->max_force_N);
+  EXPECT_STREQ(report.detail.unit, "N");
+  EXPECT_EQ(report.joint, -1);
+}
+
+TEST(FaultDetails, OfASampleTooOld) {
+  VirtualRobotCell cell = runningArm();
+  spoilFrames(cell, 3, 0x100, 0, 0x80);
+  const ModeReport report = firstFault(cell);
+  EXPECT_EQ(report.fault, Fault::kTactileStale);
+  EXPECT_GT(report.detail.value, report.detail.limit);
+  EXPECT_LT(report.detail.value, report.detail.limit + 0.0015) << "the first cycle too old";
+  EXPECT_STREQ(report.detail.unit, "s");
+}
+
+TEST(FaultDetails, OfAJointThatDoesNotFollow) {
+  VirtualRobotCell cell = runningArm();
+  spoilFrames(cell, 1, 0x182, 4, 0x10);
+  const ModeReport report = firstFault(cell);
+  EXPECT_EQ(report.fault, Fault::kFollowingError);
+  EXPECT_EQ(report.joint, 4);
+  EXPECT_NEAR(report.detail.value, std::abs(report.q_measured - report.q_expected), 1e-3);
+  EXPECT_GT(report.detail.value, report.detail.limit);
+  EXPECT_STREQ(report.detail.unit, "rad");
+}
+
+TEST(FaultDetails, OfALoopThatIsLate) {
+  VirtualRobotCell cell = runningArm();
+  cell.input.late_in_a_row = 7;
+  const ModeReport report = firstFault(cell);
+  EXPECT_EQ(report.fault, Fault::kOverrun);
+  EXPECT_EQ(report.detail.value, 7.0);
+  EXPECT_EQ(report.detail.limit, 3.0);
+  EXPECT_STREQ(report.detail.unit, "cycles");
+}
+
+TEST(FaultDetails, OfADrivesEmergency) {
+  VirtualRobotCell cell = runningArm();
+  bool is_sent = false;
+  cell.on_frame = [&is_sent](int bus, CanFrame& frame) {
+    if (bus != 1 || frame.id != 0x182 || is_sent) return;
+    frame.id = 0x82;
+    frame.size = 8;
+    frame.data = {0x11, 0x86, 0x81, 0, 0, 0, 0, 0};
+    is_sent = true;
+  };
+  const ModeReport report = firstFault(cell);
+  EXPECT_EQ(report.fault, Fault::kDriveFault);
+  EXPECT_EQ(report.joint, 4);
+  EXPECT_EQ(report.detail.value, 0x8611);
+  EXPECT_STREQ(report.detail.unit, "emergency code");
+}
+
+TEST(FaultDetails, BeforeMotionHaveNoTime) {
+  VirtualRobotCell cell(test::shippedScene("scenario1_multi_space"));
+  cell.on_frame = [](int bus, CanFrame& frame) {
+    if (bus == 3 && frame.id == 0x100) frame.data[4] = 5;  // a hand on the cover
+  };
+  for (int i = 0; i < 5000 && cell.cycle.report().fault == Fault::kNone; ++i) cell.step();
+  const ModeReport& report = cell.cycle.report();
+  EXPECT_EQ(report.fault, Fault::kTareRefused);
+  EXPECT_TRUE(std::isnan(report.time_s));
+  EXPECT_GT(report.detail.value, report.detail.limit);
+  EXPECT_EQ(report.detail.limit,
+            test::shippedScene("scenario1_multi_space").hardware->tactile->tare_max_offset_N);
+}
+
+TEST(FaultDetails, AreGoneOnceItIsCleared) {
+  Scene scene = test::shippedScene("scenario1_multi_space");
+  scene.hardware->gpio.emplace();
+  scene.hardware->gpio->enable.emplace();
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  cell.input.late_in_a_row = 7;
+  cell.step();
+  ASSERT_EQ(cell.cycle.report().fault, Fault::kOverrun);
+  cell.input.late_in_a_row = 0;
+  for (int i = 0; i < 1000; ++i) cell.step();
+  cell.switchEnable();
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 4000));
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kNone);
+  EXPECT_STREQ(cell.cycle.report().detail.unit, "");
+  EXPECT_TRUE(std::isnan(cell.cycle.report().time_s));
+}
+
+}  // namespace
+}  // namespace tactus
