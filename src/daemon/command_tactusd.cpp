@@ -25,6 +25,7 @@ struct DaemonArguments {
 };
 
 int runScene(const DaemonArguments& options) {
+  if (options.name && options.folder.empty()) throw CLI::RequiresError("--name", "--output");
   if (options.name) checkRunName(*options.name);
   const Scene scene = loadHardwareScene(options.scene, options.settings, "to run on");
   checkStability(scene);
@@ -46,7 +47,7 @@ int tactusdProgram(int argc, char** argv) {
   app.add_option("SCENE", options.scene, "Scene file")->required();
   app.add_option("-o,--output", options.folder,
                  "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files");
-  app.add_option("--name", options.name, kNameHelp)->needs("--output");
+  app.add_option("--name", options.name, kNameHelp);
   app.add_option("--duration", options.duration_s, "End after so many seconds of motion")
       ->check(CLI::Range(1e-3, 1e9));
   app.add_option("--set", options.settings, kSetHelp)->allow_extra_args(false);
