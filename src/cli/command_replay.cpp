@@ -96,6 +96,7 @@ class LogReplay {
     CycleRecord recorded;
     while (reader.next(recorded)) {
       if (!has_path_time) recorded.path_time_s = recorded.task_time_s;  // nothing waited then
+      recorded.gains = scene_.controller.gains;
       const CycleRecord replayed = replayer_.replay(recorded);
       if (!replayer_.isKnown()) {
         comparison_.skip();

@@ -29,13 +29,14 @@ void checkTask(const Checked& c) {
            fmt::format("at most {}, as many as there are joints", joint_count));
   }
   // One explicit step of the drift term must not overshoot.
-  if (c.draft.task.drift_gain_per_s * c.draft.period_s > 1.0) {
-    c.fail("task.drift_gain_per_s", fmt::format("{} is too high", c.draft.task.drift_gain_per_s),
+  if (c.draft.gains.task.drift_gain_per_s * c.draft.period_s > 1.0) {
+    c.fail("task.drift_gain_per_s",
+           fmt::format("{} is too high", c.draft.gains.task.drift_gain_per_s),
            fmt::format("at most 1 / period_s = {}", 1.0 / c.draft.period_s));
   }
   const bool has_position = std::ranges::any_of(
       c.draft.components, [](const std::string& component) { return component.size() == 1; });
-  if (c.draft.task.wait_beyond_m && !has_position) {
+  if (c.draft.gains.task.wait_beyond_m < kNoLimit && !has_position) {
     c.fail("task.wait_beyond_m", "the task has no position that could lag",
            "x, y or z among task.components, or no such key");
   }
@@ -101,7 +102,7 @@ void checkTrajectory(const Checked& c) {
 }
 
 void checkJointSpace(const Checked& c) {
-  const ForceControlConfig& force = c.draft.force;
+  const ForceGains& force = c.draft.gains.force;
   if (!findGiven(c.root, "redundancy.joint_limit_avoidance")) {
     c.fail(
         "redundancy.joint_limit_avoidance", "is missing",
@@ -181,11 +182,11 @@ void checkPeriod(const Checked& c) {
 }
 
 void checkStiffness(const Checked& c) {
-  const auto& estimator = c.draft.force.estimator;
-  if (estimator && estimator->min_N_per_m >= estimator->max_N_per_m) {
+  const StiffnessEstimatorGains& estimator = c.draft.gains.force.estimator;
+  if (estimator.min_N_per_m >= estimator.max_N_per_m) {
     c.fail("stiffness.estimate.max_N_per_m",
-           fmt::format("{} is not above min_N_per_m", estimator->max_N_per_m),
-           fmt::format("more than {}", estimator->min_N_per_m));
+           fmt::format("{} is not above min_N_per_m", estimator.max_N_per_m),
+           fmt::format("more than {}", estimator.min_N_per_m));
   }
 }
 

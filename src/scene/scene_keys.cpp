@@ -50,22 +50,22 @@ KeySpec taskSection() {
           defaulted("[x, y, z]", components),
           defaulted("5", number("drift_gain_per_s", "1/s", within(0, 1e4),
                                 "beta of (2): pulls the tool back to its reference",
-                                [](Draft& d) -> double& { return d.task.drift_gain_per_s; })),
-          optional(number(
-              "max_return_speed_m_per_s", "m/s", above(0, 10),
-              "largest speed at which beta pulls the position back, as after a contact; "
-              "absent: beta times its error",
-              [](Draft& d) -> double& { return d.task.max_return_speed_m_per_s.emplace(); })),
-          optional(number(
-              "max_return_speed_rad_per_s", "rad/s", above(0, 10),
-              "largest speed at which beta pulls the orientation back; absent: beta "
-              "times its error",
-              [](Draft& d) -> double& { return d.task.max_return_speed_rad_per_s.emplace(); })),
+                                [](Draft& d) -> double& { return d.gains.task.drift_gain_per_s; })),
+          optional(
+              number("max_return_speed_m_per_s", "m/s", above(0, 10),
+                     "largest speed at which beta pulls the position back, as after a contact; "
+                     "absent: beta times its error",
+                     [](Draft& d) -> double& { return d.gains.task.max_return_speed_m_per_s; })),
+          optional(
+              number("max_return_speed_rad_per_s", "rad/s", above(0, 10),
+                     "largest speed at which beta pulls the orientation back; absent: beta "
+                     "times its error",
+                     [](Draft& d) -> double& { return d.gains.task.max_return_speed_rad_per_s; })),
           optional(number(
               "wait_beyond_m", "m", above(0, 10),
               "lag of the tool's position beyond which the reference goes on slower; beyond twice "
               "that it stands still until the tool has caught up; absent: it never waits",
-              [](Draft& d) -> double& { return d.task.wait_beyond_m.emplace(); })),
+              [](Draft& d) -> double& { return d.gains.task.wait_beyond_m; })),
           section("trajectory", "the reference w_d; exactly one of line, waypoints, hold",
                   {
                       defaulted("0", number("start_s", "s", within(0, kMaxTime_s),
@@ -94,21 +94,21 @@ KeySpec redundancySection() {
               {
                   defaulted("1", number("gain", "", within(0, 1000), "alpha of (1)",
                                         [](Draft& d) -> double& {
-                                          return d.joint_limit_avoidance->gain;
+                                          return d.gains.joint_limit_avoidance.gain;
                                         })),
                   defaulted("3.52", number("gradient_at_limit", "m/s or rad/s", above(0, 1000),
                                            "dH/dq of a joint on its limit",
                                            [](Draft& d) -> double& {
-                                             return d.joint_limit_avoidance->gradient_at_limit;
+                                             return d.gains.joint_limit_avoidance.gradient_at_limit;
                                            })),
                   defaulted("0.507",
                             number("active_fraction", "", above(0, 1),
                                    "outer part of the half range in which the gradient rises",
                                    [](Draft& d) -> double& {
-                                     return d.joint_limit_avoidance->active_fraction;
+                                     return d.gains.joint_limit_avoidance.active_fraction;
                                    })),
               },
-              [](Draft& d) { d.joint_limit_avoidance.emplace(); })),
+              [](Draft& d) { d.has_joint_limit_avoidance = true; })),
       });
 }
 
@@ -119,26 +119,29 @@ KeySpec transitionSection() {
           defaulted("1", number("max_time_constant_s", "s", above(0, 100),
                                 "T_t,max: time constant of the fade right after the loss",
                                 [](Draft& d) -> double& {
-                                  return d.force.transition.max_time_constant_s;
+                                  return d.gains.force.transition.max_time_constant_s;
                                 })),
-          defaulted("0.05",
-                    number("distance_m", "m", above(0, 10),
-                           "d_t: distance from the lost contact at which all is faded",
-                           [](Draft& d) -> double& { return d.force.transition.distance_m; })),
-          defaulted("0",
-                    number("engage_force_N", "N", within(0, 1000),
-                           "force range over which the feedforward engages; 0: at once",
-                           [](Draft& d) -> double& { return d.force.transition.engage_force_N; })),
-          defaulted("0.3",
-                    number("release_force_N", "N", above(0, 1000),
-                           "F_rel: reading below which joint_space has lost contact, and above "
-                           "which an arm that goes on after a stop is in contact",
-                           [](Draft& d) -> double& { return d.force.transition.release_force_N; })),
+          defaulted("0.05", number("distance_m", "m", above(0, 10),
+                                   "d_t: distance from the lost contact at which all is faded",
+                                   [](Draft& d) -> double& {
+                                     return d.gains.force.transition.distance_m;
+                                   })),
+          defaulted("0", number("engage_force_N", "N", within(0, 1000),
+                                "force range over which the feedforward engages; 0: at once",
+                                [](Draft& d) -> double& {
+                                  return d.gains.force.transition.engage_force_N;
+                                })),
+          defaulted(
+              "0.3",
+              number("release_force_N", "N", above(0, 1000),
+                     "F_rel: reading below which joint_space has lost contact, and above "
+                     "which an arm that goes on after a stop is in contact",
+                     [](Draft& d) -> double& { return d.gains.force.transition.release_force_N; })),
           defaulted("0.01", number("search_speed_m_per_s", "m/s", within(0, 10),
                                    "v_search, joint_space only: speed of the return to a lost "
                                    "contact",
                                    [](Draft& d) -> double& {
-                                     return d.force.transition.search_speed_m_per_s;
+                                     return d.gains.force.transition.search_speed_m_per_s;
                                    })),
       });
 }
@@ -159,36 +162,42 @@ KeySpec controllerSection() {
           variant,
           defaulted("2", integer("order", within(1, 2), "order of the target dynamics (4)",
                                  [](Draft& d) -> int& { return d.force.order; })),
-          defaulted("0.1", number("time_constant_s", "s", within(0.001, 100),
-                                  "T of the target dynamics (4): smaller is faster, less stable",
-                                  [](Draft& d) -> double& { return d.force.time_constant_s; })),
+          defaulted("0.1",
+                    number("time_constant_s", "s", within(0.001, 100),
+                           "T of the target dynamics (4): smaller is faster, less stable",
+                           [](Draft& d) -> double& { return d.gains.force.time_constant_s; })),
           defaulted("0.5", number("damping", "", above(0, 10), "d of (4), second order only",
-                                  [](Draft& d) -> double& { return d.force.damping; })),
-          defaulted("1.2", number("contact_threshold_N", "N", within(0, 1000),
-                                  "F_th: a smaller reading is no contact",
-                                  [](Draft& d) -> double& { return d.force.contact_threshold_N; })),
+                                  [](Draft& d) -> double& { return d.gains.force.damping; })),
+          defaulted("1.2",
+                    number("contact_threshold_N", "N", within(0, 1000),
+                           "F_th: a smaller reading is no contact",
+                           [](Draft& d) -> double& { return d.gains.force.contact_threshold_N; })),
           optional(number("activation_force_N", "N", above(0, 1000),
                           "F_act: contact force from which null_task, null_joint and null_limit "
                           "leave the null space",
-                          [](Draft& d) -> double& { return d.force.activation_force_N; })),
-          defaulted("5",
-                    number("max_null_speed_m_per_s", "m/s", above(0, 1000),
-                           "limit of the null-space reaction of a prismatic joint",
-                           [](Draft& d) -> double& { return d.force.max_null_speed_m_per_s; })),
-          defaulted("5",
-                    number("max_null_speed_rad_per_s", "rad/s", above(0, 1000),
-                           "limit of the null-space reaction of a revolute joint",
-                           [](Draft& d) -> double& { return d.force.max_null_speed_rad_per_s; })),
-          defaulted("500", number("pull_gain_per_s", "1/s", within(0, 1e4),
-                                  "beta of joint_space in contact; drift_gain_per_s holds "
-                                  "elsewhere",
-                                  [](Draft& d) -> double& { return d.force.pull_gain_per_s; })),
-          defaulted(
-              "300",
-              number("min_approach_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
-                     "c_floor, null_limit only: softer contact is approached no faster "
-                     "than this, for what may be behind it",
-                     [](Draft& d) -> double& { return d.force.min_approach_stiffness_N_per_m; })),
+                          [](Draft& d) -> double& { return d.gains.force.activation_force_N; })),
+          defaulted("5", number("max_null_speed_m_per_s", "m/s", above(0, 1000),
+                                "limit of the null-space reaction of a prismatic joint",
+                                [](Draft& d) -> double& {
+                                  return d.gains.force.max_null_speed_m_per_s;
+                                })),
+          defaulted("5", number("max_null_speed_rad_per_s", "rad/s", above(0, 1000),
+                                "limit of the null-space reaction of a revolute joint",
+                                [](Draft& d) -> double& {
+                                  return d.gains.force.max_null_speed_rad_per_s;
+                                })),
+          defaulted("500",
+                    number("pull_gain_per_s", "1/s", within(0, 1e4),
+                           "beta of joint_space in contact; drift_gain_per_s holds "
+                           "elsewhere",
+                           [](Draft& d) -> double& { return d.gains.force.pull_gain_per_s; })),
+          defaulted("300",
+                    number("min_approach_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                           "c_floor, null_limit only: softer contact is approached no faster "
+                           "than this, for what may be behind it",
+                           [](Draft& d) -> double& {
+                             return d.gains.force.min_approach_stiffness_N_per_m;
+                           })),
           defaulted("", transitionSection()),
       });
 }
@@ -199,7 +208,7 @@ KeySpec stiffnessSection() {
       {
           number("assumed_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
                  "c_0: where the estimate starts, or stays without one",
-                 [](Draft& d) -> double& { return d.force.assumed_stiffness_N_per_m; }),
+                 [](Draft& d) -> double& { return d.gains.force.assumed_stiffness_N_per_m; }),
           optional(number("stiffest_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
                           "stiffest contact, obstacle and arm in series, for which the gains must "
                           "be stable; absent: as stiff as assumed",
@@ -210,25 +219,25 @@ KeySpec stiffnessSection() {
                   defaulted("0.2", number("min_force_change_N", "N", above(0, 1000),
                                           "F_est,min: change of force that makes an estimate",
                                           [](Draft& d) -> double& {
-                                            return d.force.estimator->min_force_change_N;
+                                            return d.gains.force.estimator.min_force_change_N;
                                           })),
                   defaulted("0.03", number("filter_time_constant_s", "s", above(0, 100),
                                            "T_est: smoothing of the estimate",
                                            [](Draft& d) -> double& {
-                                             return d.force.estimator->filter_time_constant_s;
+                                             return d.gains.force.estimator.filter_time_constant_s;
                                            })),
                   defaulted("10", number("min_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
                                          "smallest raw estimate",
                                          [](Draft& d) -> double& {
-                                           return d.force.estimator->min_N_per_m;
+                                           return d.gains.force.estimator.min_N_per_m;
                                          })),
                   defaulted("1e6", number("max_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
                                           "largest raw estimate",
                                           [](Draft& d) -> double& {
-                                            return d.force.estimator->max_N_per_m;
+                                            return d.gains.force.estimator.max_N_per_m;
                                           })),
               },
-              [](Draft& d) { d.force.estimator.emplace(); })),
+              [](Draft& d) { d.force.has_estimator = true; })),
       });
 }
 

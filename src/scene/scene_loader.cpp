@@ -82,7 +82,8 @@ ControllerConfig makeController(const YamlNode& root, const ConfigDraft& draft,
   config.weights = draft.weights.empty()
                        ? JointVector::Ones(joint_count)
                        : toJointVector(draft.weights, root, "redundancy.weights", chain);
-  config.joint_limit_avoidance = draft.joint_limit_avoidance;
+  config.has_joint_limit_avoidance = draft.has_joint_limit_avoidance;
+  config.gains = draft.gains;
   if (!findGiven(root, "controller")) return config;
   config.tactile_module = draft.module;
   config.tactile_module->filter_cutoff_hz = draft.plant.module.filter_cutoff_hz;

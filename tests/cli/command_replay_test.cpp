@@ -28,8 +28,8 @@ class CommandReplay : public ::testing::Test {
       input.tactile.force_y_N = std::max(0.0, 6.0 * std::sin(4.0 * t_s));
       input.tactile.moment_z_Nm = 0.2 * input.tactile.force_y_N;
       input.tactile.sequence = static_cast<std::uint32_t>(i / 4);
-      controller.update(input, t_s, scene.period_s, state, output);
-      fillRecord(t_s, input, output, Vector3::Zero(), records[i]);
+      controller.update(input, controller.initialGains(), t_s, scene.period_s, state, output);
+      fillRecord(t_s, input, controller.initialGains(), output, Vector3::Zero(), records[i]);
     }
     return records;
   }

@@ -47,9 +47,10 @@ struct ConfigDraft {
   std::vector<std::string> components;
   TaskConfig task;
   std::vector<double> weights;  ///< empty: all 1
-  std::optional<JointLimitAvoidanceConfig> joint_limit_avoidance;
+  bool has_joint_limit_avoidance = false;
   std::string variant = "none";
   ForceControlConfig force;
+  Gains gains;
   double stiffest_N_per_m = 0.0;  ///< 0: not given
   PlantConfig plant;              ///< as robot.yaml describes the arm
   double simulated_drive_lag_s = 0.0, simulated_filter_cutoff_hz = 0.0;  ///< if given, other ones

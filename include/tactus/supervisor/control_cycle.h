@@ -41,6 +41,9 @@ class ControlCycle {
  public:
   ControlCycle(const ControllerConfig& controller, const HardwareConfig& hardware, double period_s);
 
+  /// What the next cycles are given; at first the config's.
+  void tune(const Gains& gains) noexcept { gains_ = gains; }
+
   void receive(int bus, std::span<const CanFrame> frames) noexcept { robot_.receive(bus, frames); }
   void update(const CycleInput& input) noexcept;
   /// Does ahead, while frames travel and drives move, what the next cycle needs and already can
@@ -86,6 +89,7 @@ class ControlCycle {
   };
 
   Controller controller_;
+  Gains gains_;
   CanRobot robot_;
   JointVector q_commanded_;  ///< at last, in a mode that commands; at first where the scene starts
   JointVector q_released_;   ///< of each joint, where its drive held it at last; likewise
