@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tactus/scene/gain_keys.h"
+
 namespace tactus {
 namespace {
 
@@ -27,12 +29,6 @@ void checkTask(const Checked& c) {
   if (c.draft.components.size() > joint_count) {
     c.fail("task.components", fmt::format("a list of {}", c.draft.components.size()),
            fmt::format("at most {}, as many as there are joints", joint_count));
-  }
-  // One explicit step of the drift term must not overshoot.
-  if (c.draft.gains.task.drift_gain_per_s * c.draft.period_s > 1.0) {
-    c.fail("task.drift_gain_per_s",
-           fmt::format("{} is too high", c.draft.gains.task.drift_gain_per_s),
-           fmt::format("at most 1 / period_s = {}", 1.0 / c.draft.period_s));
   }
   const bool has_position = std::ranges::any_of(
       c.draft.components, [](const std::string& component) { return component.size() == 1; });
@@ -102,20 +98,10 @@ void checkTrajectory(const Checked& c) {
 }
 
 void checkJointSpace(const Checked& c) {
-  const ForceGains& force = c.draft.gains.force;
   if (!findGiven(c.root, "redundancy.joint_limit_avoidance")) {
     c.fail(
         "redundancy.joint_limit_avoidance", "is missing",
         "a section with the variant joint_space, whose pull would drive joints onto their limits");
-  }
-  if (force.transition.release_force_N >= force.contact_threshold_N) {
-    c.fail("controller.transition.release_force_N",
-           fmt::format("{} N is not below the contact threshold", force.transition.release_force_N),
-           fmt::format("less than contact_threshold_N = {}", force.contact_threshold_N));
-  }
-  if (force.pull_gain_per_s * c.draft.period_s > 1.0) {
-    c.fail("controller.pull_gain_per_s", fmt::format("{} is too high", force.pull_gain_per_s),
-           fmt::format("at most 1 / period_s = {}", 1.0 / c.draft.period_s));
   }
 }
 
@@ -181,13 +167,10 @@ void checkPeriod(const Checked& c) {
   }
 }
 
-void checkStiffness(const Checked& c) {
-  const StiffnessEstimatorGains& estimator = c.draft.gains.force.estimator;
-  if (estimator.min_N_per_m >= estimator.max_N_per_m) {
-    c.fail("stiffness.estimate.max_N_per_m",
-           fmt::format("{} is not above min_N_per_m", estimator.max_N_per_m),
-           fmt::format("more than {}", estimator.min_N_per_m));
-  }
+void checkGains(const Checked& c) {
+  const bool is_joint_space = c.draft.variant == "joint_space";
+  const auto problem = findGainConflict(c.draft.gains, is_joint_space, c.draft.period_s);
+  if (problem) c.fail(problem->path, problem->problem, problem->expectation);
 }
 
 void checkObstacles(const Checked& c) {
@@ -218,7 +201,7 @@ void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobo
   checkDuration(checked);
   checkPeriod(checked);
   checkSimulatedModule(checked);
-  checkStiffness(checked);
+  checkGains(checked);
   checkObstacles(checked);
 }
 
