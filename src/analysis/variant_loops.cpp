@@ -4,8 +4,8 @@ namespace tactus {
 namespace {
 
 ContactLoop loopOf(const ControllerConfig& config, const PlantConfig& plant, double period_s) {
-  const ForceControlConfig& force = *config.force_control;
-  return {.order = force.order,
+  const ForceGains& force = config.gains.force;
+  return {.order = config.force_control->order,
           .time_constant_s = force.time_constant_s,
           .damping = force.damping,
           .period_s = period_s,
@@ -25,7 +25,7 @@ std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const Plan
   ContactLoop both = one;
   both.law = LoopLaw::kTwoSpaces;
   const auto pulled = [&](ContactLoop loop) {
-    loop.drift_gain_per_s = config.task.drift_gain_per_s;
+    loop.drift_gain_per_s = config.gains.task.drift_gain_per_s;
     return loop;
   };
   switch (config.force_control->variant) {

@@ -30,7 +30,7 @@ void addContact(int joints, ControllerConfig& config) {
   config.tactile_module->length_m = kLinkLength_m;
   config.force_control.emplace();
   config.force_control->variant = Variant::kNullTask;
-  config.force_control->estimator.emplace();
+  config.force_control->has_estimator = true;
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ BenchRobot makeBenchRobot(int joints, int task_components, int contacts) {
   line.displacement_m = Vector3(0.0, 0.1, 0.05);
   config.task.trajectory.waypoints = {line};
   config.weights = JointVector::Ones(joints);
-  config.joint_limit_avoidance.emplace();
+  config.has_joint_limit_avoidance = true;
   if (contacts > 0) addContact(joints, config);
   return {chain, config};
 }

@@ -116,7 +116,7 @@ void play(const Scene& scene, const ExtremeCase& extreme, ExtremeRun& run) {
     if (extreme.reading) extreme.reading(t_s, input.tactile);
     const JointVector velocity_before = state.velocity_before;
     watch.beforeStep();
-    controller.update(input, t_s, scene.period_s, state, output);
+    controller.update(input, scene.controller.gains, t_s, scene.period_s, state, output);
     watch.afterStep(state, velocity_before, output);
     if (extreme.is_long) state_watch.add(run.cycles, state);
     run.peak_force_N = std::max(run.peak_force_N, robot.trueForce_N());

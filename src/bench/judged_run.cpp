@@ -60,7 +60,7 @@ JudgedRun judgeRun(const RunSetup& setup) {
     const double t_s = static_cast<double>(cycle) * setup.period_s;
     robot.read(input);
     if (setup.reading) setup.reading(input.tactile);
-    controller.update(input, t_s, setup.period_s, state, output);
+    controller.update(input, setup.controller.gains, t_s, setup.period_s, state, output);
     const Vector3 goal = output.w_d.size() >= 3 ? Vector3(output.w_d.head<3>()) : Vector3::Zero();
     run.tcp_error_final_m = (goal - robot.toolPosition()).norm();
     robot.write(output.velocity);
@@ -94,7 +94,7 @@ double contactStiffness(const ObstacleConfig& obstacle, double robot_stiffness_N
 }
 
 double naturalScale(const RunSetup& setup, const JudgedRun& run) {
-  const ForceControlConfig& force = *setup.controller.force_control;
+  const ForceGains& force = setup.controller.gains.force;
   const double stiffness =
       contactStiffness(setup.plant.obstacles.back(), setup.plant.robot_stiffness_N_per_m);
   const double unseen_N = stiffness * run.touch_speed_m_per_s * feedbackDelay_s(setup.plant);

@@ -22,7 +22,7 @@ class KdlRun {
       : chain_(kdlChain(robot, robot.config.chain.tip())),
         position_(chain_),
         trajectory_(robot.config.task.trajectory, startPose(robot.config)),
-        gain_per_s_(robot.config.task.drift_gain_per_s),
+        gain_per_s_(robot.config.gains.task.drift_gain_per_s),
         has_rotation_(robot.config.task.size == 6),
         q_(jointArray(robot.config.q_start)),
         q_dot_(chain_.getNrOfJoints()) {}

@@ -39,7 +39,7 @@ RunSetup lawGridSetup(const RunSetup& base, const LawGridPoint& point, GridLaw l
   RunSetup setup = base;
   ForceControlConfig& force = *setup.controller.force_control;
   force.variant = law == GridLaw::kLimited ? Variant::kNullLimit : Variant::kNullTask;
-  if (law == GridLaw::kAssumed) force.estimator.reset();
+  if (law == GridLaw::kAssumed) force.has_estimator = false;
   setup.controller.tactile_module->max_force_N = kNoLimit;
   setup.plant.module.quantised = false;  // counts have a range
   setup.plant.robot_stiffness_N_per_m = point.robot_stiffness_N_per_m;

@@ -72,10 +72,10 @@ std::vector<LawTrial> lawAblations() {
       {"without the estimator",
        [](RunSetup& s) {
          if (s.controller.force_control->variant == Variant::kNullLimit)
-           s.controller.force_control->estimator.reset();
+           s.controller.force_control->has_estimator = false;
        }},
       {"without c_floor",
-       [](RunSetup& s) { s.controller.force_control->min_approach_stiffness_N_per_m = 0.0; }},
+       [](RunSetup& s) { s.controller.gains.force.min_approach_stiffness_N_per_m = 0.0; }},
   };
 }
 

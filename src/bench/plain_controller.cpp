@@ -29,10 +29,9 @@ PlainController::PlainController(const BenchRobot& robot,
       ones_(padded(Eigen::VectorXd::Ones(config_.chain.size()))),
       trajectory_(config_.task.trajectory, toolPose(config_)),
       limiter_(config_.limits),
-      joint_limits_(*config_.joint_limit_avoidance, config_.limits, ones_) {
+      joint_limits_(config_.limits, ones_),
+      zones_(joint_limits_.zones(config_.gains.joint_limit_avoidance)) {
   if (!config_.force_control) return;
-  transition_.emplace(config_.force_control->transition);
-  estimator_.emplace(*config_.force_control->estimator);
   law_.emplace(*config_.force_control, config_.chain, ones_);
 }
 
@@ -42,8 +41,8 @@ PlainControllerState PlainController::initialState() const {
   state.velocity_before = JointVector::Zero(config_.chain.size());
   if (!law_) return state;
   state.contact_point.position_m = 0.5 * config_.tactile_module->length_m;
-  const double c_0 = config_.force_control->assumed_stiffness_N_per_m;
-  state.estimator = {c_0, c_0};
+  const double c_0 = config_.gains.force.assumed_stiffness_N_per_m;
+  state.estimator.stiffness_N_per_m = state.estimator.stiffness_raw_N_per_m = c_0;
   return state;
 }
 
@@ -55,7 +54,7 @@ Eigen::VectorXd PlainController::taskVelocity(double t_s) const {
   w_dot << reference.v_BaseTool, reference.omega_BaseTool;
   error << reference.p_BaseTool - tool.p_AB,
       rotationVector(reference.R_BaseTool * tool.R_AB.transpose());
-  return (w_dot + config_.task.drift_gain_per_s * error).head(config_.task.size);
+  return (w_dot + config_.gains.task.drift_gain_per_s * error).head(config_.task.size);
 }
 
 /// What contact adds to the joint speeds.
@@ -72,18 +71,19 @@ Eigen::VectorXd PlainController::answer(const RobotInput& input, const Eigen::Ve
   space.k_n = a.dot(Na);
   space.k_j = a.dot(a);
   space.k_t = space.k_j - space.k_n;
+  const ForceGains& gains = config_.gains.force;
   ControlLawInput law_input;
-  law_input.F_p_N =
-      std::max(0.0, state.contact_point.force_N - config_.force_control->contact_threshold_N);
-  estimator_->update(law_input.F_p_N, -a.dot(state.velocity_before), period_s, state.estimator);
+  law_input.F_p_N = std::max(0.0, state.contact_point.force_N - gains.contact_threshold_N);
+  estimateStiffness(gains.estimator, law_input.F_p_N, -a.dot(state.velocity_before), period_s,
+                    state.estimator);
   law_input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
   law_input.integral_decay =
-      transition_->update(law_input.F_p_N, p_BaseContact, period_s, state.transition);
+      passTransition(gains.transition, law_input.F_p_N, p_BaseContact, period_s, state.transition);
   law_input.x_dot_ff_m_per_s = state.transition.gamma * std::min(0.0, a.dot(q_dot_eff));
   law_input.cut_m_per_s = state.cut_m_per_s;
   state.contact_direction = a;
   ControlLawOutput u;
-  law_->update(law_input, space, period_s, state.law, u);
+  law_->update(gains, law_input, space, period_s, state.law, u);
   return -(a - Na) * u.u_t - Na * u.u_n - a * u.u_j;
 }
 
@@ -92,7 +92,7 @@ JointVector PlainController::update(const RobotInput& input, double t_s, double 
   kinematics_->move(state.q_desired);
   const Eigen::VectorXd q_dot_eff = kinematics_->inverse(taskVelocity(t_s));
   const Eigen::VectorXd gradient =
-      joint_limits_.evaluate(state.q_desired).gradient.head(state.q_desired.size());
+      joint_limits_.evaluate(zones_, state.q_desired).gradient.head(state.q_desired.size());
   Eigen::VectorXd q_dot = q_dot_eff - kinematics_->project(gradient);
   if (law_) q_dot += answer(input, q_dot_eff, period_s, state);
   JointVector velocity = q_dot;

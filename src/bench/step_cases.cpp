@@ -51,18 +51,20 @@ StepCase makeCase(const char* code, const BenchRobot& robot, std::shared_ptr<Run
 }
 
 struct OurRun : Recorded<Controller, ControllerState> {
-  explicit OurRun(const BenchRobot& robot) : Recorded{Controller(robot.config), {}, {}, {}, {}} {
+  explicit OurRun(const BenchRobot& robot)
+      : Recorded{Controller(robot.config), {}, {}, {}, {}}, gains(robot.config.gains) {
     record(
         robot, controller.initialState(),
         [this](const RobotInput& input, double t_s, ControllerState& state) {
-          controller.update(input, t_s, kBenchPeriod_s, state, output);
+          controller.update(input, gains, t_s, kBenchPeriod_s, state, output);
         },
         recorded, inputs);
   }
   void step(int i) {
-    controller.update(inputs[i], timeOf(kFirstCycle + i), kBenchPeriod_s, states[i], output);
+    controller.update(inputs[i], gains, timeOf(kFirstCycle + i), kBenchPeriod_s, states[i], output);
     velocity = output.velocity;
   }
+  Gains gains;
   ControllerOutput output;
 };
 
@@ -71,11 +73,11 @@ struct PreparedRun : OurRun {
   explicit PreparedRun(const BenchRobot& robot) : OurRun(robot), prepared(kStepStates) {}
   void prepare() {
     for (int i = 0; i < kStepStates; ++i)
-      controller.prepare(timeOf(kFirstCycle + i), states[i], prepared[i]);
+      controller.prepare(gains, timeOf(kFirstCycle + i), states[i], prepared[i]);
   }
   void step(int i) {
-    controller.update(inputs[i], timeOf(kFirstCycle + i), kBenchPeriod_s, prepared[i], states[i],
-                      output);
+    controller.update(inputs[i], gains, timeOf(kFirstCycle + i), kBenchPeriod_s, prepared[i],
+                      states[i], output);
     velocity = output.velocity;
   }
   std::vector<PreparedCycle> prepared;

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "tactus/record/replay.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/command_scene.h"
+#include "tactus/scene/gain_keys.h"
 #include "tactus/scene/json.h"
 #include "tactus/scene/located_error.h"
 #include "tactus/supervisor/apply_mode.h"
@@ -78,6 +80,28 @@ void refuseUnknown(const std::vector<std::string>& logs, LogContinuity continuit
          "expected all logs of the run, the oldest first");
 }
 
+/// Where in Gains those lie that --set gives, as such or with their section.
+std::vector<std::size_t> setGains(const std::vector<std::string>& settings) {
+  std::vector<std::size_t> offsets;
+  for (const Override& setting : parseOverrides(settings)) {
+    for (const GainKey& key : gainKeys()) {
+      if (key.path == setting.key || key.path.starts_with(setting.key + "."))
+        offsets.push_back(key.offset);
+    }
+  }
+  return offsets;
+}
+
+void checkGains(const std::string& path, const Scene& scene, const CycleRecord& recorded) {
+  const auto& force_control = scene.controller.force_control;
+  const bool is_joint_space = force_control && force_control->variant == Variant::kJointSpace;
+  const auto problem = findGainProblem(recorded.gains, is_joint_space, scene.period_s);
+  if (!problem) return;
+  failAt({std::make_shared<std::string>(path), 1, 1}, problem->path,
+         fmt::format("{}, in the gains recorded at {:.9g} s", problem->problem, recorded.t_s),
+         "expected " + problem->expectation);
+}
+
 /// A scene, and what becomes of it fed with logs, one after the other.
 class LogReplay {
  public:
@@ -86,7 +110,9 @@ class LogReplay {
         scene_(loadLoggedScene(options, first.description())),
         controller_(scene_.controller),
         replayer_(controller_, shape_.joints, scene_.period_s, first.has(kMissedCycles)),
-        comparison_(shape_) {
+        comparison_(shape_),
+        set_gains_(setGains(options.settings)),
+        gains_(scene_.controller.gains) {
     refuseUnknown(options.logs, LogContinuity(scene_.period_s, first.has(kMissedCycles)));
     if (!options.output.empty()) csv_.emplace(options.output, shape_);
   }
@@ -94,9 +120,11 @@ class LogReplay {
   void add(UlogReader& reader, const std::string& path) {
     replayer_.beginPart(logPart(reader.description(), path).part);
     const bool has_path_time = reader.has("path_time_s");
+    reader.assumeGains(scene_.controller.gains);
     CycleRecord recorded;
     while (reader.next(recorded)) {
       if (!has_path_time) recorded.path_time_s = recorded.task_time_s;  // nothing waited then
+      tune(path, recorded);
       const CycleRecord replayed = replayer_.replay(recorded);
       if (!replayer_.isKnown()) {
         comparison_.skip();
@@ -113,11 +141,23 @@ class LogReplay {
   }
 
  private:
+  /// Checks recorded gains, and lays those of --set over them.
+  void tune(const std::string& path, CycleRecord& recorded) {
+    if (!isSame(recorded.gains, gains_)) checkGains(path, scene_, recorded);
+    gains_ = recorded.gains;
+    for (const std::size_t offset : set_gains_) {
+      std::memcpy(reinterpret_cast<char*>(&recorded.gains) + offset,
+                  reinterpret_cast<const char*>(&scene_.controller.gains) + offset, sizeof(double));
+    }
+  }
+
   RecordShape shape_;
   Scene scene_;
   Controller controller_;
   Replayer replayer_;
   ReplayComparison comparison_;
+  std::vector<std::size_t> set_gains_;  ///< offsets
+  Gains gains_;                         ///< of the cycle before, as recorded
   std::optional<ReplayCsv> csv_;
 };
 

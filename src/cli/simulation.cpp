@@ -57,12 +57,12 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
     const double t_s = static_cast<double>(cycle) * scene.period_s;
     robot.read(input);
     const Clock::time_point before = Clock::now();
-    controller.update(input, t_s, scene.period_s, state, output);
+    controller.update(input, scene.controller.gains, t_s, scene.period_s, state, output);
     record.step_ns = nanoseconds(Clock::now() - before);
     const Vector3 error = toolError(scene.controller.task, output.w_d, robot.toolPosition());
     noteFault(output, t_s, end);
     robot.write(output.velocity);
-    fillRecord(t_s, input, output, error, record);
+    fillRecord(t_s, input, scene.controller.gains, output, error, record);
     rotation_error.fill(record);
     sink(record);
     summary.add(record);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "tactus/math/filter.h"
-
 namespace tactus {
 namespace {
 
@@ -17,64 +15,67 @@ void rearm(double F_p_N, ApproachEstimatorState& state) {
   state.F_ref_N = F_p_N;
 }
 
-}  // namespace
-
-void ApproachEstimator::learn(double stiffness_N_per_m, double falling_s,
-                              ApproachEstimatorState& state) const noexcept {
-  const double r = std::clamp(stiffness_N_per_m, config_.min_N_per_m, config_.max_N_per_m);
+/// r = stiffness, clamped; c falls towards it for falling_s.
+void learn(const StiffnessEstimatorGains& gains, double stiffness_N_per_m, double falling_s,
+           ApproachEstimatorState& state) noexcept {
+  const double r = std::clamp(stiffness_N_per_m, gains.min_N_per_m, gains.max_N_per_m);
   state.stiffness_raw_N_per_m = r;
   if (r < state.stiffness_N_per_m) {
     state.stiffness_N_per_m +=
-        lagShare(falling_s, config_.filter_time_constant_s) * (r - state.stiffness_N_per_m);
+        state.filter.of(falling_s, gains.filter_time_constant_s) * (r - state.stiffness_N_per_m);
   }
 }
 
-void ApproachEstimator::load(const ApproachSample& sample,
-                             ApproachEstimatorState& state) const noexcept {
-  const bool is_far = sample.F_p_N < far_from_activation_N_;
+void load(const ForceGains& gains, const ApproachSample& sample,
+          ApproachEstimatorState& state) noexcept {
+  const bool is_far = sample.F_p_N < 0.5 * gains.activation_force_N;
   const double dF_N = sample.F_p_N - state.F_ref_N;
   if (dF_N > sample.significant_N) {
     // Over too short a way r is a lower bound: nothing that c could fall to.
     const bool is_known = state.x_m > kMinWay_m;
-    learn(dF_N / std::max(state.x_m, kMinWay_m), is_known && is_far ? sample.interval_s : 0.0,
-          state);
+    learn(gains.estimator, dF_N / std::max(state.x_m, kMinWay_m),
+          is_known && is_far ? sample.interval_s : 0.0, state);
     state.stiffness_N_per_m = std::max(state.stiffness_N_per_m, state.stiffness_raw_N_per_m);
     if (is_known) rearm(sample.F_p_N, state);
   } else if (dF_N < -sample.significant_N) {
     rearm(sample.F_p_N, state);
   } else if (is_far && state.x_m > kMinWay_m) {
-    learn((std::max(dF_N, 0.0) + sample.significant_N) / state.x_m, sample.interval_s, state);
+    learn(gains.estimator, (std::max(dF_N, 0.0) + sample.significant_N) / state.x_m,
+          sample.interval_s, state);
   }
 }
 
-void ApproachEstimator::unload(const ApproachSample& sample,
-                               ApproachEstimatorState& state) const noexcept {
+void unload(const ForceGains& gains, const ApproachSample& sample,
+            ApproachEstimatorState& state) noexcept {
   const double dF_N = sample.F_p_N - state.F_ref_N;
   if (dF_N < -sample.significant_N && state.x_m < -kMinWay_m) {
-    learn(dF_N / state.x_m, sample.interval_s, state);
+    learn(gains.estimator, dF_N / state.x_m, sample.interval_s, state);
     rearm(sample.F_p_N, state);
   } else if (dF_N > sample.significant_N) {
     rearm(sample.F_p_N, state);
   }
 }
 
-void ApproachEstimator::touch(const ApproachSample& sample,
-                              ApproachEstimatorState& state) const noexcept {
+}  // namespace
+
+void estimateInContact(const ForceGains& gains, const ApproachSample& sample,
+                       ApproachEstimatorState& state) noexcept {
   if (sample.dx_m * state.x_m < 0.0) rearm(state.F_before_N, state);
   state.F_before_N = sample.F_p_N;
   state.x_m += sample.dx_m;
   if (sample.dx_m > 0.0) {
-    load(sample, state);
+    load(gains, sample, state);
   } else {
-    unload(sample, state);
+    unload(gains, sample, state);
   }
 }
 
-void ApproachEstimator::release(double period_s, ApproachEstimatorState& state) const noexcept {
+void forgetContact(const ForceGains& gains, double period_s,
+                   ApproachEstimatorState& state) noexcept {
   rearm(0.0, state);
   state.F_before_N = 0.0;
-  state.stiffness_N_per_m +=
-      lagShare(period_s, kForgetting_s) * (assumed_N_per_m_ - state.stiffness_N_per_m);
+  state.stiffness_N_per_m += state.forgetting.of(period_s, kForgetting_s) *
+                             (gains.assumed_stiffness_N_per_m - state.stiffness_N_per_m);
   state.stiffness_raw_N_per_m = state.stiffness_N_per_m;
 }
 

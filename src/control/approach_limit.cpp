@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "tactus/math/filter.h"
-
 namespace tactus {
 namespace {
 
@@ -20,62 +18,59 @@ double approach(const JointVector& a, const ScaledVector& from, const ScaledVect
 }  // namespace
 
 ApproachLimit::ApproachLimit(const ControllerConfig& config)
-    : config_(*config.force_control),
-      smoother_(config_.estimator.value_or(StiffnessEstimatorConfig{}).min_force_change_N,
-                config_.contact_threshold_N, *config.tactile_module),
-      position_(config.drive_lag_s, config.tactile_module->filter_cutoff_hz) {
-  if (config_.estimator) {
-    estimator_.emplace(*config_.estimator, config_.assumed_stiffness_N_per_m,
-                       config_.activation_force_N);
-  }
-}
+    : has_estimator_(config.force_control->has_estimator),
+      smoother_(*config.tactile_module),
+      position_(config.drive_lag_s, config.tactile_module->filter_cutoff_hz) {}
 
 ApproachLimitState ApproachLimit::initialState() const noexcept {
   ApproachLimitState state;
   state.smoother = smoother_.initialState();
-  state.estimator.stiffness_N_per_m = config_.assumed_stiffness_N_per_m;
-  state.estimator.stiffness_raw_N_per_m = config_.assumed_stiffness_N_per_m;
   return state;
 }
 
-void ApproachLimit::follow(const ContactPointState& sensor, const Pose& X_BaseModule,
-                           ApproachLimitState& state) const noexcept {
-  smoother_.update(sensor, X_BaseModule, state.smoother);
+void ApproachLimit::follow(const ForceGains& gains, const ContactPointState& sensor,
+                           const Pose& X_BaseModule, ApproachLimitState& state) const noexcept {
+  smoother_.update(gains, sensor, X_BaseModule, state.smoother);
 }
 
-void ApproachLimit::estimate(const JointVector& a, double F_p_N, double period_s,
-                             ApproachLimitState& state) const noexcept {
+void ApproachLimit::estimate(const ForceGains& gains, const JointVector& a, double F_p_N,
+                             double period_s, ApproachLimitState& state) const noexcept {
   const ContactPointState& contact = state.smoother.contact;
   if (F_p_N <= 0.0) {
-    estimator_->release(period_s, state.estimator);
+    forgetContact(gains, period_s, state.estimator);
   } else if (contact.isNew()) {
     const double dx_m = approach(a, state.position.sensed_before, state.position.sensed);
-    estimator_->touch({F_p_N, dx_m, contact.interval_s, state.smoother.significant_N},
+    estimateInContact(gains, {F_p_N, dx_m, contact.interval_s, state.smoother.significant_N},
                       state.estimator);
   }
 }
 
-void ApproachLimit::observe(const JointVector& a, double F_p_N, const JointVector& q_desired,
-                            double period_s, ApproachLimitState& state) const noexcept {
+void ApproachLimit::observe(const ForceGains& gains, const JointVector& a, double F_p_N,
+                            const JointVector& q_desired, double period_s,
+                            ApproachLimitState& state) const noexcept {
   position_.update(q_desired, state.smoother.contact.isNew(), period_s, state.position);
-  if (estimator_) estimate(a, F_p_N, period_s, state);
+  if (!has_estimator_ || state.estimator.stiffness_N_per_m == 0.0) {
+    state.estimator.stiffness_N_per_m = gains.assumed_stiffness_N_per_m;
+    state.estimator.stiffness_raw_N_per_m = gains.assumed_stiffness_N_per_m;
+  }
+  if (has_estimator_) estimate(gains, a, F_p_N, period_s, state);
   const double c = state.estimator.stiffness_N_per_m;
   if (F_p_N > 0.0) {
-    state.memory_N_per_m = std::max(c, config_.min_approach_stiffness_N_per_m);
+    state.memory_N_per_m = std::max(c, gains.min_approach_stiffness_N_per_m);
   } else {
-    state.memory_N_per_m -= lagShare(period_s, config_.time_constant_s) * state.memory_N_per_m;
+    state.memory_N_per_m -= state.fade.of(period_s, gains.time_constant_s) * state.memory_N_per_m;
     if (state.memory_N_per_m < kNoMemory_N_per_m) state.memory_N_per_m = 0.0;
   }
   state.way_ahead_m = approach(a, state.position.sensed, state.position.commanded);
 }
 
-double ApproachLimit::excess(double F_p_N, double v_res_m_per_s,
+double ApproachLimit::excess(const ForceGains& gains, double F_p_N, double v_res_m_per_s,
                              ApproachLimitState& state) const noexcept {
   const double m = state.memory_N_per_m;
   const double F_ahead_N = std::max(0.0, F_p_N + m * state.way_ahead_m);
   // T m (v_res + v_max): finite also where m has faded away.
-  const double Tm = config_.time_constant_s * m;
-  const double excess_N = Tm * v_res_m_per_s + config_.activation_force_N - F_ahead_N;
+  const double Tm = gains.time_constant_s * m;
+  const double excess_N = Tm * v_res_m_per_s + gains.activation_force_N - F_ahead_N;
   state.is_limiting = excess_N < 0.0;
   return state.is_limiting ? excess_N / Tm : 0.0;
 }

@@ -33,43 +33,38 @@ void carry(const Pose& from, const Pose& to, ContactPointState& contact) {
   normalise(contact.direction);
 }
 
-}  // namespace
-
-ContactSmoother::ContactSmoother(double min_significant_N, double contact_threshold_N,
-                                 const TactileModuleConfig& module)
-    : min_significant_N_(min_significant_N),
-      contact_threshold_N_(contact_threshold_N),
-      half_length_m_(0.5 * module.length_m),
-      ringing_s_(kRinging / module.filter_cutoff_hz) {}
-
-ContactSmootherState ContactSmoother::initialState() const noexcept {
-  ContactSmootherState state;
-  state.significant_N = min_significant_N_;
-  state.contact.position_m = half_length_m_;
-  return state;
-}
-
-void ContactSmoother::learnNoise(const Vector3& force_N,
-                                 ContactSmootherState& state) const noexcept {
+void learnNoise(double min_significant_N, const Vector3& force_N, ContactSmootherState& state) {
+  if (state.significant_N == 0.0) state.significant_N = min_significant_N;
   const Vector3 d2_N = force_N - 2.0 * state.force_before_N + state.force_two_before_N;
   const bool is_large = d2_N.norm() > kMedianOfNoise * state.significant_N;
   state.significant_N =
       std::clamp(state.significant_N * (is_large ? 1.0 + kLearning : 1.0 - kLearning),
-                 min_significant_N_, kMaxSignificantRatio * min_significant_N_);
+                 min_significant_N, kMaxSignificantRatio * min_significant_N);
   state.force_two_before_N = state.force_before_N;
   state.force_before_N = force_N;
 }
 
+}  // namespace
+
+ContactSmoother::ContactSmoother(const TactileModuleConfig& module)
+    : half_length_m_(0.5 * module.length_m), ringing_s_(kRinging / module.filter_cutoff_hz) {}
+
+ContactSmootherState ContactSmoother::initialState() const noexcept {
+  ContactSmootherState state;
+  state.contact.position_m = half_length_m_;
+  return state;
+}
+
 bool ContactSmoother::isRebound(const ContactPointState& sensor,
                                 ContactSmootherState& state) const noexcept {
-  state.peak_N *= 1.0 - lagShare(sensor.interval_s, ringing_s_);
+  state.peak_N *= 1.0 - state.ringing.of(sensor.interval_s, ringing_s_);
   state.peak_N = std::max(flushed(state.peak_N), sensor.force_N);
   return sensor.force_N < kMaxRebound * state.peak_N &&
          sensor.direction.dot(state.contact.direction) < 0.0;
 }
 
-void ContactSmoother::update(const ContactPointState& sensor, const Pose& X_BaseModule,
-                             ContactSmootherState& state) const noexcept {
+void ContactSmoother::update(const ForceGains& gains, const ContactPointState& sensor,
+                             const Pose& X_BaseModule, ContactSmootherState& state) const noexcept {
   ContactPointState& contact = state.contact;
   contact.interval_s = sensor.interval_s;
   carry(state.X_BaseModule, X_BaseModule, contact);
@@ -77,10 +72,11 @@ void ContactSmoother::update(const ContactPointState& sensor, const Pose& X_Base
   const bool is_rebound = isRebound(sensor, state);
   contact.force_N = is_rebound ? 0.0 : sensor.force_N;
   const bool grows = sensor.force_N > kGrowth * state.force_before_N.norm();
-  learnNoise(sensor.force_N * sensor.direction, state);
+  learnNoise(gains.estimator.min_force_change_N, sensor.force_N * sensor.direction, state);
   const double weight = sensor.force_N * sensor.force_N;
-  state.weight = flushed(state.weight * (1.0 - lagShare(sensor.interval_s, kSmoothing_s)));
-  if (is_rebound || sensor.force_N <= contact_threshold_N_ || weight == 0.0) return;
+  state.weight =
+      flushed(state.weight * (1.0 - state.smoothing.of(sensor.interval_s, kSmoothing_s)));
+  if (is_rebound || sensor.force_N <= gains.contact_threshold_N || weight == 0.0) return;
   state.weight = grows ? weight : state.weight + weight;
   const Vector3 turn = sensor.direction - contact.direction;
   const double shift_m = sensor.position_m - contact.position_m;

@@ -67,8 +67,8 @@ Controller::Controller(const ControllerConfig& config)
       inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
       uses_orientation_(usesOrientation(config.task)),
       limiter_(config.limits) {
-  if (config.joint_limit_avoidance)
-    joint_limit_avoidance_.emplace(*config.joint_limit_avoidance, config.limits, inv_sqrt_weights_);
+  if (config.has_joint_limit_avoidance)
+    joint_limit_avoidance_.emplace(config.limits, inv_sqrt_weights_);
   if (!config.force_control) return;
   if (!config.tactile_module) throw std::invalid_argument("force control needs a tactile module");
   contact_controller_.emplace(config, inv_sqrt_weights_);
@@ -104,49 +104,54 @@ double Controller::sampleAge_s(const RobotInput& input, double period_s,
   return input.tactile.sequence == state.sample_sequence ? state.sample_age_s + period_s : 0.0;
 }
 
-void Controller::update(const RobotInput& input, double t_s, double period_s,
+void Controller::update(const RobotInput& input, const Gains& gains, double t_s, double period_s,
                         ControllerState& state, ControllerOutput& output) const noexcept {
   PreparedCycle prepared;
   output.path_time_s = t_s - state.waited_s;
-  computeMotion(output.path_time_s, state, prepared);
-  respond(input, period_s, prepared, state, output);
+  computeMotion(gains, output.path_time_s, state, prepared);
+  respond(input, gains, period_s, prepared, state, output);
 }
 
-void Controller::prepare(double t_s, const ControllerState& state,
+void Controller::prepare(const Gains& gains, double t_s, ControllerState& state,
                          PreparedCycle& prepared) const noexcept {
   prepared.path_time_s = t_s - state.waited_s;
   prepared.q_desired = state.q_desired;
   prepared.push = state.contact.push;
   prepared.return_share = state.return_share;
-  computeMotion(prepared.path_time_s, state, prepared);
+  prepared.task_gains = gains.task;
+  prepared.limit_gains = gains.joint_limit_avoidance;
+  computeMotion(gains, prepared.path_time_s, state, prepared);
 }
 
-void Controller::update(const RobotInput& input, double t_s, double period_s,
+void Controller::update(const RobotInput& input, const Gains& gains, double t_s, double period_s,
                         PreparedCycle& prepared, ControllerState& state,
                         ControllerOutput& output) const noexcept {
   output.path_time_s = t_s - state.waited_s;
   if (prepared.path_time_s != output.path_time_s || prepared.q_desired != state.q_desired ||
-      prepared.push != state.contact.push || prepared.return_share != state.return_share)
-    computeMotion(output.path_time_s, state, prepared);
+      prepared.push != state.contact.push || prepared.return_share != state.return_share ||
+      !isSame(prepared.task_gains, gains.task) ||
+      !isSame(prepared.limit_gains, gains.joint_limit_avoidance))
+    computeMotion(gains, output.path_time_s, state, prepared);
   prepared.path_time_s = std::numeric_limits<double>::quiet_NaN();
-  respond(input, period_s, prepared, state, output);
+  respond(input, gains, period_s, prepared, state, output);
 }
 
-void Controller::computeMotion(double path_time_s, const ControllerState& state,
+void Controller::computeMotion(const Gains& gains, double path_time_s, ControllerState& state,
                                PreparedCycle& prepared) const noexcept {
   computeKinematics(path_time_s, state, prepared);
-  computeTaskMotion(state, prepared);
+  computeTaskMotion(gains.task, state, prepared);
   Motion& motion = prepared.motion;
   motion.y = prepared.kinematics.y_eff;
   if (joint_limit_avoidance_) {
-    avoidJointLimits(prepared.kinematics, state, motion);
+    avoidJointLimits(gains.joint_limit_avoidance, prepared.kinematics, state, motion);
   } else {
     motion.v_scaled.setZero();
   }
 }
 
-void Controller::respond(const RobotInput& input, double period_s, PreparedCycle& prepared,
-                         ControllerState& state, ControllerOutput& output) const noexcept {
+void Controller::respond(const RobotInput& input, const Gains& gains, double period_s,
+                         PreparedCycle& prepared, ControllerState& state,
+                         ControllerOutput& output) const noexcept {
   const TaskKinematics& kinematics = prepared.kinematics;
   Motion& motion = prepared.motion;
   output.w = prepared.w;
@@ -168,7 +173,7 @@ void Controller::respond(const RobotInput& input, double period_s, PreparedCycle
   }
   if (contact_controller_)
     contact_controller_->update(
-        kinematics, state.contact_point,
+        gains, kinematics, state.contact_point,
         {state.q_desired, state.velocity_before, mayMove(state), state.return_share}, period_s,
         state.contact, output.contact, motion);
 
@@ -225,9 +230,11 @@ void Controller::passTime(double duration_s, ControllerState& state) const noexc
   state.return_share = std::min(1.0, state.return_share + duration_s / kReturnRise_s);
 }
 
-void Controller::avoidJointLimits(const TaskKinematics& kinematics, const ControllerState& state,
+void Controller::avoidJointLimits(const JointLimitAvoidanceGains& gains,
+                                  const TaskKinematics& kinematics, ControllerState& state,
                                   Motion& motion) const noexcept {
-  const JointLimitCost cost = joint_limit_avoidance_->evaluate(state.q_desired);
+  if (!isSame(state.zones.gains, gains)) state.zones = joint_limit_avoidance_->zones(gains);
+  const JointLimitCost cost = joint_limit_avoidance_->evaluate(state.zones, state.q_desired);
   motion.limit_nearness = cost.nearness;
   motion.v_scaled = -cost.gradient;
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
@@ -266,16 +273,17 @@ void Controller::computeKinematics(double path_time_s, const ControllerState& st
   }
 }
 
-void Controller::computeTaskMotion(const ControllerState& state,
+void Controller::computeTaskMotion(const TaskGains& gains, const ControllerState& state,
                                    PreparedCycle& prepared) const noexcept {
-  const TaskConfig& task = config_.task;
   TaskKinematics& kinematics = prepared.kinematics;
-  if (task.wait_beyond_m) {
-    prepared.progress = pathProgress(lag_m(task, kinematics.error), *task.wait_beyond_m);
+  if (gains.wait_beyond_m < kNoLimit) {
+    prepared.progress = pathProgress(lag_m(config_.task, kinematics.error), gains.wait_beyond_m);
     prepared.w_d_dot *= prepared.progress;
+  } else {
+    prepared.progress = 1.0;
   }
-  TaskVector correction = state.return_share * task.drift_gain_per_s * kinematics.error;
-  limitReturnSpeed(task, state.contact.push, correction);
+  TaskVector correction = state.return_share * gains.drift_gain_per_s * kinematics.error;
+  limitReturnSpeed(gains, config_.task, state.contact.push, correction);
   kinematics.y_eff = kinematics.pseudoinverse.solve(prepared.w_d_dot + correction);
 }
 

@@ -27,12 +27,12 @@ void limitPart(const TaskConfig& task, bool is_position, double max_speed, const
 
 }  // namespace
 
-void limitReturnSpeed(const TaskConfig& task, const TaskVector& push,
+void limitReturnSpeed(const TaskGains& gains, const TaskConfig& task, const TaskVector& push,
                       TaskVector& correction) noexcept {
-  if (task.max_return_speed_m_per_s)
-    limitPart(task, true, *task.max_return_speed_m_per_s, push, correction);
-  if (task.max_return_speed_rad_per_s)
-    limitPart(task, false, *task.max_return_speed_rad_per_s, push, correction);
+  if (gains.max_return_speed_m_per_s < kNoLimit)
+    limitPart(task, true, gains.max_return_speed_m_per_s, push, correction);
+  if (gains.max_return_speed_rad_per_s < kNoLimit)
+    limitPart(task, false, gains.max_return_speed_rad_per_s, push, correction);
 }
 
 }  // namespace tactus

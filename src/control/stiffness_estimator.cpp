@@ -2,24 +2,25 @@
 
 #include <algorithm>
 
-#include "tactus/math/filter.h"
-
 namespace tactus {
 namespace {
-constexpr double kMinApproach_m = 1e-6;
-}
 
-void StiffnessEstimator::trigger(double F_p_N, StiffnessEstimatorState& state) const noexcept {
+constexpr double kMinApproach_m = 1e-6;
+
+void trigger(const StiffnessEstimatorGains& gains, double F_p_N,
+             StiffnessEstimatorState& state) noexcept {
   if (state.x_int_m > kMinApproach_m) {
-    state.stiffness_raw_N_per_m = std::clamp((F_p_N - state.F_prev_N) / state.x_int_m,
-                                             config_.min_N_per_m, config_.max_N_per_m);
+    state.stiffness_raw_N_per_m =
+        std::clamp((F_p_N - state.F_prev_N) / state.x_int_m, gains.min_N_per_m, gains.max_N_per_m);
   }
   state.F_prev_N = F_p_N;
   state.x_int_m = 0.0;
 }
 
-void StiffnessEstimator::update(double F_p_N, double approach_m_per_s, double period_s,
-                                StiffnessEstimatorState& state) const noexcept {
+}  // namespace
+
+void estimateStiffness(const StiffnessEstimatorGains& gains, double F_p_N, double approach_m_per_s,
+                       double period_s, StiffnessEstimatorState& state) noexcept {
   if (F_p_N <= 0.0) {
     state.x_int_m = state.v_prev_m_per_s = state.F_prev_N = 0.0;
     state.stiffness_raw_N_per_m = state.stiffness_N_per_m;
@@ -33,8 +34,8 @@ void StiffnessEstimator::update(double F_p_N, double approach_m_per_s, double pe
   }
   state.x_int_m += 0.5 * (approach_m_per_s + state.v_prev_m_per_s) * period_s;
   state.v_prev_m_per_s = approach_m_per_s;
-  if (F_p_N - state.F_prev_N > config_.min_force_change_N) trigger(F_p_N, state);
-  state.stiffness_N_per_m += lagShare(period_s, config_.filter_time_constant_s) *
+  if (F_p_N - state.F_prev_N > gains.min_force_change_N) trigger(gains, F_p_N, state);
+  state.stiffness_N_per_m += state.filter.of(period_s, gains.filter_time_constant_s) *
                              (state.stiffness_raw_N_per_m - state.stiffness_N_per_m);
 }
 

@@ -17,12 +17,11 @@ constexpr std::size_t kMostSamples = std::size_t{1} << 20;
 
 }  // namespace
 
-ContactList::ContactList(const std::optional<ForceControlConfig>& force_control,
+ContactList::ContactList(bool has_force_control, const ForceGains& gains,
                          std::size_t expected_cycles)
-    : has_force_control_(force_control.has_value()) {
-  const ForceControlConfig config = force_control.value_or(ForceControlConfig());
-  threshold_N_ = config.contact_threshold_N;
-  release_N_ = config.transition.release_force_N;
+    : has_force_control_(has_force_control),
+      threshold_N_(gains.contact_threshold_N),
+      release_N_(gains.transition.release_force_N) {
   present_.samples.reserve(std::min(expected_cycles, kMostSamples));
 }
 

@@ -54,10 +54,10 @@ CycleRecord Replayer::replay(const CycleRecord& recorded) {
   if (missed > 0) controller_.coast(missed, period_s_, state_);
   if (is_known_ && !was_known) state_.waited_s = 0.0;
   applyMode(controller_, mode, mode_before_, input, state_);
-  controller_.update(input, recorded.task_time_s, period_s_, state_, output_);
+  controller_.update(input, recorded.gains, recorded.task_time_s, period_s_, state_, output_);
   mode_before_ = mode;
-  fillRecord(recorded.t_s, input, output_, Eigen::Map<const Vector3>(recorded.tool_error_m),
-             replayed);
+  fillRecord(recorded.t_s, input, recorded.gains, output_,
+             Eigen::Map<const Vector3>(recorded.tool_error_m), replayed);
   return replayed;
 }
 

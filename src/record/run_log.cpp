@@ -53,10 +53,7 @@ Json logJson(const LogState& state, const char* unless_stopped) {
 }
 
 RunLog::RunLog(const Scene& scene, std::string folder)
-    : config_(scene.log),
-      folder_(std::move(folder)),
-      description_(describeLog(scene)),
-      cycle_bytes_(logBytesACycle(description_.shape)) {
+    : config_(scene.log), folder_(std::move(folder)), description_(describeLog(scene)) {
   description_.infos.emplace_back(kRunKey, newRunName());
   description_.infos.emplace_back(kPartKey, "0");
   writer_ = begin(folder_ + "/" + logName(0));
@@ -65,7 +62,7 @@ RunLog::RunLog(const Scene& scene, std::string folder)
 
 void RunLog::write(const CycleRecord& record) {
   attempt([&] {
-    const auto size = static_cast<double>(writer_->size() + cycle_bytes_);
+    const auto size = static_cast<double>(writer_->size() + writer_->sizeOf(record));
     if (config_.max_bytes > 0.0 && size > config_.max_bytes) beginNextFile();
     writer_->write(record);
     t_s_ = record.t_s;

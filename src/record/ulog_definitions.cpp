@@ -86,12 +86,20 @@ class DefinitionsReader {
   }
 
   void readFormat() {
+    if (topicName(message_.payload) == kGainsTopic) return readGainsFormat();
     if (topicName(message_.payload) != kCycleTopic) return;
     if (has_format_) fail("a second format of the cycles, one is expected");
     const std::string complaint = parseTopicFormat(message_.payload, definitions_.topic);
     if (!complaint.empty()) fail(complaint);
     definitions_.description.shape = definitions_.topic.shape;
     has_format_ = true;
+  }
+
+  void readGainsFormat() {
+    if (has_gains_format_) fail("a second format of the gains, one is expected");
+    const std::string complaint = parseGainsFormat(message_.payload, definitions_.gains);
+    if (!complaint.empty()) fail(complaint);
+    has_gains_format_ = true;
   }
 
   /// `bytes` begin with the key's length.
@@ -150,9 +158,18 @@ class DefinitionsReader {
 
   bool readSubscription() {
     if (message_.payload.size() < 3) fail("too short, ids and a topic are expected");
-    if (message_.payload.substr(3) != kCycleTopic) return false;
+    const std::string_view topic = message_.payload.substr(3);
+    const auto id = numberAt<std::uint16_t>(message_.payload, 1);
+    if (topic == kGainsTopic) {
+      if (!has_gains_format_) fail("no format of the gains came before, one is expected");
+      definitions_.has_gains = true;
+      definitions_.gains_id = id;
+    }
+    if (topic != kCycleTopic) return false;
     if (!has_format_) fail("no format of the cycles came before, one is expected");
-    definitions_.cycle_id = numberAt<std::uint16_t>(message_.payload, 1);
+    if (definitions_.has_gains && id == definitions_.gains_id)
+      fail("cycles and gains have one id, two are expected");
+    definitions_.cycle_id = id;
     return true;
   }
 
@@ -175,6 +192,7 @@ class DefinitionsReader {
   UlogMessage message_;
   UlogDefinitions definitions_;
   bool has_format_ = false;
+  bool has_gains_format_ = false;
   std::vector<std::string> source_paths_, source_texts_, override_keys_, override_values_;
   std::size_t embedded_size_ = 0;
 };

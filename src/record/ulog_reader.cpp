@@ -12,6 +12,16 @@
 #include "tactus/scene/source_reader.h"
 
 namespace tactus {
+namespace {
+
+void copy(std::string_view fields, const std::vector<CopyRun>& runs, void* to) noexcept {
+  for (const CopyRun& run : runs) {
+    std::memcpy(static_cast<char*>(to) + run.record_offset, fields.data() + run.message_offset,
+                run.size);
+  }
+}
+
+}  // namespace
 
 UlogReader::UlogReader(std::istream& in, std::string name)
     : messages_(in, std::move(name)), definitions_(readDefinitions(messages_)) {}
@@ -25,39 +35,48 @@ bool UlogReader::next(CycleRecord& record) {
   while (messages_.next(message)) {
     if (message.type != 'D') {
       messages_.checkIgnorable(message);
-    } else if (isCycle(message)) {
-      copy(message, record);
+    } else if (take(message, record)) {
       return true;
     }
   }
-  // A run that was interrupted ends within a cycle; anything else is a damaged size.
-  if (message.type != 0 && (message.type != 'D' || message.payload.size() != messageSize())) {
+  // A run that was interrupted ends within a cycle or its gains; anything else is a damaged size.
+  const std::size_t size = message.payload.size() - sizeof(std::uint16_t);
+  const bool is_whole = size == definitions_.topic.size ||
+                        (definitions_.has_gains && size == definitions_.gains.size);
+  if (message.type != 0 && (message.type != 'D' || !is_whole)) {
     messages_.fail(message.offset, "message", "longer than the log, an undamaged log is expected");
   }
   return false;
 }
 
-bool UlogReader::isCycle(const UlogMessage& message) const {
+bool UlogReader::take(const UlogMessage& message, CycleRecord& record) {
   std::uint16_t id = 0;
   if (message.payload.size() < sizeof(id)) {
     messages_.fail(message.offset, "message D", "too short, a message id is expected");
   }
   std::memcpy(&id, message.payload.data(), sizeof(id));
-  if (id != definitions_.cycle_id) return false;
-  if (message.payload.size() != messageSize()) {
-    messages_.fail(
-        message.offset, "message D",
-        fmt::format("a cycle in {} bytes, {} are expected", message.payload.size(), messageSize()));
+  const std::string_view fields = message.payload.substr(sizeof(id));
+  if (definitions_.has_gains && id == definitions_.gains_id) {
+    checkSize(message, "gains", definitions_.gains.size);
+    copy(fields, definitions_.gains.runs, &gains_);
+    knows_gains_ = true;
   }
+  if (id != definitions_.cycle_id) return false;
+  checkSize(message, "a cycle", definitions_.topic.size);
+  if (definitions_.has_gains && !knows_gains_)
+    messages_.fail(message.offset, "message D", "a cycle, its gains are expected before it");
+  copy(fields, definitions_.topic.runs, &record);
+  record.gains = gains_;
   return true;
 }
 
-void UlogReader::copy(const UlogMessage& message, CycleRecord& record) const noexcept {
-  const char* const fields = message.payload.data() + sizeof(definitions_.cycle_id);
-  for (const CopyRun& run : definitions_.topic.runs) {
-    std::memcpy(reinterpret_cast<char*>(&record) + run.record_offset, fields + run.message_offset,
-                run.size);
-  }
+void UlogReader::checkSize(const UlogMessage& message, const char* what,
+                           std::size_t fields_size) const {
+  const std::size_t expected = sizeof(std::uint16_t) + fields_size;
+  if (message.payload.size() == expected) return;
+  messages_.fail(
+      message.offset, "message D",
+      fmt::format("{} in {} bytes, {} are expected", what, message.payload.size(), expected));
 }
 
 std::ifstream openLog(const std::string& path) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tactus/record/ulog_format.h"
+#include "tactus/scene/gain_keys.h"
 
 namespace tactus {
 namespace {
@@ -100,6 +101,12 @@ std::string findShape(const std::vector<LoggedField>& fields, RecordShape& shape
 
 }  // namespace
 
+std::string gainFieldName(std::string_view path) {
+  std::string name(path);
+  std::ranges::replace(name, '.', '_');
+  return name;
+}
+
 std::string_view topicName(std::string_view format) noexcept {
   const std::size_t colon = format.find(':');
   return format.substr(0, colon == std::string_view::npos ? 0 : colon);
@@ -124,6 +131,22 @@ std::string parseTopicFormat(std::string_view format, TopicLayout& layout) {
                          field.name, typeName(field.type), entries);
     }
     appendRun({field.offset, found->offset, entries * sizeof(double)}, layout.runs);
+  }
+  return {};
+}
+
+std::string parseGainsFormat(std::string_view format, GainsLayout& layout) {
+  std::vector<LoggedField> logged;
+  layout = {};
+  std::string problem =
+      parseFields(format.substr(topicName(format).size() + 1), logged, layout.size);
+  if (!problem.empty()) return problem;
+  for (const GainKey& key : gainKeys()) {
+    const LoggedField* found = find(logged, gainFieldName(key.path));
+    if (!found) continue;
+    if (found->type != "double" || found->entries != 1)
+      return fmt::format("gain {} is of type {}, a double is expected", found->name, found->type);
+    appendRun({key.offset, found->offset, sizeof(double)}, layout.runs);
   }
   return {};
 }

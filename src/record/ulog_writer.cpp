@@ -9,12 +9,15 @@
 
 #include "tactus/record/tool_error.h"
 #include "tactus/record/ulog_format.h"
+#include "tactus/record/ulog_topic.h"
+#include "tactus/scene/gain_keys.h"
 
 namespace tactus {
 namespace {
 
 constexpr std::size_t kTextChunk = 32768;
 constexpr std::uint16_t kCycleId = 0;
+constexpr std::uint16_t kGainsId = 1;
 constexpr const char* kArraysInfo =
     "q[0], dq[0], q_measured[0] are of joint/1, q_1 and so on in CSV; w[0], wd[0], wd_dot[0] of "
     "component/1, w_1 and so on in CSV";
@@ -68,6 +71,19 @@ void appendFormat(std::string& bytes, const RecordShape& shape) {
     format += fmt::format(" {};", field.name);
   }
   appendMessage(bytes, 'F', format);
+}
+
+void appendGainsFormat(std::string& bytes) {
+  std::string format = fmt::format("{}:uint64_t timestamp;", kGainsTopic);
+  for (const GainKey& key : gainKeys())
+    format += fmt::format("double {};", gainFieldName(key.path));
+  appendMessage(bytes, 'F', format);
+}
+
+void appendSubscription(std::string& bytes, std::uint16_t id, const char* topic) {
+  std::string subscription(1, '\0');  // the topic's first and only instance
+  append(subscription, id);
+  appendMessage(bytes, 'A', subscription + topic);
 }
 
 void appendInfo(std::string& bytes, std::string_view name, std::string_view value) {
@@ -137,6 +153,7 @@ std::string logDefinitions(const LogDescription& description) {
   append(bytes, std::uint64_t{0});  // start time: virtual time begins at zero
   appendMessage(bytes, 'B', std::string(kFlagBitsSize, '\0'));
   appendFormat(bytes, description.shape);
+  appendGainsFormat(bytes);
   appendInfo(bytes, "sys_name", "tactus");
   for (const auto& [name, value] : description.infos) appendInfo(bytes, name, value);
   for (const RecordField& field : recordFields()) {
@@ -153,9 +170,8 @@ std::string logDefinitions(const LogDescription& description) {
     appendMultiInfo(bytes, kOverrideKeyKey, override_.key);
     appendMultiInfo(bytes, kOverrideValueKey, override_.value);
   }
-  std::string subscription(1, '\0');  // the topic's first and only instance
-  append(subscription, kCycleId);
-  appendMessage(bytes, 'A', subscription + kCycleTopic);
+  appendSubscription(bytes, kGainsId, kGainsTopic);
+  appendSubscription(bytes, kCycleId, kCycleTopic);
   return bytes;
 }
 
@@ -163,6 +179,8 @@ std::size_t logBytesACycle(const RecordShape& shape) {
   const CopyRun last = packedRuns(shape, kDataHeaderSize).back();
   return last.message_offset + last.size;
 }
+
+std::size_t logBytesOfGains() { return kDataHeaderSize + sizeof(Gains); }
 
 UlogWriter::UlogWriter(const std::string& path, const LogDescription& description)
     : file_(path),
@@ -172,18 +190,38 @@ UlogWriter::UlogWriter(const std::string& path, const LogDescription& descriptio
 }
 
 void UlogWriter::write(const CycleRecord& record) {
-  char* message = file_.reserve(data_size_);
-  const auto payload_size = static_cast<std::uint16_t>(data_size_ - kMessageHeaderSize);
-  const std::uint64_t timestamp_us = microseconds(record.t_s);
-  std::memcpy(message, &payload_size, 2);
-  message[2] = 'D';
-  std::memcpy(message + kMessageHeaderSize, &kCycleId, 2);
-  std::memcpy(message + kMessageHeaderSize + 2, &timestamp_us, 8);
+  if (hasOtherGains(record)) {
+    char* const message = beginData(kGainsId, logBytesOfGains(), record.t_s);
+    std::memcpy(message + kDataHeaderSize, &record.gains, sizeof(Gains));
+    file_.commit(logBytesOfGains());
+    gains_ = record.gains;
+    has_gains_ = true;
+  }
+  char* const message = beginData(kCycleId, data_size_, record.t_s);
   const char* bytes = reinterpret_cast<const char*>(&record);
   for (const CopyRun& run : runs_) {
     std::memcpy(message + run.message_offset, bytes + run.record_offset, run.size);
   }
   file_.commit(data_size_);
+}
+
+std::size_t UlogWriter::sizeOf(const CycleRecord& record) const noexcept {
+  return data_size_ + (hasOtherGains(record) ? logBytesOfGains() : 0);
+}
+
+bool UlogWriter::hasOtherGains(const CycleRecord& record) const noexcept {
+  return !has_gains_ || !isSame(gains_, record.gains);
+}
+
+char* UlogWriter::beginData(std::uint16_t id, std::size_t size, double t_s) {
+  char* const message = file_.reserve(size);
+  const auto payload_size = static_cast<std::uint16_t>(size - kMessageHeaderSize);
+  const std::uint64_t timestamp_us = microseconds(t_s);
+  std::memcpy(message, &payload_size, 2);
+  message[2] = 'D';
+  std::memcpy(message + kMessageHeaderSize, &id, 2);
+  std::memcpy(message + kMessageHeaderSize + 2, &timestamp_us, 8);
+  return message;
 }
 
 }  // namespace tactus

@@ -17,7 +17,7 @@ constexpr double kMaxCheckedCycles = 3e5;
 
 /// The motion without a contact, along a path that does not wait.
 ControllerConfig undisturbed(ControllerConfig config) {
-  config.task.wait_beyond_m.reset();
+  config.gains.task.wait_beyond_m = kNoLimit;
   config.tactile_module.reset();
   config.force_control.reset();
   return config;
@@ -53,7 +53,7 @@ std::string laggingPath(const Scene& scene) {
   ControllerOutput output;
   for (long long cycle = 0; cycle < cycles; ++cycle) {
     const double t_s = static_cast<double>(cycle) * scene.period_s;
-    controller.update(RobotInput{}, t_s, scene.period_s, state, output);
+    controller.update(RobotInput{}, config.gains, t_s, scene.period_s, state, output);
     const double lag = output.error.norm();
     if (lag > kMaxLag)
       return fmt::format("path not followed: at {:.3f} s the tool lags by {:g} mm or mrad; {}", t_s,

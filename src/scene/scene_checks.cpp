@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tactus/scene/gain_keys.h"
 #include "tactus/scene/key_words.h"
 
 namespace tactus {
@@ -33,14 +34,9 @@ void checkTask(const Checked& c) {
     c.fail("task.components", fmt::format("a list of {}", task.size),
            fmt::format("at most {}, as many as there are joints", joint_count));
   }
-  // One explicit step of the drift term must not overshoot.
-  if (task.drift_gain_per_s * c.scene.period_s > 1.0) {
-    c.fail("task.drift_gain_per_s", fmt::format("{} is too high", task.drift_gain_per_s),
-           fmt::format("at most 1 / period_s = {}", 1.0 / c.scene.period_s));
-  }
   const auto end = task.components.begin() + task.size;
   const bool has_position = std::any_of(task.components.begin(), end, isOfPosition);
-  if (task.wait_beyond_m && !has_position) {
+  if (c.scene.gains.task.wait_beyond_m < kNoLimit && !has_position) {
     c.fail("task.wait_beyond_m", "the task has no position that could lag",
            "x, y or z among task.components, or no such key");
   }
@@ -110,20 +106,10 @@ void checkTrajectory(const Checked& c) {
 }
 
 void checkJointSpace(const Checked& c) {
-  const ForceControlConfig& force = c.scene.controller->force;
-  if (!c.scene.joint_limit_avoidance) {
+  if (!c.scene.has_joint_limit_avoidance) {
     c.fail(
         "redundancy.joint_limit_avoidance", "is missing",
         "a section with the variant joint_space, whose pull would drive joints onto their limits");
-  }
-  if (force.transition.release_force_N >= force.contact_threshold_N) {
-    c.fail("controller.transition.release_force_N",
-           fmt::format("{} N is not below the contact threshold", force.transition.release_force_N),
-           fmt::format("less than contact_threshold_N = {}", force.contact_threshold_N));
-  }
-  if (force.pull_gain_per_s * c.scene.period_s > 1.0) {
-    c.fail("controller.pull_gain_per_s", fmt::format("{} is too high", force.pull_gain_per_s),
-           fmt::format("at most 1 / period_s = {}", 1.0 / c.scene.period_s));
   }
 }
 
@@ -137,9 +123,9 @@ void checkController(const Checked& c) {
   if (!c.robot.config.tactile_module) {
     c.fail("controller", "the robot has no tactile_module", "no controller, or such a robot");
   }
-  const Variant variant = c.scene.controller->force.variant;
+  const Variant variant = c.scene.controller->variant;
   const std::string name = wordOf(kVariantWords, variant);
-  if (needsActivationForce(variant) && !c.scene.controller->activation_force_N) {
+  if (needsActivationForce(variant) && !findGiven(c.root, "controller.activation_force_N")) {
     c.fail("controller.activation_force_N", "is missing",
            fmt::format("a number > 0 in N with the variant {}", name));
   }
@@ -193,14 +179,11 @@ void checkPeriod(const Checked& c) {
   }
 }
 
-void checkStiffness(const Checked& c) {
-  if (!c.scene.stiffness) return;
-  const auto& estimator = c.scene.stiffness->estimate;
-  if (estimator && estimator->min_N_per_m >= estimator->max_N_per_m) {
-    c.fail("stiffness.estimate.max_N_per_m",
-           fmt::format("{} is not above min_N_per_m", estimator->max_N_per_m),
-           fmt::format("more than {}", estimator->min_N_per_m));
-  }
+void checkGains(const Checked& c) {
+  const bool is_joint_space =
+      c.scene.controller && c.scene.controller->variant == Variant::kJointSpace;
+  const auto problem = findGainConflict(c.scene.gains, is_joint_space, c.scene.period_s);
+  if (problem) c.fail(problem->path, problem->problem, problem->expectation);
 }
 
 void checkObstacles(const Checked& c) {
@@ -238,7 +221,7 @@ void checkScene(const YamlNode& root, const SceneConfig& scene, const LoadedRobo
   checkDuration(checked);
   checkPeriod(checked);
   checkSimulatedModule(checked);
-  checkStiffness(checked);
+  checkGains(checked);
   checkObstacles(checked);
 }
 

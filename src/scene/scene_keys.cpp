@@ -9,8 +9,8 @@ namespace {
 
 using namespace keys;
 
-Table<JointLimitAvoidanceConfig> avoidanceKeys() {
-  using Config = JointLimitAvoidanceConfig;
+Table<JointLimitAvoidanceGains> avoidanceKeys() {
+  using Config = JointLimitAvoidanceGains;
   return {
       withSymbol("alpha", number("gain", "", within(0, 1000),
                                  "how strongly the null space keeps joints off their limits: "
@@ -31,14 +31,16 @@ Row<SceneConfig> redundancySection() {
                                     "a joint with a larger one moves less: diagonal of W in (1); "
                                     "absent: all 1",
                                     &SceneConfig::weights)),
-          section("joint_limit_avoidance",
-                  "keeps the joints off their limits, by dH/dq of (1); absent: nothing does",
-                  &SceneConfig::joint_limit_avoidance, avoidanceKeys()),
+          optional(group<SceneConfig>(
+              "joint_limit_avoidance",
+              "keeps the joints off their limits, by dH/dq of (1); absent: nothing does",
+              inside(&SceneConfig::gains, inside(&Gains::joint_limit_avoidance, avoidanceKeys())),
+              [](SceneConfig& scene) { scene.has_joint_limit_avoidance = true; })),
       }));
 }
 
-Table<ContactTransitionConfig> transitionKeys() {
-  using Config = ContactTransitionConfig;
+Table<ContactTransitionGains> transitionKeys() {
+  using Config = ContactTransitionGains;
   return {
       withSymbol("T_t,max", number("max_time_constant_s", "s", above(0, 100),
                                    "time constant of the fade right after the loss",
@@ -70,12 +72,15 @@ Row<ForceControlConfig> variantRow() {
              &ForceControlConfig::variant, kVariantWords));
 }
 
-Table<ForceControlConfig> responseKeys() {
-  using Config = ForceControlConfig;
+Row<ForceControlConfig> orderRow() {
+  return integer("order", within(1, 2),
+                 "of the motion that a force is answered with, the target dynamics (4)",
+                 &ForceControlConfig::order);
+}
+
+Table<ForceGains> responseKeys() {
+  using Config = ForceGains;
   return {
-      integer("order", within(1, 2),
-              "of the motion that a force is answered with, the target dynamics (4)",
-              &Config::order),
       withSymbol("T", number("time_constant_s", "s", within(0.001, 100),
                              "how fast the force is brought to zero: smaller is faster, less "
                              "stable; time constant of the target dynamics (4)",
@@ -86,11 +91,16 @@ Table<ForceControlConfig> responseKeys() {
                              &Config::damping)),
       withSymbol("F_th", number("contact_threshold_N", "N", within(0, 1000),
                                 "a smaller reading is no contact", &Config::contact_threshold_N)),
+      optional(withSymbol("F_act",
+                          number("activation_force_N", "N", above(0, 1000),
+                                 "contact force from which null_task, null_joint and null_limit "
+                                 "leave the null space",
+                                 &Config::activation_force_N))),
   };
 }
 
-Table<ForceControlConfig> responseLimitKeys() {
-  using Config = ForceControlConfig;
+Table<ForceGains> responseLimitKeys() {
+  using Config = ForceGains;
   return {
       number("max_null_speed_m_per_s", "m/s", above(0, 1000),
              "limit of the null-space reaction of a prismatic joint",
@@ -112,20 +122,17 @@ Table<ForceControlConfig> responseLimitKeys() {
   };
 }
 
-Table<ControllerSection> controllerKeys() {
-  const auto force = &ControllerSection::force;
-  const Table<ControllerSection> activation = {
-      withSymbol("F_act", number("activation_force_N", "N", above(0, 1000),
-                                 "contact force from which null_task, null_joint and null_limit "
-                                 "leave the null space",
-                                 &ControllerSection::activation_force_N)),
-  };
-  return join(inside(force, {variantRow()}), inside(force, responseKeys()), activation,
-              inside(force, responseLimitKeys()));
+Row<SceneConfig> controllerSection() {
+  const Table<ForceGains> gains = join(responseKeys(), responseLimitKeys());
+  return optional(
+      group<SceneConfig>("controller", "force control; absent: the tactile module is not even read",
+                         join(inside(&SceneConfig::controller, {variantRow(), orderRow()}),
+                              inside(&SceneConfig::gains, inside(&Gains::force, gains))),
+                         [](SceneConfig& scene) { scene.controller.emplace(); }));
 }
 
-Table<StiffnessEstimatorConfig> estimateKeys() {
-  using Config = StiffnessEstimatorConfig;
+Table<StiffnessEstimatorGains> estimateKeys() {
+  using Config = StiffnessEstimatorGains;
   return {
       withSymbol("F_est,min",
                  number("min_force_change_N", "N", above(0, 1000),
@@ -139,23 +146,35 @@ Table<StiffnessEstimatorConfig> estimateKeys() {
   };
 }
 
-Table<StiffnessSection> stiffnessKeys() {
-  using Config = StiffnessSection;
-  return {
-      withSymbol("c_0",
-                 required(number("assumed_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
-                                 "stiffness of the contact that the law reckons with: where the "
-                                 "estimate starts, or stays without one",
-                                 &Config::assumed_N_per_m))),
-      withSymbol("c_e", number("stiffest_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
-                               "stiffest contact, obstacle and arm in series, for which the gains "
-                               "must be stable; absent: as stiff as assumed",
-                               &Config::stiffest_N_per_m)),
-      section("estimate",
-              "estimates the stiffness while in contact, by Algorithm 1 or with null_limit by an "
-              "estimator of its own; absent: it stays as assumed",
-              &Config::estimate, estimateKeys()),
+Row<ForceGains> assumedRow() {
+  return withSymbol("c_0",
+                    required(number("assumed_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                                    "stiffness of the contact that the law reckons with: "
+                                    "where the estimate starts, or stays without one",
+                                    &ForceGains::assumed_stiffness_N_per_m)));
+}
+
+Row<StiffnessSection> stiffestRow() {
+  return withSymbol("c_e", number("stiffest_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                                  "stiffest contact, obstacle and arm in series, for which the "
+                                  "gains must be stable; absent: as stiff as assumed",
+                                  &StiffnessSection::stiffest_N_per_m));
+}
+
+Row<SceneConfig> stiffnessSection() {
+  const auto force = [](Table<ForceGains> rows) {
+    return inside(&SceneConfig::gains, inside(&Gains::force, std::move(rows)));
   };
+  const Table<SceneConfig> estimate = {optional(group<SceneConfig>(
+      "estimate",
+      "estimates the stiffness while in contact, by Algorithm 1 or with null_limit by an "
+      "estimator of its own; absent: it stays as assumed",
+      force(inside(&ForceGains::estimator, estimateKeys())),
+      [](SceneConfig& scene) { scene.stiffness->has_estimate = true; }))};
+  return optional(group<SceneConfig>(
+      "stiffness", "what the law believes about the obstacle's stiffness",
+      join(force({assumedRow()}), inside(&SceneConfig::stiffness, {stiffestRow()}), estimate),
+      [](SceneConfig& scene) { scene.stiffness.emplace(); }));
 }
 
 Table<LogConfig> logKeys() {
@@ -182,10 +201,8 @@ Table<SceneConfig> sceneTable() {
                 "joint positions at the start; absent: the robot's home", &Config::start),
       taskSection(),
       redundancySection(),
-      section("controller", "force control; absent: the tactile module is not even read",
-              &Config::controller, controllerKeys()),
-      section("stiffness", "what the law believes about the obstacle's stiffness",
-              &Config::stiffness, stiffnessKeys()),
+      controllerSection(),
+      stiffnessSection(),
       simulationSection(),
       group<Config>("real_time", "what this scene asks of the machine that runs it on hardware",
                     {boolean("required", "false: run even where real time is not granted",

@@ -70,11 +70,8 @@ TaskConfig makeTask(const SceneConfig& config) {
 }
 
 ForceControlConfig makeForceControl(const SceneConfig& config) {
-  ForceControlConfig force = config.controller->force;
-  force.activation_force_N =
-      config.controller->activation_force_N.value_or(force.activation_force_N);
-  force.assumed_stiffness_N_per_m = config.stiffness->assumed_N_per_m;
-  force.estimator = config.stiffness->estimate;
+  ForceControlConfig force = *config.controller;
+  force.has_estimator = config.stiffness->has_estimate;
   return force;
 }
 
@@ -87,11 +84,12 @@ ControllerConfig makeController(const YamlNode& root, const SceneConfig& config,
   controller.weights = config.weights
                            ? toJointVector(*config.weights, root, "redundancy.weights", chain)
                            : JointVector(JointVector::Ones(q_start.size()));
-  controller.joint_limit_avoidance = config.joint_limit_avoidance;
+  controller.has_joint_limit_avoidance = config.has_joint_limit_avoidance;
+  controller.gains = config.gains;
   if (!config.controller) return controller;
   controller.tactile_module = robot.config.tactile_module->config;
   controller.drive_lag_s = robot.config.drives.position_lag_s;
-  if (config.controller->force.variant != Variant::kNone) {
+  if (config.controller->variant != Variant::kNone) {
     controller.force_control = makeForceControl(config);
   }
   return controller;
@@ -155,7 +153,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
   if (hardware && use == SceneUse::kHardware) {
     checkHardware(root, robot.root, config.period_s, robot.config, *hardware);
   }
-  const Variant variant = config.controller ? config.controller->force.variant : Variant::kNone;
+  const Variant variant = config.controller ? config.controller->variant : Variant::kNone;
   const StiffnessSection stiffness = config.stiffness.value_or(StiffnessSection{});
   Scene scene{.name = sceneName(path),
               .controller = makeController(root, config, robot, q_start),

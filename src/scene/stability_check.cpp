@@ -21,7 +21,7 @@ struct StiffestContact {
 };
 
 StiffestContact stiffestContact(const Scene& scene) {
-  StiffestContact stiffest{scene.controller.force_control->assumed_stiffness_N_per_m, ""};
+  StiffestContact stiffest{scene.controller.gains.force.assumed_stiffness_N_per_m, ""};
   if (scene.stiffest_N_per_m > 0.0)
     stiffest = {scene.stiffest_N_per_m, "stiffness.stiffest_N_per_m"};
   for (std::size_t i = 0; i < scene.plant.obstacles.size(); ++i) {
@@ -34,9 +34,10 @@ StiffestContact stiffestContact(const Scene& scene) {
 }
 
 /// A good estimate is the stiffness itself, within the estimator's range.
-double stiffnessOfLaw(const ForceControlConfig& force, double stiffest_N_per_m) {
-  if (!force.estimator) return force.assumed_stiffness_N_per_m;
-  return std::clamp(stiffest_N_per_m, force.estimator->min_N_per_m, force.estimator->max_N_per_m);
+double stiffnessOfLaw(const ControllerConfig& config, double stiffest_N_per_m) {
+  const ForceGains& gains = config.gains.force;
+  if (!config.force_control->has_estimator) return gains.assumed_stiffness_N_per_m;
+  return std::clamp(stiffest_N_per_m, gains.estimator.min_N_per_m, gains.estimator.max_N_per_m);
 }
 
 [[noreturn]] void fail(const Scene& scene, const std::string& key, const std::string& problem,
@@ -87,13 +88,13 @@ std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, doubl
   const double ratio = largestRatio(loops, kMinPhaseMargin_rad);
   if (unstable.margins.largest_stiffness_ratio < 1.0 || ratio == 0.0) {
     fail(scene, "controller.time_constant_s",
-         fmt::format("{} s is {}", scene.controller.force_control->time_constant_s, contact),
+         fmt::format("{} s is {}", scene.controller.gains.force.time_constant_s, contact),
          timeConstantExpectation(loops, report.ratio()));
   }
   const std::string rule = fmt::format("c_e/c at most {:.3f} for a phase margin of {:g} degrees",
                                        ratio, kMinPhaseMargin_deg);
   const double least_N_per_m = report.stiffest_N_per_m / (kInside * ratio);
-  if (scene.controller.force_control->estimator) {
+  if (scene.controller.force_control->has_estimator) {
     fail(scene, "stiffness.estimate.max_N_per_m",
          fmt::format("{:g} N/m is {}", report.stiffness_N_per_m, contact),
          fmt::format("at least {:g} N/m ({})", least_N_per_m, rule));
@@ -121,7 +122,7 @@ std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& r
         "phase margin of {:.1f} degrees ({}): overshoots and rings, better {:g} or more",
         nearest.phaseMargin_deg(), nearest.name, kMinPhaseMargin_deg));
   }
-  const double assumed_N_per_m = scene.controller.force_control->assumed_stiffness_N_per_m;
+  const double assumed_N_per_m = scene.controller.gains.force.assumed_stiffness_N_per_m;
   const double needed_N_per_m = report.stiffest_N_per_m / largest_ratio;
   if (assumed_N_per_m < needed_N_per_m) {
     warnings.push_back(
@@ -141,8 +142,7 @@ std::optional<StabilityReport> checkStability(const Scene& scene) {
   const StiffestContact stiffest = stiffestContact(scene);
   StabilityReport report;
   report.stiffest_N_per_m = stiffest.stiffness_N_per_m;
-  report.stiffness_N_per_m =
-      stiffnessOfLaw(*scene.controller.force_control, stiffest.stiffness_N_per_m);
+  report.stiffness_N_per_m = stiffnessOfLaw(scene.controller, stiffest.stiffness_N_per_m);
   if (stepsOfCommonPeriod(loops.front().loop) == 0) {
     report.warnings = {"margins not computed: cycle and samples hardly ever coincide"};
     return report;

@@ -32,26 +32,28 @@ Row<TaskConfig> componentsRow() {
   return row;
 }
 
-Table<TaskConfig> correctionKeys() {
-  using Config = TaskConfig;
+Table<TaskGains> correctionKeys() {
+  using Config = TaskGains;
   return {
-      componentsRow(),
       withSymbol("beta", number("drift_gain_per_s", "1/s", within(0, 1e4),
                                 "how fast the tool is pulled back to its reference: its error "
                                 "times this is a speed, as in (2)",
                                 &Config::drift_gain_per_s)),
-      number("max_return_speed_m_per_s", "m/s", above(0, 10),
-             "largest speed at which drift_gain_per_s pulls the position back, as after a contact; "
-             "absent: as much as the gain makes of the error",
-             &Config::max_return_speed_m_per_s),
-      number("max_return_speed_rad_per_s", "rad/s", above(0, 10),
-             "largest speed at which drift_gain_per_s pulls the orientation back; absent: as much "
-             "as the gain makes of the error",
-             &Config::max_return_speed_rad_per_s),
-      number("wait_beyond_m", "m", above(0, 10),
-             "lag of the tool's position beyond which the reference goes on slower; beyond twice "
-             "that it stands still until the tool has caught up; absent: it never waits",
-             &Config::wait_beyond_m),
+      optional(number(
+          "max_return_speed_m_per_s", "m/s", above(0, 10),
+          "largest speed at which drift_gain_per_s pulls the position back, as after a contact; "
+          "absent: as much as the gain makes of the error",
+          &Config::max_return_speed_m_per_s)),
+      optional(number(
+          "max_return_speed_rad_per_s", "rad/s", above(0, 10),
+          "largest speed at which drift_gain_per_s pulls the orientation back; absent: as much "
+          "as the gain makes of the error",
+          &Config::max_return_speed_rad_per_s)),
+      optional(number(
+          "wait_beyond_m", "m", above(0, 10),
+          "lag of the tool's position beyond which the reference goes on slower; beyond twice "
+          "that it stands still until the tool has caught up; absent: it never waits",
+          &Config::wait_beyond_m)),
   };
 }
 
@@ -95,8 +97,10 @@ Row<SceneConfig> taskSection() {
       "w_d", required(section("trajectory",
                               "where the tool shall be when; exactly one of line, waypoints, hold",
                               &SceneConfig::trajectory, trajectoryKeys())))};
-  return required(group("task", "what the tool shall do",
-                        join(inside(&SceneConfig::task, correctionKeys()), trajectory)));
+  return required(
+      group("task", "what the tool shall do",
+            join(inside(&SceneConfig::task, {componentsRow()}),
+                 inside(&SceneConfig::gains, inside(&Gains::task, correctionKeys())), trajectory)));
 }
 
 }  // namespace tactus

@@ -63,6 +63,7 @@ std::array<const char*, kMaxJoints> jointUnits(const SerialChain& chain) {
 ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareConfig& hardware,
                            double period_s)
     : controller_(controller),
+      gains_(controller.gains),
       robot_(hardware, period_s),
       places_(controller.q_start, hardware),
       joint_units_(jointUnits(controller.chain)),
@@ -110,7 +111,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
 void ControlCycle::prepare() noexcept {
   if (!is_started_) return;
   const long long next = task_cycles_ + (mode_.mode == Mode::kRunning ? 1 : 0);
-  controller_.prepare(static_cast<double>(next) * period_s_, state_, prepared_);
+  controller_.prepare(gains_, static_cast<double>(next) * period_s_, state_, prepared_);
 }
 
 void ControlCycle::noteCulprit() noexcept {
@@ -265,8 +266,9 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   is_started_ = true;
   applyMode(controller_, mode_.mode, before, input_, state_);
   const double task_time_s = static_cast<double>(task_cycles_) * period_s_;
-  controller_.update(input_, task_time_s, period_s_, prepared_, state_, output_);
-  fillRecord(static_cast<double>(cycles_) * period_s_, input_, output_, Vector3::Zero(), record_);
+  controller_.update(input_, gains_, task_time_s, period_s_, prepared_, state_, output_);
+  fillRecord(static_cast<double>(cycles_) * period_s_, input_, gains_, output_, Vector3::Zero(),
+             record_);
   record_.task_time_s = task_time_s;
   record_.mode = static_cast<std::uint64_t>(mode_.mode);
   record_.missed_cycles = static_cast<std::uint64_t>(missed);

@@ -38,8 +38,9 @@ void fillInput(const RobotInput& input, CycleRecord& record) noexcept {
 
 }  // namespace
 
-void fillRecord(double t_s, const RobotInput& input, const ControllerOutput& output,
-                const Vector3& tool_error_m, CycleRecord& record) noexcept {
+void fillRecord(double t_s, const RobotInput& input, const Gains& gains,
+                const ControllerOutput& output, const Vector3& tool_error_m,
+                CycleRecord& record) noexcept {
   record.t_s = t_s;
   record.task_time_s = t_s;
   fillInput(input, record);
@@ -52,6 +53,7 @@ void fillRecord(double t_s, const RobotInput& input, const ControllerOutput& out
   record.fault = static_cast<std::uint64_t>(output.fault);
   copy(tool_error_m, record.tool_error_m);
   record.path_time_s = output.path_time_s;
+  record.gains = gains;
 }
 
 RobotInput recordedInput(const CycleRecord& record, int joints) noexcept {

@@ -36,18 +36,17 @@ struct LoopCase {
 
 void PrintTo(const LoopCase& c, std::ostream* stream) { *stream << c.name; }
 
-ForceControlConfig forceControl(const LoopCase& c) {
-  ForceControlConfig force;
-  force.variant = c.variant;
-  force.order = c.loop.order;
-  force.time_constant_s = c.loop.time_constant_s;
-  force.damping = c.loop.damping;
-  force.contact_threshold_N = 0.0;
-  force.max_null_speed_m_per_s = 1e6;
-  force.assumed_stiffness_N_per_m = kC_N_per_m;
-  if (c.variant == Variant::kNullLimit) force.max_null_speed_m_per_s = 1e-12;  // the task alone
-  if (!c.is_fed_forward) force.transition.engage_force_N = 1e12;  // gamma stays at zero
-  return force;
+void setForceControl(const LoopCase& c, ControllerConfig& config) {
+  config.force_control = {.variant = c.variant, .order = c.loop.order};
+  ForceGains& gains = config.gains.force;
+  gains = {};
+  gains.time_constant_s = c.loop.time_constant_s;
+  gains.damping = c.loop.damping;
+  gains.contact_threshold_N = 0.0;
+  gains.max_null_speed_m_per_s = 1e6;
+  gains.assumed_stiffness_N_per_m = kC_N_per_m;
+  if (c.variant == Variant::kNullLimit) gains.max_null_speed_m_per_s = 1e-12;  // the task alone
+  if (!c.is_fed_forward) gains.transition.engage_force_N = 1e12;  // gamma stays at zero
 }
 
 PlantConfig plantAt(double x_m, double y_m, double stiffness_N_per_m, const ContactLoop& loop) {
@@ -83,7 +82,7 @@ bool calmsDown(const Controller& controller, SimulatedRobot& robot, ControllerSt
   const int window = start / 3;
   for (int cycle = 0; cycle < 3 * start; ++cycle) {
     robot.read(input);
-    controller.update(input, cycle * period_s, period_s, state, output);
+    controller.update(input, controller.initialGains(), cycle * period_s, period_s, state, output);
     if (output.fault != Fault::kNone) return false;  // a force beyond the sensor's range
     robot.write(output.velocity);
     if (cycle >= start && cycle < start + window) early.add(robot.trueForce_N());
@@ -144,12 +143,12 @@ TrajectoryConfig trajectoryOf(const Rest& rest) {
 bool calmsDownOnRail(const LoopCase& c, double stiffness_ratio) {
   const Rest rest = restOf(c);
   ControllerConfig config = test::railController(c.variant);
-  config.force_control = forceControl(c);
-  config.force_control->activation_force_N = rest.activation_N;
+  setForceControl(c, config);
+  config.gains.force.activation_force_N = rest.activation_N;
   config.tactile_module->max_sample_age_s = 1.0;
   config.tactile_module->filter_cutoff_hz = c.loop.model_filter_cutoff_hz;
   config.drive_lag_s = c.loop.model_drive_lag_s;
-  config.task.drift_gain_per_s = c.is_fed_forward ? 20.0 : c.loop.drift_gain_per_s;
+  config.gains.task.drift_gain_per_s = c.is_fed_forward ? 20.0 : c.loop.drift_gain_per_s;
   config.task.trajectory = trajectoryOf(rest);
   const Controller controller(config);
 
@@ -158,7 +157,7 @@ bool calmsDownOnRail(const LoopCase& c, double stiffness_ratio) {
   const double contact_m = (1.0 + kKick) * kRest_N / (stiffness_ratio * kC_N_per_m);
   config.q_start << contact_m, tool_m - contact_m;
   ControllerState state = controller.initialState(config.q_start);
-  state.contact.law = {rest.V_m_per_s, rest.It_m_per_s};
+  state.contact.law = {rest.V_m_per_s, rest.It_m_per_s, {}};
   SimulatedRobot robot(config, plantAt(0.5, kRadius_m, stiffness_ratio * kC_N_per_m, c.loop),
                        c.loop.period_s);
   return calmsDown(controller, robot, state, c.loop.period_s, 20.0 * c.loop.time_constant_s);
@@ -168,12 +167,12 @@ bool calmsDownOnRail(const LoopCase& c, double stiffness_ratio) {
 /// the motion of the task fed forward. The elbow is pushed away from the path.
 bool calmsDownOnArm(const LoopCase& c, double stiffness_ratio) {
   ControllerConfig config = test::crops9Controller(c.variant);
-  config.joint_limit_avoidance.reset();
+  config.has_joint_limit_avoidance = false;
   config.task.trajectory = {};
-  config.task.drift_gain_per_s = 5.0;
-  config.force_control = forceControl(c);
-  config.force_control->activation_force_N = 1.0;
-  const double rest_N = 0.5 * config.force_control->activation_force_N;
+  config.gains.task.drift_gain_per_s = 5.0;
+  setForceControl(c, config);
+  config.gains.force.activation_force_N = 1.0;
+  const double rest_N = 0.5 * config.gains.force.activation_force_N;
 
   ChainPose pose;
   config.chain.computePose(config.q_start, pose);
@@ -185,7 +184,7 @@ bool calmsDownOnArm(const LoopCase& c, double stiffness_ratio) {
 
   const Controller controller(config);
   ControllerState state = controller.initialState();
-  state.contact.law = {-0.03, 0.03};
+  state.contact.law = {-0.03, 0.03, {}};
   SimulatedRobot robot(config,
                        plantAt(p_Base.x(), p_Base.y(), stiffness_ratio * kC_N_per_m, c.loop),
                        c.loop.period_s);

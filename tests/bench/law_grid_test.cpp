@@ -39,26 +39,26 @@ TEST(LawGrid, APointChangesWhatItNamesOnly) {
   EXPECT_EQ(setup.plant.robot_stiffness_N_per_m, kNoLimit);
   EXPECT_DOUBLE_EQ(setup.controller.task.trajectory.waypoints[0].speed_m_per_s, 2.0 * 0.0537);
   EXPECT_EQ(setup.controller.force_control->variant, Variant::kNullTask);
-  EXPECT_FALSE(setup.controller.force_control->estimator);
+  EXPECT_FALSE(setup.controller.force_control->has_estimator);
   const RunSetup slow = lawGridSetup(base(), {60.0, 1e5, 7000.0, 0.5}, GridLaw::kLimited);
   EXPECT_EQ(slow.plant.obstacles[0].stiffness_N_per_m, 60.0);
   EXPECT_GT(slow.duration_s, 20.0) << "the motion alone takes 17 s";
   EXPECT_EQ(slow.controller.force_control->variant, Variant::kNullLimit);
-  EXPECT_TRUE(slow.controller.force_control->estimator);
+  EXPECT_TRUE(slow.controller.force_control->has_estimator);
 }
 
 TEST(LawGrid, SeesTheTouchOfTheProfile) {
   // Nothing reacts, so the speed of touch is that of the task, and the scale follows from it.
   RunSetup setup = lawGridSetup(base(), {0.0, 3000.0, kNoLimit, 1.0}, GridLaw::kAssumed);
-  setup.controller.force_control->activation_force_N = 1e9;
-  setup.controller.force_control->max_null_speed_m_per_s = 1e-9;
-  setup.controller.force_control->max_null_speed_rad_per_s = 1e-9;
+  setup.controller.gains.force.activation_force_N = 1e9;
+  setup.controller.gains.force.max_null_speed_m_per_s = 1e-9;
+  setup.controller.gains.force.max_null_speed_rad_per_s = 1e-9;
   setup.duration_s = 8.0;
   const JudgedRun run = judgeRun(setup);
   EXPECT_GT(run.touch_speed_m_per_s, 0.02);
   EXPECT_LT(run.touch_speed_m_per_s, 0.0537);
   EXPECT_EQ(run.touch_force_N, 0.0);
-  setup.controller.force_control->activation_force_N = 0.1;
+  setup.controller.gains.force.activation_force_N = 0.1;
   const double delay_s = 0.005 + 1.0 / (M_PI * 15.0) + 0.002;
   EXPECT_NEAR(feedbackDelay_s(setup.plant), delay_s, 1e-12);
   EXPECT_NEAR(naturalScale(setup, run), 1.2 + 3000.0 * run.touch_speed_m_per_s * delay_s, 1e-9);

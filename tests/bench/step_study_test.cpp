@@ -28,7 +28,7 @@ void expectOurCommands(const BenchRobot& robot, std::unique_ptr<PlainKinematics>
   for (int cycle = 0; cycle < 120; ++cycle) {
     const RobotInput input = benchInput(robot, cycle);
     const double t_s = cycle * kBenchPeriod_s;
-    ours.update(input, t_s, kBenchPeriod_s, our_state, output);
+    ours.update(input, ours.initialGains(), t_s, kBenchPeriod_s, our_state, output);
     const JointVector velocity = plain.update(input, t_s, kBenchPeriod_s, plain_state);
     ASSERT_EQ(output.fault, Fault::kNone);
     ASSERT_LT((velocity - output.velocity).norm(), 1e-9 * (1.0 + output.velocity.norm())) << cycle;
@@ -66,7 +66,7 @@ TEST(KdlSolvers, SolveTheSameTask) {
     const Controller controller(robot.config);
     ControllerState state = controller.initialState();
     ControllerOutput output;
-    controller.update({}, 0.05, kBenchPeriod_s, state, output);
+    controller.update({}, controller.initialGains(), 0.05, kBenchPeriod_s, state, output);
     ASSERT_GT(output.w_d_dot.norm(), 1e-3) << "at rest anything would agree";
     ASSERT_EQ(kdlSolverCases(9, task_components).size(), task_components == 6 ? 2u : 1u);
     for (const StepCase& step_case : kdlSolverCases(9, task_components)) {
@@ -78,7 +78,8 @@ TEST(KdlSolvers, SolveTheSameTask) {
       TaskJacobian J;
       computeTipJacobian(robot.config.chain, pose, framePosition(pose, robot.config.chain.tip()),
                          robot.config.task.components.data(), task_components, J);
-      const TaskVector w_eff = output.w_d_dot + robot.config.task.drift_gain_per_s * output.error;
+      const TaskVector w_eff =
+          output.w_d_dot + robot.config.gains.task.drift_gain_per_s * output.error;
       EXPECT_LT((J * q_dot - w_eff).norm(), 1e-6) << step_case.code;
     }
   }

@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
     robot.read(input);
     const bool in_contact = output.contact.force_contact_N > 0.0;
     if (in_contact) CALLGRIND_TOGGLE_COLLECT;
-    controller.update(input, cycle * kPeriod_s, kPeriod_s, state, output);
+    controller.update(input, config.gains, cycle * kPeriod_s, kPeriod_s, state, output);
     if (in_contact) CALLGRIND_TOGGLE_COLLECT;
     robot.write(output.velocity);
     collected += in_contact;

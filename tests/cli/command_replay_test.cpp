@@ -28,8 +28,8 @@ class CommandReplay : public ::testing::Test {
       input.tactile.force_y_N = std::max(0.0, 6.0 * std::sin(4.0 * t_s));
       input.tactile.moment_z_Nm = 0.2 * input.tactile.force_y_N;
       input.tactile.sequence = static_cast<std::uint32_t>(i / 4);
-      controller.update(input, t_s, scene.period_s, state, output);
-      fillRecord(t_s, input, output, Vector3::Zero(), records[i]);
+      controller.update(input, controller.initialGains(), t_s, scene.period_s, state, output);
+      fillRecord(t_s, input, controller.initialGains(), output, Vector3::Zero(), records[i]);
     }
     return records;
   }
@@ -62,7 +62,7 @@ TEST_F(CommandReplay, AnUnchangedLogIsEqualToTheBit) {
 }
 
 TEST_F(CommandReplay, ALogOfARunWithSettingsReplaysWithThem) {
-  writeLogOf({{"controller.time_constant_s", "0.2"}, {"controller.damping", "0.8"}});
+  writeLogOf({{"controller.order", "1"}, {"controller.damping", "0.8"}});
   EXPECT_EQ(run({}), kExitDone) << output_;
   description_.overrides.clear();
   rewriteLog();
@@ -118,6 +118,39 @@ TEST_F(CommandReplay, ASettingOfTheRunIsOverruledByTheCommandLine) {
   EXPECT_EQ(output_, "400 cycles, every output equal to the bit\n");
   EXPECT_EQ(run({"--set", "controller.time_constant_s=0.1"}), kExitDone);
   EXPECT_NE(output_.find("cycles differ"), std::string::npos);
+}
+
+TEST_F(CommandReplay, RecordedGainsAreFed) {
+  writeLogOf({{"controller.damping", "0.8"}});
+  description_.overrides.clear();
+  rewriteLog();
+  EXPECT_EQ(run({}), kExitDone) << "the scene says 0.5, the cycles 0.8" << output_;
+  EXPECT_EQ(run({"--set", "controller.damping=0.5"}), kExitDone);
+  EXPECT_NE(output_.find("cycles differ"), std::string::npos) << "--set is not laid over them";
+}
+
+TEST_F(CommandReplay, RecordedGainsOutOfRangeAreRefusedInOneLine) {
+  writeLogOf({});
+  const auto refusal = [this] {
+    try {
+      run({});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  records_[200].gains.force.time_constant_s = -0.1;
+  rewriteLog();
+  EXPECT_EQ(refusal(), log_.path() +
+                           ":1:1: controller.time_constant_s: -0.1 is out of range, in the gains "
+                           "recorded at 0.2 s, expected a number >= 0.001 and <= 100 in s");
+  records_[200].gains.force.time_constant_s = std::nan("");
+  rewriteLog();
+  EXPECT_NE(refusal().find("controller.time_constant_s: nan is out of range"), std::string::npos);
+  records_[200].gains = records_[0].gains;
+  records_[200].gains.task.drift_gain_per_s = 1001.0;
+  rewriteLog();
+  EXPECT_NE(refusal().find("task.drift_gain_per_s: 1001 is too high"), std::string::npos);
 }
 
 TEST_F(CommandReplay, JsonSaysTheSame) {

@@ -15,15 +15,20 @@ constexpr double kMin_N = 0.2;
 constexpr double kSample_s = 0.004;
 const double kKappa = 1.0 - std::exp(-kSample_s / 0.03);
 
+ApproachEstimatorState assumedApproach() {
+  ApproachEstimatorState state;
+  state.stiffness_N_per_m = state.stiffness_raw_N_per_m = kAssumed;
+  return state;
+}
+
 class ApproachEstimate : public testing::Test {
  protected:
   void touch(double F_p_N, double dx_m) {
-    estimator_.touch({F_p_N, dx_m, kSample_s, kMin_N}, state_);
+    estimateInContact({}, {F_p_N, dx_m, kSample_s, kMin_N}, state_);
   }
   double c() const { return state_.stiffness_N_per_m; }
 
-  ApproachEstimator estimator_{{}, kAssumed, kActivation_N};
-  ApproachEstimatorState state_{kAssumed, kAssumed};
+  ApproachEstimatorState state_ = assumedApproach();
 };
 
 TEST_F(ApproachEstimate, RisesAtOnce) {
@@ -88,7 +93,7 @@ TEST_F(ApproachEstimate, ForceAgainstTheWayOnlyRearms) {
 TEST_F(ApproachEstimate, ForgetsWithoutContact) {
   touch(3.0, 1e-4);
   ASSERT_NEAR(c(), 3e4, 1e-8);
-  for (int i = 0; i < 1000; ++i) estimator_.release(0.001, state_);
+  for (int i = 0; i < 1000; ++i) forgetContact({}, 0.001, state_);
   EXPECT_NEAR(c(), kAssumed + (3e4 - kAssumed) * std::exp(-1.0), 1e-6);
   EXPECT_EQ(state_.x_m, 0.0);
   EXPECT_EQ(state_.F_ref_N, 0.0);
@@ -97,7 +102,7 @@ TEST_F(ApproachEstimate, ForgetsWithoutContact) {
 
 TEST_F(ApproachEstimate, FindsSpringsSofterAndStiffer) {
   for (const double stiffness : {30.0, 600.0, 2e4, 3e5}) {
-    state_ = {kAssumed, kAssumed};
+    state_ = assumedApproach();
     // To 1.5 N within 300 samples, below F_act / 2.
     const double dx_m = 1.5 / stiffness / 300.0;
     double way_m = 0.0;
@@ -111,7 +116,7 @@ TEST_F(ApproachEstimate, FindsSpringsSofterAndStiffer) {
 TEST_F(ApproachEstimate, StaysInRangeWhateverComes) {
   test::Random random(321);
   for (int i = 0; i < 100000; ++i) {
-    if (random.chance(0.1)) estimator_.release(random.logUniform(1e-9, 1e9), state_);
+    if (random.chance(0.1)) forgetContact({}, random.logUniform(1e-9, 1e9), state_);
     touch(random.logUniform(1e-9, 1e9), random.sign() * random.logUniform(1e-12, 1e6));
     ASSERT_GE(c(), 10.0);
     ASSERT_LE(c(), 1e6);

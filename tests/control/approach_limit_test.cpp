@@ -21,8 +21,8 @@ ControllerConfig bareRail(double speed_m_per_s) {
   ControllerConfig config = test::railController(Variant::kNullLimit);
   config.drive_lag_s = 0.0;
   config.tactile_module->filter_cutoff_hz = 1e6;
-  config.force_control->assumed_stiffness_N_per_m = kC_N_per_m;
-  config.force_control->max_null_speed_m_per_s = 1e-12;
+  config.gains.force.assumed_stiffness_N_per_m = kC_N_per_m;
+  config.gains.force.max_null_speed_m_per_s = 1e-12;
   Waypoint line;
   line.displacement_m = Vector3(0.0, 10.0, 0.0);
   line.speed_m_per_s = speed_m_per_s;
@@ -30,6 +30,8 @@ ControllerConfig bareRail(double speed_m_per_s) {
   config.task.trajectory.waypoints = {line};
   return config;
 }
+
+const ForceGains kGains = bareRail(0.1).gains.force;
 
 TEST(ApproachLimit, LetsTheForceSettleExponentiallyAtTheActivationForce) {
   const Controller controller(bareRail(10.0));
@@ -40,7 +42,8 @@ TEST(ApproachLimit, LetsTheForceSettleExponentiallyAtTheActivationForce) {
   double largest_N = 0.0;
   for (int cycle = 0; cycle < 1000; ++cycle) {
     const double before_N = force_N;
-    controller.update(world.input(state), cycle * kPeriod_s, kPeriod_s, state, output);
+    controller.update(world.input(state), controller.initialGains(), cycle * kPeriod_s, kPeriod_s,
+                      state, output);
     force_N = world.force_N(state.q_desired);
     largest_N = std::max(largest_N, force_N);
     if (cycle < 20) continue;  // until it is felt, nothing limits
@@ -55,16 +58,16 @@ TEST(ApproachLimit, CutsExactlyTheExcessByHand) {
   const ApproachLimit limit(bareRail(0.1));
   ApproachLimitState state = limit.initialState();
   state.memory_N_per_m = 2000.0;  // T m = 200 Ns/m
-  EXPECT_EQ(limit.excess(1.8, -0.0099, state), 0.0) << "2 N are left: 10 mm/s";
+  EXPECT_EQ(limit.excess(kGains, 1.8, -0.0099, state), 0.0) << "2 N are left: 10 mm/s";
   EXPECT_FALSE(state.is_limiting);
-  EXPECT_NEAR(limit.excess(1.8, -0.0125, state), -0.0025, 1e-15);
+  EXPECT_NEAR(limit.excess(kGains, 1.8, -0.0125, state), -0.0025, 1e-15);
   EXPECT_TRUE(state.is_limiting);
-  EXPECT_NEAR(limit.excess(5.8, 0.004, state), -0.006, 1e-15)
+  EXPECT_NEAR(limit.excess(kGains, 5.8, 0.004, state), -0.006, 1e-15)
       << "back at 10 mm/s, 4 of it by others";
   state.way_ahead_m = 1e-3;  // 2 N more
-  EXPECT_NEAR(limit.excess(1.8, -0.0125, state), -0.0125, 1e-15);
+  EXPECT_NEAR(limit.excess(kGains, 1.8, -0.0125, state), -0.0125, 1e-15);
   state.way_ahead_m = -1.0;
-  EXPECT_NEAR(limit.excess(1.8, -0.05, state), -0.05 + 3.8 / 200.0, 1e-15)
+  EXPECT_NEAR(limit.excess(kGains, 1.8, -0.05, state), -0.05 + 3.8 / 200.0, 1e-15)
       << "no force is less than none";
 }
 
@@ -73,22 +76,23 @@ TEST(ApproachLimit, MemoryFadesAfterContactAndThenLimitsNothing) {
   ApproachLimitState state = limit.initialState();
   const JointVector q = JointVector::Zero(2);
   const JointVector a{{-1.0, 0.0}};
-  EXPECT_EQ(limit.excess(0.0, -1e9, state), 0.0) << "before the first contact";
-  limit.observe(a, 1.0, q, kPeriod_s, state);
+  EXPECT_EQ(limit.excess(kGains, 0.0, -1e9, state), 0.0) << "before the first contact";
+  limit.observe(kGains, a, 1.0, q, kPeriod_s, state);
   EXPECT_EQ(state.memory_N_per_m, kC_N_per_m);
-  for (int i = 0; i < 100; ++i) limit.observe(a, 0.0, q, kPeriod_s, state);
+  for (int i = 0; i < 100; ++i) limit.observe(kGains, a, 0.0, q, kPeriod_s, state);
   EXPECT_NEAR(state.memory_N_per_m, kC_N_per_m * std::exp(-1.0), 1e-6);
-  for (int i = 0; i < 20000; ++i) limit.observe(a, 0.0, q, kPeriod_s, state);
+  for (int i = 0; i < 20000; ++i) limit.observe(kGains, a, 0.0, q, kPeriod_s, state);
   EXPECT_EQ(state.memory_N_per_m, 0.0) << "and not a denormal number";
-  EXPECT_EQ(limit.excess(0.0, -1e9, state), 0.0);
+  EXPECT_EQ(limit.excess(kGains, 0.0, -1e9, state), 0.0);
 }
 
 TEST(ApproachLimit, SofterContactIsApproachedNoFasterThanTheFloorAllows) {
   ControllerConfig config = bareRail(0.1);
-  config.force_control->assumed_stiffness_N_per_m = 20.0;
+  config.gains.force.assumed_stiffness_N_per_m = 20.0;
   const ApproachLimit limit(config);
   ApproachLimitState state = limit.initialState();
-  limit.observe(JointVector{{-1.0, 0.0}}, 1.0, JointVector::Zero(2), kPeriod_s, state);
+  limit.observe(config.gains.force, JointVector{{-1.0, 0.0}}, 1.0, JointVector::Zero(2), kPeriod_s,
+                state);
   EXPECT_EQ(state.memory_N_per_m, 300.0);
 }
 
@@ -101,12 +105,12 @@ struct TouchedRobot {
         angle_rad(random.uniform(-3.0, 3.0)) {
     config.force_control.emplace();
     config.force_control->variant = Variant::kNullLimit;
-    if (random.chance(0.7)) config.force_control->estimator.emplace();
+    if (random.chance(0.7)) config.force_control->has_estimator = true;
     config.limits.upper = JointVector::Constant(n, 50.0);
     config.limits.lower = -config.limits.upper;
     if (random.chance(0.5)) {
-      config.joint_limit_avoidance.emplace();
-      config.joint_limit_avoidance->active_fraction = 1.0;
+      config.has_joint_limit_avoidance = true;
+      config.gains.joint_limit_avoidance.active_fraction = 1.0;
     }
     Waypoint line;
     line.displacement_m = random.vector<Vector3>(3, -5.0, 5.0);
@@ -152,7 +156,8 @@ TEST(ApproachLimit, IsNeverExceededByTheCommand) {
       if (cycle % 4 == 0) force_N = std::max(0.0, force_N + random.uniform(-0.5, 0.6));
       const RobotInput input{state.q_desired,
                              test::touchAt(robot.x_m, force_N, robot.angle_rad, cycle / 4 + 1)};
-      controller.update(input, cycle * kPeriod_s, kPeriod_s, state, output);
+      controller.update(input, controller.initialGains(), cycle * kPeriod_s, kPeriod_s, state,
+                        output);
       ASSERT_TRUE(output.velocity.allFinite());
       const ContactReport& contact = output.contact;
       if (contact.k_t < std::max(1.01e-3 * contact.k_j, 1.01e-4)) continue;
@@ -186,7 +191,8 @@ TEST(ApproachLimit, NothingMovesTheTaskOnceTheMemoryHasFaded) {
       const double force_N = cycle < 200 ? 10.0 : 0.0;
       const RobotInput input{state.q_desired,
                              test::touchAt(robot.x_m, force_N, robot.angle_rad, cycle + 1)};
-      controller.update(input, cycle * kPeriod_s, kPeriod_s, state, output);
+      controller.update(input, controller.initialGains(), cycle * kPeriod_s, kPeriod_s, state,
+                        output);
       ASSERT_TRUE(output.velocity.allFinite());
     }
     EXPECT_EQ(output.contact.u_t, 0.0);
@@ -210,7 +216,8 @@ TEST(ApproachLimit, StaysFiniteWhateverTheSensorSays) {
       TactileSample sample = test::touchAt(random.uniform(-1.0, 1.0),
                                            random.chance(0.3) ? 0.0 : random.logUniform(1e-6, 1e8),
                                            random.uniform(-4.0, 4.0), sequence);
-      controller.update({state.q_desired, sample}, cycle * kPeriod_s, kPeriod_s, state, output);
+      controller.update({state.q_desired, sample}, controller.initialGains(), cycle * kPeriod_s,
+                        kPeriod_s, state, output);
       ASSERT_TRUE(output.velocity.allFinite()) << i << ", " << cycle;
       ASSERT_NE(output.fault, Fault::kCommandNotFinite);
     }

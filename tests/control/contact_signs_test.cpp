@@ -21,9 +21,9 @@ struct Touched {
     config.weights = test::randomWeights(random, n);
     config.force_control.emplace();
     config.force_control->variant = variant;
-    config.force_control->max_null_speed_m_per_s = 1e9;
-    config.force_control->max_null_speed_rad_per_s = 1e9;
-    config.force_control->pull_gain_per_s = 0.0;  // joint space: (1) alone
+    config.gains.force.max_null_speed_m_per_s = 1e9;
+    config.gains.force.max_null_speed_rad_per_s = 1e9;
+    config.gains.force.pull_gain_per_s = 0.0;  // joint space: (1) alone
     Waypoint line;
     line.displacement_m = random.vector<Vector3>(3, -1.0, 1.0);
     line.rotation_vector_rad = random.vector<Vector3>(3, -0.5, 0.5);
@@ -37,8 +37,8 @@ struct Touched {
     const Controller controller(config);
     ControllerState state = controller.initialState();
     state.q_desired = config.q_start + JointVector::Constant(n, 0.002);  // some drift to correct
-    controller.update({state.q_desired, test::touchAt(x_m, force_N, angle_rad, 1)}, 0.8, kPeriod_s,
-                      state, output);
+    controller.update({state.q_desired, test::touchAt(x_m, force_N, angle_rad, 1)},
+                      controller.initialGains(), 0.8, kPeriod_s, state, output);
   }
 
   Vector3 contactPoint(const JointVector& q) const {
@@ -107,9 +107,9 @@ TEST_P(ContactSigns, CommandIsEquation1WithMatrices) {
     // Limits so wide that only the cost of them is felt.
     touched.config.limits.upper = JointVector::Constant(touched.n, 20.0);
     touched.config.limits.lower = JointVector::Constant(touched.n, -25.0);
-    touched.config.joint_limit_avoidance.emplace();
-    touched.config.joint_limit_avoidance->gain = kAlpha;
-    touched.config.joint_limit_avoidance->active_fraction = 1.0;
+    touched.config.has_joint_limit_avoidance = true;
+    touched.config.gains.joint_limit_avoidance.gain = kAlpha;
+    touched.config.gains.joint_limit_avoidance.active_fraction = 1.0;
     touched.run();
     const ControllerConfig& config = touched.config;
     const ControllerOutput& output = touched.output;

@@ -34,7 +34,7 @@ class Smoother : public testing::Test {
     sample.moment_z_Nm += 0.15 * noise(sigma_N);
     locateContact(sample, kLength_m, sensor_);
     sensor_.interval_s = kSample_s;
-    smoother_.update(sensor_, X_BaseModule_, state_);
+    smoother_.update({}, sensor_, X_BaseModule_, state_);
   }
 
   /// Twelve uniform numbers: near enough to a normal one.
@@ -49,7 +49,7 @@ class Smoother : public testing::Test {
   }
 
   test::Random random_{311};
-  ContactSmoother smoother_{kMin_N, kThreshold_N, coverOf(15.0)};
+  ContactSmoother smoother_{coverOf(15.0)};
   ContactSmootherState state_ = smoother_.initialState();
   ContactPointState sensor_;
   Pose X_BaseModule_;
@@ -128,7 +128,7 @@ TEST_F(Smoother, NoBlowTurnsTheContactAround) {
     const double blow_s = random_.uniform(0.001, 4.0 / cutoff_hz);
     const int stride = static_cast<int>(random_.uniform(1.0, 0.3e3 / cutoff_hz));  // cycles of 1 ms
     const int phase = static_cast<int>(random_.uniform(0.0, stride));
-    const ContactSmoother smoother(kMin_N, kThreshold_N, coverOf(cutoff_hz));
+    const ContactSmoother smoother(coverOf(cutoff_hz));
     ContactSmootherState state = smoother.initialState();
     ButterworthLowPass filter(cutoff_hz, 1e3);
     for (int i = 0; i < 1000; ++i) {
@@ -136,7 +136,7 @@ TEST_F(Smoother, NoBlowTurnsTheContactAround) {
       if (i % stride != phase) continue;
       locateContact(test::touchAt(0.2, force_N, 0.5, 1), kLength_m, sensor_);
       sensor_.interval_s = 1e-3 * stride;
-      smoother.update(sensor_, X_BaseModule_, state);
+      smoother.update({}, sensor_, X_BaseModule_, state);
       const bool is_turned =
           state.contact.direction.dot(Vector3(0.0, std::cos(0.5), std::sin(0.5))) < 0.0;
       ASSERT_FALSE(is_turned) << cutoff_hz << " Hz, " << blow_s << " s, every " << stride

@@ -17,40 +17,37 @@ class Transition : public testing::Test {
   /// Contact at kLost, then `cycles` without contact at `distance_m` from there. Returns the
   /// product of the integral's decays.
   double loseContact(double distance_m, int cycles) {
-    const ContactTransition transition(config_);
-    transition.update(5.0, kLost, kPeriod_s, state_);
+    passTransition(gains_, 5.0, kLost, kPeriod_s, state_);
     double decay = 1.0;
     for (int i = 0; i < cycles; ++i)
-      decay *= transition.update(0.0, kLost + Vector3(0.0, distance_m, 0.0), kPeriod_s, state_);
+      decay *=
+          passTransition(gains_, 0.0, kLost + Vector3(0.0, distance_m, 0.0), kPeriod_s, state_);
     return decay;
   }
 
-  ContactTransitionConfig config_;
+  ContactTransitionGains gains_;
   ContactTransitionState state_;
 };
 
 TEST_F(Transition, HasNoFeedforwardBeforeTheFirstContact) {
-  const ContactTransition transition(config_);
-  for (int i = 0; i < 100; ++i) transition.update(0.0, kLost, kPeriod_s, state_);
+  for (int i = 0; i < 100; ++i) passTransition(gains_, 0.0, kLost, kPeriod_s, state_);
   EXPECT_EQ(state_.gamma, 0.0);
 }
 
 TEST_F(Transition, EngagesAtOnceByDefault) {
-  const ContactTransition transition(config_);
-  EXPECT_EQ(transition.update(1e-6, kLost, kPeriod_s, state_), 1.0) << "the integral stays";
+  EXPECT_EQ(passTransition(gains_, 1e-6, kLost, kPeriod_s, state_), 1.0) << "the integral stays";
   EXPECT_EQ(state_.gamma, 1.0);
 }
 
 TEST_F(Transition, EngagesOverItsForceRangeAndNeverBackwards) {
-  config_.engage_force_N = 0.5;
-  const ContactTransition transition(config_);
-  transition.update(0.1, kLost, kPeriod_s, state_);
+  gains_.engage_force_N = 0.5;
+  passTransition(gains_, 0.1, kLost, kPeriod_s, state_);
   EXPECT_DOUBLE_EQ(state_.gamma, 0.2);
-  transition.update(0.3, kLost, kPeriod_s, state_);
+  passTransition(gains_, 0.3, kLost, kPeriod_s, state_);
   EXPECT_DOUBLE_EQ(state_.gamma, 0.6);
-  transition.update(0.2, kLost, kPeriod_s, state_);
+  passTransition(gains_, 0.2, kLost, kPeriod_s, state_);
   EXPECT_DOUBLE_EQ(state_.gamma, 0.6) << "less force is no reason to push again";
-  transition.update(0.7, kLost, kPeriod_s, state_);
+  passTransition(gains_, 0.7, kLost, kPeriod_s, state_);
   EXPECT_EQ(state_.gamma, 1.0);
 }
 
@@ -75,11 +72,10 @@ TEST_F(Transition, EndsBeyondItsDistance) {
 }
 
 TEST_F(Transition, ChangesLittleFromCycleToCycleOnTheWayOut) {
-  const ContactTransition transition(config_);
-  transition.update(5.0, kLost, kPeriod_s, state_);
+  passTransition(gains_, 5.0, kLost, kPeriod_s, state_);
   double before = state_.gamma;
   for (int i = 0; i <= 1000; ++i) {  // 0.06 m in 1 s
-    transition.update(0.0, kLost + Vector3(6e-5 * i, 0.0, 0.0), kPeriod_s, state_);
+    passTransition(gains_, 0.0, kLost + Vector3(6e-5 * i, 0.0, 0.0), kPeriod_s, state_);
     ASSERT_LE(state_.gamma, before + 1e-15);
     ASSERT_LT(before - state_.gamma, 0.02) << "at step " << i;
     before = state_.gamma;
@@ -89,10 +85,9 @@ TEST_F(Transition, ChangesLittleFromCycleToCycleOnTheWayOut) {
 
 TEST_F(Transition, MeasuresFromTheLastContact) {
   loseContact(3.0, 10);
-  const ContactTransition transition(config_);
   const Vector3 elsewhere = kLost + Vector3(1.0, 0.0, 0.0);
-  transition.update(2.0, elsewhere, kPeriod_s, state_);
-  transition.update(0.0, elsewhere, kPeriod_s, state_);
+  passTransition(gains_, 2.0, elsewhere, kPeriod_s, state_);
+  passTransition(gains_, 0.0, elsewhere, kPeriod_s, state_);
   EXPECT_DOUBLE_EQ(state_.gamma, 1.0);
 }
 

@@ -37,12 +37,12 @@ Result updateOnce(const ForceControlConfig& config, const ControlLawInput& input
                   ControlLawState state = {}, const ContactSpace& space = handmadeSpace()) {
   const ControlLaw law(config, test::railChain(), ScaledVector::Ones());
   Result result{state, {}};
-  law.update(input, space, kPeriod_s, result.state, result.u);
+  law.update({}, input, space, kPeriod_s, result.state, result.u);
   return result;
 }
 
 const ControlLawInput kTouch{.F_p_N = 4.0, .stiffness_N_per_m = 1000.0, .x_dot_ff_m_per_s = -0.02};
-const ControlLawState kBefore{.V_m_per_s = 0.003, .It_m_per_s = 0.001};
+const ControlLawState kBefore{.V_m_per_s = 0.003, .It_m_per_s = 0.001, .null_speed = {}};
 constexpr double kSingle = -0.02 - 0.01 * 4.0 - 0.003;     // x_ff - P F_p - V
 constexpr double kSecond = -(0.01 * (4.0 - 3.8) + 0.001);  // -(P (F_p - F_act) + I)
 
@@ -123,7 +123,7 @@ TEST(ControlLaw, TheIntegralDecaysBeforeItIsUsed) {
 
 TEST(ControlLaw, TheIntegralFadesToZeroAndNotToSubnormalNumbers) {
   ControlLawInput gone{.stiffness_N_per_m = 1000.0, .integral_decay = 0.999};
-  const ControlLawState before{.V_m_per_s = 1e-99};
+  const ControlLawState before{.V_m_per_s = 1e-99, .It_m_per_s = 0.0, .null_speed = {}};
   EXPECT_DOUBLE_EQ(updateOnce(lawOf(Variant::kNullTask), gone, before).state.V_m_per_s, 0.999e-99);
   gone.integral_decay = 1e-2;
   EXPECT_EQ(updateOnce(lawOf(Variant::kNullTask), gone, before).state.V_m_per_s, 0.0);

@@ -28,7 +28,7 @@ class MovingArm {
 
   void step(const RobotInput& input) {
     const JointVector before = state_.velocity_before;
-    controller_.update(input, t_s_, kPeriod_s, state_, output_);
+    controller_.update(input, controller_.initialGains(), t_s_, kPeriod_s, state_, output_);
     t_s_ += kPeriod_s;
     ASSERT_TRUE(output_.velocity.allFinite());
     const JointVector change = (output_.velocity - before).cwiseAbs();
@@ -146,7 +146,8 @@ TEST(ControllerFaults, ModuleThatNeverSpeaks) {
   ControllerState state = controller.initialState();
   ControllerOutput output;
   for (int i = 0; i < 30; ++i)
-    controller.update({state.q_desired, {}}, i * kPeriod_s, kPeriod_s, state, output);
+    controller.update({state.q_desired, {}}, controller.initialGains(), i * kPeriod_s, kPeriod_s,
+                      state, output);
   EXPECT_EQ(output.fault, Fault::kTactileStale);
 }
 
@@ -158,11 +159,13 @@ TEST(ControllerFaults, CommandThatIsNoNumber) {
     test::RandomTouches touches(random);
     ControllerOutput output;
     for (int i = 0; i < 500; ++i)
-      controller.update(touches.next(state.q_desired), i * kPeriod_s, kPeriod_s, state, output);
+      controller.update(touches.next(state.q_desired), controller.initialGains(), i * kPeriod_s,
+                        kPeriod_s, state, output);
     ASSERT_EQ(output.fault, Fault::kNone);
     state.q_desired[3] = kNaN;  // memory gone bad: no law can give an answer
     for (int i = 0; i < 200; ++i) {
-      controller.update(touches.next(state.q_desired), 0.5, kPeriod_s, state, output);
+      controller.update(touches.next(state.q_desired), controller.initialGains(), 0.5, kPeriod_s,
+                        state, output);
       ASSERT_EQ(output.fault, Fault::kCommandNotFinite);
       ASSERT_TRUE(output.velocity.allFinite());
     }
@@ -178,8 +181,8 @@ TEST(ControllerFaults, TimeThatIsNoNumberMovesNothing) {
   const Controller controller(test::fullController(random, 8, Variant::kNullSpace));
   ControllerState state = controller.initialState();
   ControllerOutput output;
-  controller.update({state.q_desired, test::touchAt(0.2, 1.0, 0.0, 1)}, kNaN, kPeriod_s, state,
-                    output);
+  controller.update({state.q_desired, test::touchAt(0.2, 1.0, 0.0, 1)}, controller.initialGains(),
+                    kNaN, kPeriod_s, state, output);
   EXPECT_EQ(output.fault, Fault::kCommandNotFinite);
   EXPECT_EQ(output.velocity.norm(), 0.0);
 }

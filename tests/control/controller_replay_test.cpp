@@ -15,7 +15,8 @@ TEST(ControllerReplay, RecordedInputsGiveEveryOutputAgainToTheBit) {
     ControllerState state = replayed.initialState();
     ControllerOutput output;
     for (const test::RecordedCycle& cycle : run) {
-      replayed.update(cycle.input, cycle.t_s, cycle.period_s, state, output);
+      replayed.update(cycle.input, replayed.initialGains(), cycle.t_s, cycle.period_s, state,
+                      output);
       test::expectSame(output, cycle.output);
       ASSERT_FALSE(HasFailure()) << "at " << cycle.t_s;
     }
@@ -33,8 +34,8 @@ TEST(ControllerReplay, ACopyOfTheStateGoesOnLikeTheOriginal) {
     ControllerOutput original;
     ControllerOutput copied;
     copied.contact.u_n = 1e9;  // what an output held before must not matter
-    controller.update(input, cycle * 1e-3, 1e-3, state, original);
-    controller.update(input, cycle * 1e-3, 1e-3, copy, copied);
+    controller.update(input, controller.initialGains(), cycle * 1e-3, 1e-3, state, original);
+    controller.update(input, controller.initialGains(), cycle * 1e-3, 1e-3, copy, copied);
     test::expectSame(original, copied);
     ASSERT_FALSE(HasFailure()) << "cycle " << cycle;
   }
@@ -50,8 +51,8 @@ TEST(ControllerReplay, ControllersDoNotTouchEachOther) {
   ControllerOutput output_a;
   ControllerOutput output_b;
   for (const test::RecordedCycle& cycle : alone) {
-    a.update(cycle.input, cycle.t_s, cycle.period_s, state_a, output_a);
-    b.update(cycle.input, cycle.t_s, cycle.period_s, state_b, output_b);
+    a.update(cycle.input, a.initialGains(), cycle.t_s, cycle.period_s, state_a, output_a);
+    b.update(cycle.input, b.initialGains(), cycle.t_s, cycle.period_s, state_b, output_b);
     test::expectSame(output_a, cycle.output);
     ASSERT_FALSE(HasFailure());
   }
@@ -61,13 +62,13 @@ TEST(ControllerReplay, AnotherConfigurationGivesAnotherOutput) {
   test::Random random(184);
   ControllerConfig config = test::fullController(random, 7, Variant::kNullSpace);
   const std::vector<test::RecordedCycle> run = test::record(Controller(config), random, 1000);
-  config.force_control->time_constant_s *= 2.0;
+  config.gains.force.time_constant_s *= 2.0;
   const Controller other(config);
   ControllerState state = other.initialState();
   ControllerOutput output;
   int different = 0;
   for (const test::RecordedCycle& cycle : run) {
-    other.update(cycle.input, cycle.t_s, cycle.period_s, state, output);
+    other.update(cycle.input, other.initialGains(), cycle.t_s, cycle.period_s, state, output);
     different += output.velocity != cycle.output.velocity;
   }
   EXPECT_GT(different, 500);

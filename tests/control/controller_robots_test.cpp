@@ -39,7 +39,7 @@ TEST_P(RobotOfSize, FollowsItsTaskWithoutContact) {
   for (int i = 0; i < 20; ++i) {
     ControllerConfig config = test::randomController(random, n, random.integer(1, std::min(n, 6)));
     config.weights = test::randomWeights(random, n);
-    config.task.drift_gain_per_s = 20.0;
+    config.gains.task.drift_gain_per_s = 20.0;
     config.force_control.emplace();
     // A short tool motion that any pose away from singularities can make.
     Waypoint line;
@@ -58,7 +58,7 @@ TEST_P(RobotOfSize, FollowsItsTaskWithoutContact) {
     ControllerOutput output;
     for (int cycle = 0; cycle < 3000; ++cycle)
       controller.update({state.q_desired, test::touchAt(0.1, 0.0, 0.0, cycle + 1)},
-                        cycle * kPeriod_s, kPeriod_s, state, output);
+                        controller.initialGains(), cycle * kPeriod_s, kPeriod_s, state, output);
     // Near singularities a damped task may lag; most robots must arrive.
     followed += output.error.norm() < 1e-6;
   }

@@ -18,8 +18,8 @@ void expectSameMotion(const ControllerConfig& a, const ControllerConfig& b, doub
   ControllerOutput output_b;
   for (int cycle = 0; cycle < 1500; ++cycle) {
     const RobotInput input{state_a.q_desired, test::touchAt(0.2, force_N, 0.4, cycle + 1)};
-    controller_a.update(input, cycle * 1e-3, 1e-3, state_a, output_a);
-    controller_b.update(input, cycle * 1e-3, 1e-3, state_b, output_b);
+    controller_a.update(input, controller_a.initialGains(), cycle * 1e-3, 1e-3, state_a, output_a);
+    controller_b.update(input, controller_b.initialGains(), cycle * 1e-3, 1e-3, state_b, output_b);
     test::expectSameMotion(output_a, output_b);
     ASSERT_FALSE(testing::Test::HasFailure()) << "cycle " << cycle;
   }
@@ -55,18 +55,18 @@ TEST(ControllerStages, LawChangesNoMotionWithoutContact) {
 TEST(ControllerStages, AvoidanceWithoutGainChangesNoMotion) {
   test::Random random(244);
   ControllerConfig with = test::fullController(random, 7, Variant::kNullTask);
-  with.joint_limit_avoidance->gain = 0.0;
+  with.gains.joint_limit_avoidance.gain = 0.0;
   ControllerConfig without = with;
-  without.joint_limit_avoidance.reset();
+  without.has_joint_limit_avoidance = false;
   expectSameMotion(with, without, 10.0);
 }
 
 TEST(ControllerStages, EstimatorThatNeverTriggersChangesNoMotion) {
   test::Random random(245);
   ControllerConfig with = test::fullController(random, 7, Variant::kNullTask);
-  with.force_control->estimator->min_force_change_N = 1e9;
+  with.gains.force.estimator.min_force_change_N = 1e9;
   ControllerConfig without = with;
-  without.force_control->estimator.reset();
+  without.force_control->has_estimator = false;
   expectSameMotion(with, without, 10.0);
 }
 
@@ -78,7 +78,8 @@ TEST(ControllerStages, AbsentStagesReportZero) {
   const Controller controller(config);
   ControllerState state = controller.initialState();
   ControllerOutput output;
-  controller.update({state.q_desired, test::touchAt(0.2, 10.0, 0.4, 1)}, 0.0, 1e-3, state, output);
+  controller.update({state.q_desired, test::touchAt(0.2, 10.0, 0.4, 1)}, controller.initialGains(),
+                    0.0, 1e-3, state, output);
   test::expectSameContact(output.contact, ContactReport{});
   EXPECT_EQ(output.fault, Fault::kNone);
 }
@@ -96,14 +97,14 @@ TEST(ControllerStages, EveryStagePresentDoesChangeTheMotion) {
   const auto run = test::record(Controller(config), random, 500);
   for (const int stage : {0, 1}) {
     ControllerConfig less = config;
-    if (stage == 0) less.joint_limit_avoidance.reset();
+    if (stage == 0) less.has_joint_limit_avoidance = false;
     if (stage == 1) less.force_control.reset();
     const Controller other(less);
     ControllerState state = other.initialState();
     ControllerOutput output;
     int different = 0;
     for (const test::RecordedCycle& cycle : run) {
-      other.update(cycle.input, cycle.t_s, cycle.period_s, state, output);
+      other.update(cycle.input, other.initialGains(), cycle.t_s, cycle.period_s, state, output);
       different += output.velocity != cycle.output.velocity;
     }
     EXPECT_GT(different, 100) << "stage " << stage;

@@ -14,9 +14,9 @@ struct CostCase {
     limits = test::noLimits(n);
     limits.lower = random.vector(n, -3.0, 0.0);
     limits.upper = limits.lower + random.vector(n, 0.1, 4.0);
-    config.gain = random.uniform(0.1, 2.0);
-    config.gradient_at_limit = random.uniform(0.5, 5.0);
-    config.active_fraction = random.uniform(0.05, 1.0);
+    gains.gain = random.uniform(0.1, 2.0);
+    gains.gradient_at_limit = random.uniform(0.5, 5.0);
+    gains.active_fraction = random.uniform(0.05, 1.0);
     q = limits.lower + (limits.upper - limits.lower).cwiseProduct(random.vector(n, 0.0, 1.0));
   }
 
@@ -26,16 +26,16 @@ struct CostCase {
     for (int i = 0; i < n; ++i) {
       const double half = 0.5 * (limits.upper[i] - limits.lower[i]);
       const double offset = std::abs(at[i] - 0.5 * (limits.upper[i] + limits.lower[i]));
-      const double width = config.active_fraction * half;
+      const double width = gains.active_fraction * half;
       const double s = std::max(0.0, (offset - (half - width)) / width);
-      H += 0.5 * config.gradient_at_limit * width * s * s;
+      H += 0.5 * gains.gradient_at_limit * width * s * s;
     }
     return H;
   }
 
   int n;
   JointLimits limits;
-  JointLimitAvoidanceConfig config;
+  JointLimitAvoidanceGains gains;
   JointVector q;
 };
 
@@ -44,21 +44,21 @@ TEST(JointLimitAvoidance, IsTheGradientOfACost) {
   for (int i = 0; i < 500; ++i) {
     const CostCase c(random);
     const ScaledVector inv_sqrt_weights = random.vector(kMaxJoints, 0.1, 3.0);
-    const JointLimitCost evaluated =
-        JointLimitAvoidance(c.config, c.limits, inv_sqrt_weights).evaluate(c.q);
+    const JointLimitAvoidance avoidance(c.limits, inv_sqrt_weights);
+    const JointLimitCost evaluated = avoidance.evaluate(avoidance.zones(c.gains), c.q);
     const ScaledVector gradient = evaluated.gradient.cwiseQuotient(inv_sqrt_weights);
     ASSERT_EQ(gradient.tail(kMaxJoints - c.n).norm(), 0.0);
     ASSERT_NEAR(evaluated.nearness,
-                gradient.lpNorm<Eigen::Infinity>() / (c.config.gain * c.config.gradient_at_limit),
+                gradient.lpNorm<Eigen::Infinity>() / (c.gains.gain * c.gains.gradient_at_limit),
                 1e-12);
     const double h = 1e-6;
     for (int k = 0; k < c.n; ++k) {
       const JointVector step = h * JointVector::Unit(c.n, k);
       const double slope = (c.cost(c.q + step) - c.cost(c.q - step)) / (2.0 * h);
       // The slope has a kink where the zone begins: an error of a step there.
-      const double width = 0.5 * c.config.active_fraction * (c.limits.upper - c.limits.lower)[k];
-      const double kink = c.config.gradient_at_limit * h / width;
-      ASSERT_NEAR(gradient[k], c.config.gain * slope, c.config.gain * (kink + 1e-7)) << i;
+      const double width = 0.5 * c.gains.active_fraction * (c.limits.upper - c.limits.lower)[k];
+      const double kink = c.gains.gradient_at_limit * h / width;
+      ASSERT_NEAR(gradient[k], c.gains.gain * slope, c.gains.gain * (kink + 1e-7)) << i;
     }
   }
 }
@@ -67,10 +67,11 @@ TEST(JointLimitAvoidance, GrowsTowardsTheNearerLimitOnly) {
   JointLimits limits = test::noLimits(2);
   limits.lower << -1.0, -2.0;
   limits.upper << 3.0, 2.0;
-  const JointLimitAvoidance avoidance({1.0, 3.52, 0.5}, limits, ScaledVector::Ones());
+  const JointLimitAvoidance avoidance(limits, ScaledVector::Ones());
+  const JointLimitZones zones = avoidance.zones({1.0, 3.52, 0.5});
   ScaledVector gradient;
   const auto at = [&](double q0, double q1) {
-    gradient = avoidance.evaluate(JointVector(Eigen::Vector2d(q0, q1))).gradient;
+    gradient = avoidance.evaluate(zones, JointVector(Eigen::Vector2d(q0, q1))).gradient;
     return gradient;
   };
   EXPECT_EQ(at(1.0, 0.0).norm(), 0.0) << "in the middle";
@@ -83,8 +84,9 @@ TEST(JointLimitAvoidance, GrowsTowardsTheNearerLimitOnly) {
 TEST(JointLimitAvoidance, IgnoresJointsWithoutLimits) {
   JointLimits limits = test::noLimits(3);
   limits.lower[1] = -1.0;  // one side alone has no middle
-  const JointLimitAvoidance avoidance({}, limits, ScaledVector::Ones());
-  const JointLimitCost cost = avoidance.evaluate(JointVector(Eigen::Vector3d(1e6, -0.99, -1e300)));
+  const JointLimitAvoidance avoidance(limits, ScaledVector::Ones());
+  const JointLimitCost cost =
+      avoidance.evaluate(avoidance.zones({}), JointVector(Eigen::Vector3d(1e6, -0.99, -1e300)));
   EXPECT_EQ(cost.gradient.norm(), 0.0);
   EXPECT_EQ(cost.nearness, 0.0);
 }

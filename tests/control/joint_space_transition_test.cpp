@@ -14,25 +14,24 @@ namespace {
 using test::kPeriod_s;
 const Vector3 kPoint(0.3, -0.2, 1.1);
 
-ForceControlConfig config() {
-  ForceControlConfig config;
-  config.variant = Variant::kJointSpace;
-  config.transition.engage_force_N = 0.5;
-  config.transition.release_force_N = 0.3;
-  config.transition.search_speed_m_per_s = 0.01;
-  return config;
+ForceGains gains() {
+  ForceGains gains;
+  gains.transition.engage_force_N = 0.5;
+  gains.transition.release_force_N = 0.3;
+  gains.transition.search_speed_m_per_s = 0.01;
+  return gains;
 }
 
 class JointSpace : public testing::Test {
  protected:
-  explicit JointSpace(const ForceControlConfig& with = config())
-      : config_(with), transition_(with) {}
+  explicit JointSpace(const ForceGains& with = gains()) : gains_(with) {}
 
   /// One cycle at a sensed force, `away_m` from kPoint, x_0 as given.
   IntegralShare update(double F_sen_N, double away_m = 0.0, double x_0 = 0.0) {
-    transition_.follow({F_sen_N, 0.2, Vector3::UnitY()}, true, kPeriod_s, state_);
-    const double F_p_N = std::max(0.0, F_sen_N - config_.contact_threshold_N);
-    return transition_.update({F_p_N, kPoint + Vector3(away_m, 0.0, 0.0), x_0}, kPeriod_s, state_);
+    followContact(gains_, {F_sen_N, 0.2, Vector3::UnitY()}, true, kPeriod_s, state_);
+    const double F_p_N = std::max(0.0, F_sen_N - gains_.contact_threshold_N);
+    return passTransition(gains_, {F_p_N, kPoint + Vector3(away_m, 0.0, 0.0), x_0}, kPeriod_s,
+                          state_);
   }
 
   IntegralShare updateFor(double duration_s, double F_sen_N, double away_m = 0.0,
@@ -43,8 +42,7 @@ class JointSpace : public testing::Test {
     return last;
   }
 
-  ForceControlConfig config_;
-  JointSpaceTransition transition_;
+  ForceGains gains_;
   JointSpaceTransitionState state_;
 };
 
@@ -130,12 +128,12 @@ TEST_F(JointSpace, PullFadesToZeroAndNotToSubnormalNumbers) {
 }
 
 TEST_F(JointSpace, TakesThePointAtOnceFirstAndSmoothlyLater) {
-  transition_.follow({2.0, 0.1, Vector3::UnitY()}, true, kPeriod_s, state_);
+  followContact(gains_, {2.0, 0.1, Vector3::UnitY()}, true, kPeriod_s, state_);
   EXPECT_EQ(state_.contact.position_m, 0.1);
   EXPECT_EQ(state_.contact.direction, Vector3(Vector3::UnitY()));
   state_.gamma = 0.5;
   for (int i = 0; i < 100; ++i)
-    transition_.follow({2.0, 0.2, Vector3::UnitZ()}, true, kPeriod_s, state_);
+    followContact(gains_, {2.0, 0.2, Vector3::UnitZ()}, true, kPeriod_s, state_);
   EXPECT_NEAR(state_.contact.position_m, 0.2 - 0.1 * std::exp(-1.0), 1e-9);
   EXPECT_NEAR(state_.contact.direction.norm(), 1.0, 1e-12);
   EXPECT_GT(state_.contact.direction.y(), 0.1);
@@ -143,8 +141,8 @@ TEST_F(JointSpace, TakesThePointAtOnceFirstAndSmoothlyLater) {
 }
 
 TEST_F(JointSpace, FreezesThePointWhenNothingIsFelt) {
-  transition_.follow({2.0, 0.1, Vector3::UnitY()}, true, kPeriod_s, state_);
-  transition_.follow({0.3, 0.3, Vector3::UnitZ()}, true, kPeriod_s, state_);
+  followContact(gains_, {2.0, 0.1, Vector3::UnitY()}, true, kPeriod_s, state_);
+  followContact(gains_, {0.3, 0.3, Vector3::UnitZ()}, true, kPeriod_s, state_);
   EXPECT_EQ(state_.contact.force_N, 0.3);
   EXPECT_EQ(state_.contact.position_m, 0.1);
   EXPECT_EQ(state_.contact.direction, Vector3(Vector3::UnitY()));
@@ -154,7 +152,7 @@ class JointSpaceAtOnce : public JointSpace {
  protected:
   JointSpaceAtOnce()
       : JointSpace([] {
-          ForceControlConfig at_once = config();
+          ForceGains at_once = gains();
           at_once.transition.engage_force_N = 0.0;
           return at_once;
         }()) {}

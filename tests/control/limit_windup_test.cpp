@@ -26,7 +26,7 @@ ControllerConfig limitedArm(Variant variant, Gate gate) {
   if (gate == Gate::kPosition) {
     config.limits.lower = config.q_start.array() - 0.03;
     config.limits.upper = config.q_start.array() + 0.03;
-    config.joint_limit_avoidance.reset();  // nothing but the gate keeps joints off their limits
+    config.has_joint_limit_avoidance = false;  // nothing but the gate keeps joints off their limits
   }
   return config;
 }
@@ -43,7 +43,8 @@ struct PushedArm {
       if (cycle++ % 4 == 0)
         input.tactile = test::touchAt(0.2, force_N, 2.8, input.tactile.sequence + 1);
       const ContactControllerState before = state.contact;
-      controller.update(input, 1e-3 * static_cast<double>(cycle), 0.001, state, output);
+      controller.update(input, controller.initialGains(), 1e-3 * static_cast<double>(cycle), 0.001,
+                        state, output);
       fastest = std::max(fastest, output.velocity.cwiseAbs().maxCoeff());
       if (before.cut_m_per_s <= 0.0) continue;
       ++cut_cycles;

@@ -15,8 +15,8 @@ struct ContactCase {
         chain(test::randomChain(random, n)),
         inv_sqrt(scaled(test::randomWeights(random, n).cwiseSqrt().cwiseInverse(),
                         ScaledVector::Ones())) {
-    config.max_null_speed_m_per_s = random.logUniform(0.1, 5.0);
-    config.max_null_speed_rad_per_s = random.logUniform(0.1, 5.0);
+    gains.max_null_speed_m_per_s = random.logUniform(0.1, 5.0);
+    gains.max_null_speed_rad_per_s = random.logUniform(0.1, 5.0);
     config.variant = random.chance(0.5)   ? Variant::kNullSpace
                      : random.chance(0.5) ? Variant::kNullTask
                                           : Variant::kNullJoint;
@@ -33,8 +33,8 @@ struct ContactCase {
     double largest = 0.0;
     for (int i = 0; i < n; ++i) {
       const double b = inv_sqrt[i] * space.a_scaled[i];
-      const double limit = chain.type(i) == JointType::kPrismatic ? config.max_null_speed_m_per_s
-                                                                  : config.max_null_speed_rad_per_s;
+      const double limit = chain.type(i) == JointType::kPrismatic ? gains.max_null_speed_m_per_s
+                                                                  : gains.max_null_speed_rad_per_s;
       largest = std::max(largest, std::abs(b * u_n) / limit);
     }
     return largest;
@@ -44,6 +44,7 @@ struct ContactCase {
   SerialChain chain;
   ScaledVector inv_sqrt;
   ForceControlConfig config;
+  ForceGains gains;
   ContactSpace space;
   ControlLawInput input;
 };
@@ -56,9 +57,9 @@ TEST(NullSpaceLimit, ScalesTheWholeVectorAndOnlyWhenNeeded) {
     const ControlLaw law(c.config, c.chain, c.inv_sqrt);
     ControlLawState state;
     ControlLawOutput u;
-    law.update(c.input, c.space, kPeriod_s, state, u);
-    const double wanted = -2.0 * c.config.damping * c.input.F_p_N /
-                          (c.config.time_constant_s * c.input.stiffness_N_per_m) *
+    law.update(c.gains, c.input, c.space, kPeriod_s, state, u);
+    const double wanted = -2.0 * c.gains.damping * c.input.F_p_N /
+                          (c.gains.time_constant_s * c.input.stiffness_N_per_m) *
                           invertRegularised(c.space.k_n, c.space.k_j);
     if (c.excess(wanted) <= 1.0) {
       ASSERT_NEAR(u.u_n, wanted, 1e-12 * std::abs(wanted));
@@ -80,7 +81,7 @@ TEST(NullSpaceLimit, HoldsTheIntegralWhileLimited) {
     const ControlLaw law(c.config, c.chain, c.inv_sqrt);
     ControlLawState state;
     ControlLawOutput u;
-    law.update(c.input, c.space, kPeriod_s, state, u);
+    law.update(c.gains, c.input, c.space, kPeriod_s, state, u);
     if (c.excess(u.u_n) > 1.0 - 1e-9) {
       ASSERT_EQ(state.V_m_per_s, 0.0);
       ++held;
@@ -94,13 +95,13 @@ TEST(NullSpaceLimit, HoldsTheIntegralWhileLimited) {
 TEST(NullSpaceLimit, LeavesOtherSpacesAlone) {
   test::Random random(113);
   ContactCase c(random);
-  c.config.max_null_speed_m_per_s = c.config.max_null_speed_rad_per_s = 1e-6;
+  c.gains.max_null_speed_m_per_s = c.gains.max_null_speed_rad_per_s = 1e-6;
   for (const Variant variant : {Variant::kJointSpace, Variant::kTaskSpace}) {
     c.config.variant = variant;
     const ControlLaw law(c.config, c.chain, c.inv_sqrt);
     ControlLawState state;
     ControlLawOutput u;
-    law.update(c.input, c.space, kPeriod_s, state, u);
+    law.update(c.gains, c.input, c.space, kPeriod_s, state, u);
     EXPECT_GT(std::abs(u.u_j + u.u_t), 1e-3);
     EXPECT_GT(state.V_m_per_s, 0.0);
   }

@@ -19,15 +19,17 @@ std::vector<ControllerOutput> run(const Controller& controller, std::uint64_t se
   int cycle = 0;
   for (ControllerOutput& output : outputs) {
     const double t_s = 0.001 * cycle;
-    if (ahead == Ahead::kRight) controller.prepare(t_s, state, prepared);
-    if (ahead == Ahead::kWrongTime) controller.prepare(t_s + 0.001, state, prepared);
-    if (ahead == Ahead::kBeforeCoasting) controller.prepare(t_s, state, prepared);
+    if (ahead == Ahead::kRight) controller.prepare(controller.initialGains(), t_s, state, prepared);
+    if (ahead == Ahead::kWrongTime)
+      controller.prepare(controller.initialGains(), t_s + 0.001, state, prepared);
+    if (ahead == Ahead::kBeforeCoasting)
+      controller.prepare(controller.initialGains(), t_s, state, prepared);
     if (cycle % 50 == 49) controller.coast(2, 0.001, state);
     const RobotInput input = touches.next(state.q_desired);
     if (ahead == Ahead::kNever) {
-      controller.update(input, t_s, 0.001, state, output);
+      controller.update(input, controller.initialGains(), t_s, 0.001, state, output);
     } else {
-      controller.update(input, t_s, 0.001, prepared, state, output);
+      controller.update(input, controller.initialGains(), t_s, 0.001, prepared, state, output);
     }
     ++cycle;
   }
@@ -52,10 +54,10 @@ TEST(PreparedCycle, IsUsedOnceOnly) {
   const Controller controller(test::fullController(random, 7, Variant::kNullTask));
   ControllerState state = controller.initialState();
   PreparedCycle prepared;
-  controller.prepare(0.25, state, prepared);
+  controller.prepare(controller.initialGains(), 0.25, state, prepared);
   EXPECT_EQ(prepared.path_time_s, 0.25);
   ControllerOutput output;
-  controller.update({}, 0.25, 0.001, prepared, state, output);
+  controller.update({}, controller.initialGains(), 0.25, 0.001, prepared, state, output);
   EXPECT_NE(prepared.path_time_s, prepared.path_time_s) << "NaN: for no time";
 }
 

@@ -17,14 +17,13 @@ Eigen::VectorXd partOf(const TaskConfig& task, const TaskVector& v, bool is_posi
   return part;
 }
 
-void expectPart(const Eigen::VectorXd& limited, const Eigen::VectorXd& wanted,
-                const std::optional<double>& cap) {
-  if (!cap || wanted.norm() <= *cap) {
+void expectPart(const Eigen::VectorXd& limited, const Eigen::VectorXd& wanted, double cap) {
+  if (wanted.norm() <= cap) {
     EXPECT_EQ(limited, wanted) << "to the bit";
     return;
   }
-  EXPECT_NEAR(limited.norm(), *cap, 1e-14 * *cap);
-  EXPECT_LT((limited / *cap - wanted.normalized()).norm(), 1e-14) << "another direction";
+  EXPECT_NEAR(limited.norm(), cap, 1e-14 * cap);
+  EXPECT_LT((limited / cap - wanted.normalized()).norm(), 1e-14) << "another direction";
 }
 
 TEST(ReturnSpeed, IsCappedWithItsDirectionKept) {
@@ -32,17 +31,18 @@ TEST(ReturnSpeed, IsCappedWithItsDirectionKept) {
   int capped = 0;
   for (int i = 0; i < 2000; ++i) {
     TaskConfig task;
+    TaskGains gains;
     task.components = test::randomComponents(random);
     task.size = random.integer(1, 6);
-    if (random.chance(0.7)) task.max_return_speed_m_per_s = random.logUniform(1e-3, 10.0);
-    if (random.chance(0.7)) task.max_return_speed_rad_per_s = random.logUniform(1e-3, 10.0);
+    if (random.chance(0.7)) gains.max_return_speed_m_per_s = random.logUniform(1e-3, 10.0);
+    if (random.chance(0.7)) gains.max_return_speed_rad_per_s = random.logUniform(1e-3, 10.0);
     const TaskVector wanted = random.vector<TaskVector>(task.size, -2.0, 2.0);
     TaskVector limited = wanted;
-    limitReturnSpeed(task, {}, limited);
+    limitReturnSpeed(gains, task, {}, limited);
     expectPart(partOf(task, limited, true), partOf(task, wanted, true),
-               task.max_return_speed_m_per_s);
+               gains.max_return_speed_m_per_s);
     expectPart(partOf(task, limited, false), partOf(task, wanted, false),
-               task.max_return_speed_rad_per_s);
+               gains.max_return_speed_rad_per_s);
     capped += limited != wanted;
   }
   EXPECT_GT(capped, 500);
@@ -51,13 +51,14 @@ TEST(ReturnSpeed, IsCappedWithItsDirectionKept) {
 /// In contact the law holds the correction off: together they are no faster than the key.
 TEST(ReturnSpeed, IsThatOfTheToolWhichTheLawPushes) {
   TaskConfig task;
+  TaskGains gains;
   task.components = {4, 1, 0};
   task.size = 3;
-  task.max_return_speed_m_per_s = 0.2;
+  gains.max_return_speed_m_per_s = 0.2;
   const TaskVector wanted = Vector3(3.0, 0.6, 0.8);
   const auto limitedWith = [&](const Vector3& push) -> Vector3 {
     TaskVector correction = wanted;
-    limitReturnSpeed(task, push, correction);
+    limitReturnSpeed(gains, task, push, correction);
     return correction;
   };
   EXPECT_LT((limitedWith({0, 0, 0}) - Vector3(3.0, 0.12, 0.16)).norm(), 1e-15);
@@ -71,14 +72,15 @@ TEST(ReturnSpeed, IsThatOfTheToolWhichTheLawPushes) {
 
 TEST(ReturnSpeed, LeavesRestAndWhatIsNoNumber) {
   TaskConfig task;
+  TaskGains gains;
   task.components = {0, 3};
   task.size = 2;
-  task.max_return_speed_m_per_s = task.max_return_speed_rad_per_s = 0.1;
+  gains.max_return_speed_m_per_s = gains.max_return_speed_rad_per_s = 0.1;
   TaskVector correction = TaskVector::Zero(2);
-  limitReturnSpeed(task, {}, correction);
+  limitReturnSpeed(gains, task, {}, correction);
   EXPECT_TRUE(correction.isZero(0.0));
   correction[0] = kNoLimit - kNoLimit;
-  limitReturnSpeed(task, {}, correction);
+  limitReturnSpeed(gains, task, {}, correction);
   EXPECT_NE(correction[0], correction[0]) << "the command must show that it is broken";
 }
 
@@ -96,7 +98,7 @@ struct PushedArm {
     ControllerState state = controller.initialState();
     state.q_desired += push;
     ControllerOutput output;
-    controller.update({}, 0.0, 1e-3, state, output);
+    controller.update({}, controller.initialGains(), 0.0, 1e-3, state, output);
     return output;
   }
 
@@ -116,13 +118,13 @@ TEST(ReturnSpeed, OfAToolInSpaceIsThatOfItsKeys) {
   int compared = 0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     PushedArm arm(seed, 0.2);
-    arm.config.task.max_return_speed_m_per_s = 0.05;
-    arm.config.task.max_return_speed_rad_per_s = 0.1;
+    arm.config.gains.task.max_return_speed_m_per_s = 0.05;
+    arm.config.gains.task.max_return_speed_rad_per_s = 0.1;
     const ControllerOutput output = arm.respond();
     const TaskConfig& task = arm.config.task;
     const TaskVector speed = arm.toolSpeed(output);
     TaskVector expected = 5.0 * output.error;
-    limitReturnSpeed(task, {}, expected);
+    limitReturnSpeed(arm.config.gains.task, task, {}, expected);
     if ((speed - expected).norm() > 1e-9) continue;  // damped: slower still
     EXPECT_NEAR(partOf(task, speed, true).norm(), 0.05, 1e-9);
     EXPECT_NEAR(partOf(task, speed, false).norm(), 0.1, 1e-9);
@@ -136,9 +138,9 @@ TEST(ReturnSpeed, ChangesNoBitOfACommandBelowIt) {
     PushedArm arm(seed, 0.01);
     const ControllerOutput free = arm.respond();
     EXPECT_GT(arm.toolSpeed(free).norm(), 1e-3);
-    arm.config.task.max_return_speed_m_per_s =
+    arm.config.gains.task.max_return_speed_m_per_s =
         5.001 * partOf(arm.config.task, free.error, true).norm();
-    arm.config.task.max_return_speed_rad_per_s = 1.0;
+    arm.config.gains.task.max_return_speed_rad_per_s = 1.0;
     test::expectSame(arm.respond(), free);
   }
 }
@@ -146,7 +148,7 @@ TEST(ReturnSpeed, ChangesNoBitOfACommandBelowIt) {
 /// An arm that its drives had let go may stand beside its path: there beta grows from zero.
 TEST(ReturnSpeed, RisesGentlyBesideThePath) {
   PushedArm arm(3, 0.05);
-  arm.config.joint_limit_avoidance.reset();
+  arm.config.has_joint_limit_avoidance = false;
   arm.config.task.trajectory = {};
   const Controller controller(arm.config);
   ControllerState state = controller.initialState();
@@ -154,12 +156,13 @@ TEST(ReturnSpeed, RisesGentlyBesideThePath) {
   controller.place(arm.config.q_start + arm.push, state);
   ControllerOutput output;
   PreparedCycle prepared;
-  controller.prepare(0.0, controller.initialState(), prepared);  // of an arm that was not let go
+  ControllerState held = controller.initialState();  // of an arm that was not let go
+  controller.prepare(controller.initialGains(), 0.0, held, prepared);
   double error_before = 0.0, peak = 0.0;
   double first = 0.0;
   for (int i = 0; i < 4000; ++i) {
-    controller.update({}, 0.0, 1e-3, prepared, state, output);
-    controller.prepare(0.0, state, prepared);
+    controller.update({}, controller.initialGains(), 0.0, 1e-3, prepared, state, output);
+    controller.prepare(controller.initialGains(), 0.0, state, prepared);
     if (i == 0) first = output.error.norm();
     if (i > 0) peak = std::max(peak, (error_before - output.error.norm()) / 1e-3);
     error_before = output.error.norm();

@@ -23,7 +23,7 @@ class SecondSpace : public testing::Test {
 
   double update(double F_p_N) {
     ControlLawOutput u;
-    law_.update({F_p_N, kC_N_per_m, 0.0, 1.0}, space_, kPeriod_s, state_, u);
+    law_.update({}, {F_p_N, kC_N_per_m, 0.0, 1.0}, space_, kPeriod_s, state_, u);
     return u.u_t;
   }
 

@@ -12,14 +12,19 @@ namespace {
 using test::kPeriod_s;
 constexpr double kAssumed = 7000.0;
 
+StiffnessEstimatorState assumed() {
+  StiffnessEstimatorState state;
+  state.stiffness_N_per_m = state.stiffness_raw_N_per_m = kAssumed;
+  return state;
+}
+
 class Estimator : public testing::Test {
  protected:
   void update(double F_p_N, double approach_m_per_s) {
-    estimator_.update(F_p_N, approach_m_per_s, kPeriod_s, state_);
+    estimateStiffness({}, F_p_N, approach_m_per_s, kPeriod_s, state_);
   }
 
-  StiffnessEstimator estimator_{{}};
-  StiffnessEstimatorState state_{kAssumed, kAssumed};
+  StiffnessEstimatorState state_ = assumed();
 };
 
 const double kShare = 1.0 - std::exp(-kPeriod_s / 0.03);
@@ -94,7 +99,7 @@ TEST_F(Estimator, ClampsTheRawEstimate) {
 
 TEST_F(Estimator, FindsTheStiffnessOfASpring) {
   for (const double stiffness : {30.0, 600.0, 17000.0}) {
-    state_ = {kAssumed, kAssumed};
+    state_ = assumed();
     double way_m = 0.0;
     for (int i = 0; i < 3000; ++i) {
       const double v = 0.02 + 0.01 * std::sin(0.01 * i);
@@ -108,11 +113,11 @@ TEST_F(Estimator, FindsTheStiffnessOfASpring) {
 
 TEST_F(Estimator, FilterIsExactForAnyPeriod) {
   for (const double period_s : {0.00025, 0.004, 0.5}) {
-    StiffnessEstimatorState state{kAssumed, kAssumed};
+    StiffnessEstimatorState state = assumed();
     state.stiffness_raw_N_per_m = 1000.0;
     const double duration_s = 1.0;
     for (int i = 0; i < std::lround(duration_s / period_s); ++i)
-      estimator_.update(0.1, 1e-9, period_s, state);
+      estimateStiffness({}, 0.1, 1e-9, period_s, state);
     EXPECT_NEAR(state.stiffness_N_per_m, 1000.0 + 6000.0 * std::exp(-duration_s / 0.03), 1e-6);
   }
 }

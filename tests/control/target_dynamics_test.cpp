@@ -44,7 +44,8 @@ void runLoop(const ControllerConfig& config, double stiffness_N_per_m, Check che
   for (int cycle = 0; cycle * kFinePeriod_s < 1.0; ++cycle) {
     const double t_s = cycle * kFinePeriod_s;
     if (!check(t_s, world.force_N(state.q_desired))) return;
-    controller.update(world.input(state), t_s, kFinePeriod_s, state, output);
+    controller.update(world.input(state), controller.initialGains(), t_s, kFinePeriod_s, state,
+                      output);
     ASSERT_EQ(output.fault, Fault::kNone);
   }
 }
@@ -103,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(SpacesAndStiffnessRatios, TargetDynamics,
 TEST(TargetDynamicsOfTwoSpaces, FollowCaseCOfEquation8) {
   for (const Variant variant : {Variant::kNullTask, Variant::kNullJoint}) {
     const ControllerConfig config = test::railController(variant);
-    const double act_N = config.force_control->activation_force_N;
+    const double act_N = config.gains.force.activation_force_N;
     // F'' = -4 d / T F' - 2 / T^2 F + F_act / T^2: about F_act / 2.
     const SecondOrder expected(4.0 * kDamping / kT_s, 2.0 / (kT_s * kT_s), kStart_N - 0.5 * act_N,
                                -2.0 * kDamping / kT_s * (kStart_N + (kStart_N - act_N)));

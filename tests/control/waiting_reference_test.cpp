@@ -21,8 +21,8 @@ ControllerConfig railThatReaches(double tool_speed_m_per_s) {
   config.tactile_module.reset();
   config.force_control.reset();
   config.limits.max_velocity.setConstant(0.5 * tool_speed_m_per_s);
-  config.task.drift_gain_per_s = 5.0;
-  config.task.wait_beyond_m = kPathWaitsBeyond_m;
+  config.gains.task.drift_gain_per_s = 5.0;
+  config.gains.task.wait_beyond_m = kPathWaitsBeyond_m;
   Waypoint line;
   line.displacement_m = Vector3(0.0, kWay_m, 0.0);
   line.speed_m_per_s = kPathSpeed_m_per_s;
@@ -39,7 +39,7 @@ struct RailRun {
   double largest_lag_m = 0.0;
 
   void step(const Controller& controller) {
-    controller.update({}, t_s, kPeriod_s, state, output);
+    controller.update({}, controller.initialGains(), t_s, kPeriod_s, state, output);
     if (!state.is_stopping) t_s += kPeriod_s;
     largest_lag_m = std::max(largest_lag_m, output.error.norm());
   }
@@ -143,7 +143,8 @@ TEST(WaitingReference, StaysWhereItIsWhenTheArmStartsAgain) {
   ControllerState state = controller.initialState();
   ControllerOutput output;
   for (int i = 0; i < 500; ++i)
-    controller.update(touches.next(state.q_desired), i * kPeriod_s, kPeriod_s, state, output);
+    controller.update(touches.next(state.q_desired), controller.initialGains(), i * kPeriod_s,
+                      kPeriod_s, state, output);
   state.waited_s = 1.25;
   state.fault = Fault::kTactileStale;
   const JointVector q = config.q_start + random.vector(7, -0.1, 0.1);
@@ -161,7 +162,7 @@ TEST(WaitingReference, StaysWhereItIsWhenTheArmStartsAgain) {
 
 TEST(WaitingReference, OfATaskWithoutTheKeyNeverWaits) {
   ControllerConfig config = railThatReaches(1e-9);
-  config.task.wait_beyond_m.reset();
+  config.gains.task.wait_beyond_m = kNoLimit;
   const Controller held(config);
   RailRun rail;
   for (int i = 0; i < 6000; ++i) {
@@ -179,8 +180,8 @@ class EventfulRun {
     do {
       config_ = test::fullController(random_, random_.integer(3, 9), Variant::kNullTask);
     } while (!hasPosition());
-    config_.task.wait_beyond_m = random_.logUniform(1e-4, 1e-2);
-    config_.task.max_return_speed_m_per_s = random_.logUniform(1e-3, 1e-1);
+    config_.gains.task.wait_beyond_m = random_.logUniform(1e-4, 1e-2);
+    config_.gains.task.max_return_speed_m_per_s = random_.logUniform(1e-3, 1e-1);
     config_.limits.max_velocity.setConstant(random_.logUniform(0.02, 1.0));
   }
 
@@ -233,7 +234,7 @@ TEST(WaitingReference, ClockNeverRunsBackwardsNorFasterThanTheTasks) {
     events.run(
         controller,
         [&](const RobotInput& input, double t_s, double period_s, ControllerState& state) {
-          controller.update(input, t_s, period_s, state, output);
+          controller.update(input, controller.initialGains(), t_s, period_s, state, output);
         },
         [&](double passed_s, const ControllerState& state) {
           const double passed_on_path_s = output.path_time_s - path_before_s;
@@ -261,16 +262,19 @@ TEST(WaitingReference, IsTheSameWhenPreparedAhead) {
         events.run(
             controller,
             [&](const RobotInput& input, double t_s, double period_s, ControllerState& state) {
-              if (is_prepared && !before_coasting) controller.prepare(t_s, state, prepared);
+              if (is_prepared && !before_coasting)
+                controller.prepare(controller.initialGains(), t_s, state, prepared);
               outputs[is_prepared].emplace_back();
               ControllerOutput& output = outputs[is_prepared].back();
               if (is_prepared) {
-                controller.update(input, t_s, period_s, prepared, state, output);
+                controller.update(input, controller.initialGains(), t_s, period_s, prepared, state,
+                                  output);
               } else {
-                controller.update(input, t_s, period_s, state, output);
+                controller.update(input, controller.initialGains(), t_s, period_s, state, output);
               }
               next_s = t_s + (state.is_stopping ? 0.0 : period_s);
-              if (is_prepared && before_coasting) controller.prepare(next_s, state, prepared);
+              if (is_prepared && before_coasting)
+                controller.prepare(controller.initialGains(), next_s, state, prepared);
             },
             [&](double, const ControllerState& state) {
               waited_s = std::max(waited_s, state.waited_s);
@@ -298,7 +302,7 @@ TEST(ReferenceRotation, IsThatOfThePathWhereverTheToolIs) {
     const Vector3 expected = rotationVector(X_BaseTool.R_AB);
     state.q_desired += random.vector(9, -0.5, 0.5);
     ControllerOutput output;
-    controller.update({}, 0.0, kPeriod_s, state, output);
+    controller.update({}, controller.initialGains(), 0.0, kPeriod_s, state, output);
     Vector3 sum = expected;
     for (int k = 0; k < 6; ++k) {
       const int component = config.task.components[k];

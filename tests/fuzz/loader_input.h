@@ -91,7 +91,8 @@ inline void run(const Scene& scene) {
   ControllerOutput output;
   for (int cycle = 0; cycle < 20; ++cycle) {
     robot.read(input);
-    controller.update(input, cycle * scene.period_s, scene.period_s, state, output);
+    controller.update(input, controller.initialGains(), cycle * scene.period_s, scene.period_s,
+                      state, output);
     if (!output.velocity.allFinite()) throw std::logic_error("a command that is not finite");
     robot.write(output.velocity);
   }

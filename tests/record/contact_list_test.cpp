@@ -17,9 +17,7 @@ constexpr double kRelease_N = 0.3;
 
 /// Forces of consecutive cycles of 10 ms, starting at t = 0.
 std::vector<ContactSummary> contactsOf(const std::vector<double>& forces_N, bool force_control) {
-  std::optional<ForceControlConfig> config;
-  if (force_control) config.emplace();
-  ContactList list(config, forces_N.size());
+  ContactList list(force_control, ForceGains(), forces_N.size());
   CycleRecord record;
   for (std::size_t i = 0; i < forces_N.size(); ++i) {
     record.t_s = 0.01 * static_cast<double>(i);
@@ -88,9 +86,7 @@ std::vector<ContactSummary> noisyContacts(const std::vector<std::pair<int, doubl
                                           bool force_control, double noise_N, int seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> noise(0.0, noise_N);
-  std::optional<ForceControlConfig> config;
-  if (force_control) config.emplace();
-  ContactList list(config, 0);
+  ContactList list(force_control, ForceGains(), 0);
   CycleRecord record;
   for (const double force_N : sequence(stretches)) {
     record.force_sensor_N = std::hypot(force_N + noise(random), noise(random));
@@ -120,10 +116,10 @@ TEST(ContactList, NoiseNeitherKeepsAContactNorMakesOneNorEndsOne) {
 }
 
 TEST(ContactList, EndsAtTheForceOfTheScene) {
-  ForceControlConfig config;
+  ForceGains gains;
   for (const auto& [release_N, count] : {std::pair{kRelease_N, 1u}, std::pair{0.75, 2u}}) {
-    config.transition.release_force_N = release_N;
-    ContactList list(config, 0);
+    gains.transition.release_force_N = release_N;
+    ContactList list(true, gains, 0);
     CycleRecord record;
     for (const double force_N : sequence({{20, 3.0}, {20, 0.7}, {20, 3.0}})) {
       record.force_sensor_N = force_N;

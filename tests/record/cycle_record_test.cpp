@@ -12,9 +12,9 @@
 namespace tactus {
 namespace {
 
-TEST(RecordFields, NameEveryWordOfARecordExactlyOnceInItsOrder) {
+TEST(RecordFields, NameEveryWordOfARecordButItsGainsExactlyOnceInItsOrder) {
   const auto columns = recordColumns({kMaxJoints, kMaxTaskSize, true});
-  ASSERT_EQ(columns.size() * 8, sizeof(CycleRecord));
+  ASSERT_EQ(columns.size() * 8, offsetof(CycleRecord, gains));
   for (std::size_t i = 0; i < columns.size(); ++i) EXPECT_EQ(columns[i].offset, 8 * i);
 }
 
@@ -110,11 +110,13 @@ TEST(RecordFields, RunsJoinOnlyWhereBothSidesContinue) {
 /// Every number of a cycle is another one, so that a mix-up shows.
 struct Cycle {
   RobotInput input;
+  Gains gains;
   ControllerOutput output;
   Vector3 tool_error{0.91, 0.92, 0.93};
 
   Cycle() {
     input.q_measured = JointVector::LinSpaced(3, 1.1, 1.3);
+    gains.force.damping = 9.1;
     input.tactile = {2.1, 2.2, 2.3, 2.4, 4000000000u};
     output.velocity = JointVector::LinSpaced(3, 3.1, 3.3);
     output.q_desired = JointVector::LinSpaced(3, 4.1, 4.3);
@@ -148,7 +150,7 @@ TEST(FillRecord, PutsEveryNumberInItsColumn) {
   record.read_ns = 7;
   record.write_ns = 8;
   record.missed_cycles = 9;
-  fillRecord(0.5, cycle.input, cycle.output, cycle.tool_error, record);
+  fillRecord(0.5, cycle.input, cycle.gains, cycle.output, cycle.tool_error, record);
   const std::vector<double> expected = {0.5,  8.01, 8.02, 8.03, 8.04, 8.05, 8.06, 8.07, 8.08, 8.09,
                                         8.10, 8.11, 8.12, 8.13, 8.14, 8.15, 8.16, 4.1,  4.2,  4.3,
                                         3.1,  3.2,  3.3,  5.1,  5.2,  6.1,  6.2,  7.1,  7.2,  2,
@@ -167,12 +169,13 @@ TEST(FillRecord, PutsEveryNumberInItsColumn) {
     if (columns[i].type == FieldType::kUint64) number = static_cast<double>(words[i]);
     EXPECT_NEAR(number, expected[i], 1e-14) << columns[i].name;
   }
+  EXPECT_TRUE(isSame(record.gains, cycle.gains));
 }
 
 TEST(RecordedInput, IsTheInputThatWasRecorded) {
   const Cycle cycle;
   CycleRecord record;
-  fillRecord(0.5, cycle.input, cycle.output, cycle.tool_error, record);
+  fillRecord(0.5, cycle.input, cycle.gains, cycle.output, cycle.tool_error, record);
   const RobotInput input = recordedInput(record, 3);
   EXPECT_EQ(input.q_measured, cycle.input.q_measured);
   EXPECT_EQ(input.tactile.force_y_N, 2.1);

@@ -31,8 +31,9 @@ std::vector<CycleRecord> record(const ControllerConfig& config, int cycles) {
   std::vector<CycleRecord> records(static_cast<std::size_t>(cycles));
   for (int i = 0; i < cycles; ++i) {
     const RobotInput input = touch(i);
-    controller.update(input, i * kPeriod_s, kPeriod_s, state, output);
-    fillRecord(i * kPeriod_s, input, output, Vector3(0.1, 0.2, 0.3), records[i]);
+    controller.update(input, controller.initialGains(), i * kPeriod_s, kPeriod_s, state, output);
+    fillRecord(i * kPeriod_s, input, controller.initialGains(), output, Vector3(0.1, 0.2, 0.3),
+               records[i]);
     records[i].step_ns = i;
     records[i].wake_latency_ns = -i;
   }
@@ -116,13 +117,14 @@ TEST(Replay, AChangedInputChangesTheOutputs) {
 TEST(Replay, WithAnotherSettingFindsTheLargestDifferences) {
   ControllerConfig config = test::crops9Controller(Variant::kNullSpace);
   const auto records = record(config, 1000);
-  config.force_control->time_constant_s = 0.2;
+  config.gains.force.time_constant_s = 0.2;
   const Controller controller(config);
   Replayer replayer(controller, kShape.joints, kPeriod_s);
   ReplayComparison comparison(kShape);
   double expected = 0.0;
   double expected_t_s = 0.0;
-  for (const CycleRecord& recorded : records) {
+  for (CycleRecord recorded : records) {
+    recorded.gains = config.gains;
     const CycleRecord replayed = replayer.replay(recorded);
     comparison.add(recorded, replayed);
     for (int i = 0; i < 9; ++i) {

@@ -48,8 +48,9 @@ class RunLogFiles : public ::testing::Test {
     LogDescription description = describeLog(scene_);
     description.infos.emplace_back("run", "0123456789abcdef");
     description.infos.emplace_back("part", "0");
-    scene_.log.max_bytes = static_cast<double>(logDefinitions(description).size() +
-                                               cycles * logBytesACycle(description.shape));
+    scene_.log.max_bytes =
+        static_cast<double>(logDefinitions(description).size() + logBytesOfGains() +
+                            cycles * logBytesACycle(description.shape));
   }
 
   static CycleRecord cycle(int index) {

@@ -33,8 +33,8 @@ TEST(Extends, MergesSectionsAndReplacesListsAndValues) {
       "controller: {damping: 0.9, variant: null_space}\n"
       "simulation: {obstacles: [{x_m: 1, y_m: 2, stiffness_N_per_m: 3}]}\n");
   EXPECT_EQ(scene.variant, "null_space");
-  EXPECT_EQ(scene.controller.force_control->damping, 0.9);
-  EXPECT_EQ(scene.controller.force_control->activation_force_N, 3.8);
+  EXPECT_EQ(scene.controller.gains.force.damping, 0.9);
+  EXPECT_EQ(scene.controller.gains.force.activation_force_N, 3.8);
   EXPECT_EQ(scene.duration_s, 13.0);
   ASSERT_EQ(scene.plant.obstacles.size(), 1u);
   EXPECT_EQ(scene.plant.obstacles[0].x_m, 1.0);
@@ -52,8 +52,8 @@ TEST(Extends, WhatWasRemovedCanComeBack) {
       loadScene(withBase({{"run.yaml", "extends: middle.yaml\nstiffness: {assumed_N_per_m: 5}\n"},
                           {"middle.yaml", "extends: base/base.yaml\nstiffness: ~\n"}}),
                 {});
-  EXPECT_EQ(scene.controller.force_control->assumed_stiffness_N_per_m, 5.0);
-  EXPECT_FALSE(scene.controller.force_control->estimator) << "removed with its section";
+  EXPECT_EQ(scene.controller.gains.force.assumed_stiffness_N_per_m, 5.0);
+  EXPECT_FALSE(scene.controller.force_control->has_estimator) << "removed with its section";
 }
 
 TEST(Extends, KeepsAllFilesInTheOrderOfTheirReading) {

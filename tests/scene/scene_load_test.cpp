@@ -29,7 +29,7 @@ TEST(SceneLoad, PutsEveryValueInItsPlace) {
   EXPECT_EQ(config.task.size, 2);
   EXPECT_EQ(config.task.components[0], 0);
   EXPECT_EQ(config.task.components[1], 1);
-  EXPECT_FALSE(config.joint_limit_avoidance);
+  EXPECT_FALSE(config.has_joint_limit_avoidance);
   ASSERT_EQ(config.task.trajectory.waypoints.size(), 1u);
   EXPECT_EQ(config.task.trajectory.waypoints[0].displacement_m, Vector3(0, 0.1, 0));
   EXPECT_EQ(config.task.trajectory.waypoints[0].speed_m_per_s, 0.05);
@@ -37,15 +37,15 @@ TEST(SceneLoad, PutsEveryValueInItsPlace) {
 }
 
 TEST(SceneLoad, PutsTheWayBackToThePathInItsPlace) {
-  const TaskConfig without = SceneFiles{}.load().controller.task;
-  EXPECT_FALSE(without.max_return_speed_m_per_s);
-  EXPECT_FALSE(without.max_return_speed_rad_per_s);
-  EXPECT_FALSE(without.wait_beyond_m);
-  const TaskConfig with = SceneFiles{}
-                              .load({{"task.max_return_speed_m_per_s", "0.25"},
-                                     {"task.max_return_speed_rad_per_s", "0.5"},
-                                     {"task.wait_beyond_m", "0.05"}})
-                              .controller.task;
+  const TaskGains without = SceneFiles{}.load().controller.gains.task;
+  EXPECT_EQ(without.max_return_speed_m_per_s, kNoLimit);
+  EXPECT_EQ(without.max_return_speed_rad_per_s, kNoLimit);
+  EXPECT_EQ(without.wait_beyond_m, kNoLimit);
+  const TaskGains with = SceneFiles{}
+                             .load({{"task.max_return_speed_m_per_s", "0.25"},
+                                    {"task.max_return_speed_rad_per_s", "0.5"},
+                                    {"task.wait_beyond_m", "0.05"}})
+                             .controller.gains.task;
   EXPECT_EQ(with.max_return_speed_m_per_s, 0.25);
   EXPECT_EQ(with.max_return_speed_rad_per_s, 0.5);
   EXPECT_EQ(with.wait_beyond_m, 0.05);
@@ -57,12 +57,13 @@ TEST(SceneLoad, PutsTheLawInItsPlace) {
   const ForceControlConfig& force = *scene.controller.force_control;
   EXPECT_EQ(force.variant, Variant::kNullTask);
   EXPECT_EQ(force.order, 2);
-  EXPECT_EQ(force.time_constant_s, 0.1);
-  EXPECT_EQ(force.activation_force_N, 3.8);
-  EXPECT_EQ(force.assumed_stiffness_N_per_m, 7000.0);
-  ASSERT_TRUE(force.estimator);
-  EXPECT_EQ(force.estimator->min_N_per_m, 20.0);
-  EXPECT_EQ(force.estimator->min_force_change_N, 0.2);
+  EXPECT_TRUE(force.has_estimator);
+  const ForceGains& gains = scene.controller.gains.force;
+  EXPECT_EQ(gains.time_constant_s, 0.1);
+  EXPECT_EQ(gains.activation_force_N, 3.8);
+  EXPECT_EQ(gains.assumed_stiffness_N_per_m, 7000.0);
+  EXPECT_EQ(gains.estimator.min_N_per_m, 20.0);
+  EXPECT_EQ(gains.estimator.min_force_change_N, 0.2);
 }
 
 TEST(SceneLoad, PutsThePlantInItsPlace) {
@@ -111,7 +112,7 @@ TEST(SceneLoad, LeavesOutWhatNoSectionNames) {
   EXPECT_TRUE(scene.controller.task.trajectory.waypoints.empty());
   EXPECT_FALSE(scene.controller.tactile_module);
   EXPECT_FALSE(scene.controller.force_control);
-  EXPECT_FALSE(scene.controller.joint_limit_avoidance);
+  EXPECT_FALSE(scene.controller.has_joint_limit_avoidance);
   EXPECT_EQ(stageNames(scene.controller),
             (std::vector<std::string>{"trajectory", "kinematics", "pseudoinverse", "limits",
                                       "telemetry"}));
@@ -149,8 +150,8 @@ TEST(SceneLoad, ExampleOfThePackageReturnsSlowlyAndWaits) {
     files.push_back({path, {std::istreambuf_iterator<char>(in), {}}});
   }
   const Scene scene = loadScene(files, {});
-  EXPECT_EQ(scene.controller.task.max_return_speed_m_per_s, 0.25);
-  EXPECT_EQ(scene.controller.task.wait_beyond_m, 0.05);
+  EXPECT_EQ(scene.controller.gains.task.max_return_speed_m_per_s, 0.25);
+  EXPECT_EQ(scene.controller.gains.task.wait_beyond_m, 0.05);
 }
 
 TEST(SceneLoad, WaypointsKeepTheirOrder) {
@@ -180,7 +181,7 @@ TEST(SceneLoad, AcceptsOnePlusSign) {
   files.scene = test::replaced(files.scene, "time_constant_s: 0.1", "time_constant_s: +0.25");
   files.urdf = test::replaced(files.urdf, "upper=\"0.5\"", "upper=\"+5e-1\"");
   const Scene scene = files.load({{"simulation.tactile_module.seed", "+7"}});
-  EXPECT_EQ(scene.controller.force_control->time_constant_s, 0.25);
+  EXPECT_EQ(scene.controller.gains.force.time_constant_s, 0.25);
   EXPECT_EQ(scene.controller.limits.upper[0], 0.5);
   EXPECT_EQ(scene.plant.module.seed, 7u);
 }
@@ -204,9 +205,9 @@ TEST(Override, MakesSectionsAndTheLastOneWins) {
   const Scene scene = SceneFiles{}.load({{"redundancy.joint_limit_avoidance.gain", "2"},
                                          {"controller.damping", "0.7"},
                                          {"controller.damping", "0.9"}});
-  ASSERT_TRUE(scene.controller.joint_limit_avoidance);
-  EXPECT_EQ(scene.controller.joint_limit_avoidance->gain, 2.0);
-  EXPECT_EQ(scene.controller.force_control->damping, 0.9);
+  ASSERT_TRUE(scene.controller.has_joint_limit_avoidance);
+  EXPECT_EQ(scene.controller.gains.joint_limit_avoidance.gain, 2.0);
+  EXPECT_EQ(scene.controller.gains.force.damping, 0.9);
   EXPECT_EQ(scene.overrides.size(), 3u);
 }
 
@@ -235,7 +236,7 @@ TEST(Override, OfTheRobotComesAfterItsPath) {
 
 TEST(Override, RemovesWithNull) {
   const Scene scene = SceneFiles{}.load({{"stiffness.estimate", "~"}, {"redundancy", "null"}});
-  EXPECT_FALSE(scene.controller.force_control->estimator);
+  EXPECT_FALSE(scene.controller.force_control->has_estimator);
   EXPECT_EQ(scene.controller.weights, Vector3::Ones());
 }
 

@@ -104,8 +104,8 @@ TEST_P(NoAllocation, InSingularPosesOfAnyRobot) {
     ControllerConfig config = test::fullController(random, count, GetParam());
     config.task.components = {0, 1, 2, 3, 4, 5};
     config.task.size = std::min(count, 6);
-    config.task.max_return_speed_m_per_s = config.task.max_return_speed_rad_per_s = 0.1;
-    config.task.wait_beyond_m = 0.01;
+    config.gains.task.max_return_speed_m_per_s = config.gains.task.max_return_speed_rad_per_s = 0.1;
+    config.gains.task.wait_beyond_m = 0.01;
     const Controller controller(config);
     for (int pose = 0; pose < 20; ++pose) {
       ControllerState state = controller.initialState();
@@ -116,7 +116,7 @@ TEST_P(NoAllocation, InSingularPosesOfAnyRobot) {
       for (int cycle = 0; cycle < 50; ++cycle) {
         const RobotInput input = touches.next(state.q_desired);
         AllocationGuard guard;
-        controller.update(input, cycle * 1e-3, 1e-3, state, output);
+        controller.update(input, controller.initialGains(), cycle * 1e-3, 1e-3, state, output);
       }
     }
   }
@@ -136,7 +136,7 @@ TEST_P(NoAllocation, WhileAFaultBringsTheArmToRest) {
     }
     if (cycle == 500) state.q_desired[0] = std::nan("");
     AllocationGuard guard;
-    controller.update(input, cycle * 1e-3, 1e-3, state, output);
+    controller.update(input, controller.initialGains(), cycle * 1e-3, 1e-3, state, output);
   }
   EXPECT_EQ(output.fault, Fault::kTactileInvalid);
 }
@@ -161,7 +161,8 @@ TEST(NoAllocationInPose, WhereTheTaskInverseIsDamped) {
   ControllerOutput output;
   for (int cycle = 0; cycle < 2000; ++cycle) {
     AllocationGuard guard;
-    controller.update({state.q_desired, {}}, cycle * 1e-3, 1e-3, state, output);
+    controller.update({state.q_desired, {}}, controller.initialGains(), cycle * 1e-3, 1e-3, state,
+                      output);
   }
   EXPECT_LT((output.w_d - output.w).norm(), 0.05);
 }

@@ -61,7 +61,8 @@ TEST_P(FollowsReference, CycleByCycle) {
   double joint_difference = 0.0;
   for (int cycle = 0; cycle < 10 * kRowsInFile; ++cycle) {
     robot.read(input);
-    controller.update(input, cycle * kPeriod_s, kPeriod_s, state, output);
+    controller.update(input, controller.initialGains(), cycle * kPeriod_s, kPeriod_s, state,
+                      output);
     robot.write(output.velocity);
     if (cycle % 10 != 0) continue;
     const ReferenceRow& row = reference[cycle / 10];

@@ -66,7 +66,7 @@ class ReturnToPath : public testing::TestWithParam<Variant> {
 TEST_P(ReturnToPath, IsNoFasterThanItsKey) {
   for (const double cap_m_per_s : {0.25, 0.05}) {
     ControllerConfig capped = config();
-    capped.task.max_return_speed_m_per_s = cap_m_per_s;
+    capped.gains.task.max_return_speed_m_per_s = cap_m_per_s;
     ClosedLoop loop(capped, vanishingObstacles(vanishes_s()), kPeriod_s);
     runTool(loop, vanishes_s());
     const ToolRun run = runTool(loop, 20.0);
@@ -96,7 +96,7 @@ TEST_P(ReturnToPath, LeavesTheContactAsItIs) {
   ASSERT_GT(free.peak_force_N, 1.2);
   for (const double cap_m_per_s : {0.25, 0.1, 0.05}) {
     ControllerConfig capped = config();
-    capped.task.max_return_speed_m_per_s = cap_m_per_s;
+    capped.gains.task.max_return_speed_m_per_s = cap_m_per_s;
     ClosedLoop capped_loop(capped, test::crops9Plant(test::scenario2()), kPeriod_s);
     const ToolRun run = runTool(capped_loop, duration_s);
     EXPECT_LE(run.peak_force_N, 1.01 * free.peak_force_N) << cap_m_per_s;
@@ -110,8 +110,8 @@ TEST_P(ReturnToPath, LeavesTheContactAsItIs) {
 TEST_P(ReturnToPath, CompletesAPathThatWaitedForIt) {
   constexpr double kWait_m = 0.02;
   ControllerConfig waiting = config();
-  waiting.task.wait_beyond_m = kWait_m;
-  waiting.task.max_return_speed_m_per_s = 0.25;
+  waiting.gains.task.wait_beyond_m = kWait_m;
+  waiting.gains.task.max_return_speed_m_per_s = 0.25;
   ClosedLoop loop(waiting, vanishingObstacles(vanishes_s()), kPeriod_s);
   loop.step();
   const double start_m = loop.output().w_d[1];

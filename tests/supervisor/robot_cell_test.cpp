@@ -49,7 +49,7 @@ TEST_P(SceneOnBuses, HasTheForcesOfTheSimulation) {
   const test::TemporaryFile log(GetParam());
   const RunFigures expected = simulate(scene, log.path(), [](double) {}).figures;
   const auto& force_control = scene.controller.force_control;
-  const bool is_estimated = force_control && force_control->estimator;
+  const bool is_estimated = force_control && force_control->has_estimator;
   const double share = is_estimated ? 0.035 : 0.005;
   for (int phase = 0; phase < (is_estimated ? kPhases : 1); ++phase) {
     const RunFigures figures = runOnBuses(scene, phase, 13000);

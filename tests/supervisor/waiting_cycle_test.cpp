@@ -20,8 +20,8 @@ Scene tooFastForItsJoints() {
   Scene scene = test::shippedScene("scenario1_null_space", {{"simulation.obstacles", "[]"}});
   scene.hardware->gpio.emplace();
   scene.hardware->gpio->enable.emplace();
-  scene.controller.task.wait_beyond_m = kWaitBeyond_m;
-  scene.controller.task.max_return_speed_m_per_s = 0.25;
+  scene.controller.gains.task.wait_beyond_m = kWaitBeyond_m;
+  scene.controller.gains.task.max_return_speed_m_per_s = 0.25;
   scene.controller.task.trajectory.waypoints[0].speed_m_per_s = 0.3;
   scene.controller.limits.max_velocity.setConstant(0.05);
   return scene;

@@ -17,7 +17,8 @@ class ClosedLoop {
 
   void step() noexcept {
     robot_.read(input_);
-    controller_.update(input_, static_cast<double>(cycle_) * period_s_, period_s_, state_, output_);
+    controller_.update(input_, controller_.initialGains(), static_cast<double>(cycle_) * period_s_,
+                       period_s_, state_, output_);
     robot_.write(output_.velocity);
     ++cycle_;
   }

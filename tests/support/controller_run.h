@@ -80,10 +80,10 @@ inline ControllerConfig fullController(Random& random, int count, Variant varian
   config.limits.lower = -config.limits.upper;
   config.limits.max_velocity = JointVector::Constant(count, 3.0);
   config.limits.max_acceleration = JointVector::Constant(count, 50.0);
-  config.joint_limit_avoidance.emplace();
+  config.has_joint_limit_avoidance = true;
   config.force_control.emplace();
   config.force_control->variant = variant;
-  config.force_control->estimator.emplace();
+  config.force_control->has_estimator = true;
   Waypoint there;
   there.displacement_m = random.vector<Vector3>(3, -0.2, 0.2);
   there.rotation_vector_rad = random.vector<Vector3>(3, -0.2, 0.2);
@@ -101,7 +101,8 @@ inline std::vector<RecordedCycle> record(const Controller& controller, Random& r
     cycle.period_s = 0.001;
     cycle.t_s = t_s;
     cycle.input = touches.next(state.q_desired);
-    controller.update(cycle.input, t_s, cycle.period_s, state, cycle.output);
+    controller.update(cycle.input, controller.initialGains(), t_s, cycle.period_s, state,
+                      cycle.output);
     t_s += cycle.period_s;
   }
   return run;

@@ -43,7 +43,7 @@ inline ControllerConfig crops9Controller() {
   line.speed_m_per_s = 0.0537;
   config.task.trajectory.waypoints = {line};
   config.weights = JointVector::Ones(9);
-  config.joint_limit_avoidance.emplace();
+  config.has_joint_limit_avoidance = true;
   return config;
 }
 
@@ -55,7 +55,7 @@ inline ControllerConfig crops9Controller(Variant variant, bool estimated = false
   config.tactile_module->length_m = 0.38;
   config.force_control.emplace();
   config.force_control->variant = variant;
-  if (estimated) config.force_control->estimator.emplace();
+  config.force_control->has_estimator = estimated;
   return config;
 }
 

@@ -27,14 +27,14 @@ inline ControllerConfig railController(Variant variant) {
   config.limits = noLimits(2);
   config.task.components = {1};
   config.task.size = 1;
-  config.task.drift_gain_per_s = 0.0;
+  config.gains.task.drift_gain_per_s = 0.0;
   config.weights = JointVector::Ones(2);
   config.tactile_module.emplace();
   config.tactile_module->link.joint = 0;
   config.tactile_module->length_m = 1.0;
   config.force_control.emplace();
   config.force_control->variant = variant;
-  config.force_control->contact_threshold_N = 0.0;
+  config.gains.force.contact_threshold_N = 0.0;
   return config;
 }
 

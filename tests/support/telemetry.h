@@ -47,7 +47,7 @@ class TemporaryFile {
   std::string path_;
 };
 
-/// Any bits: NaNs with payload, denormals, negative zeros, infinities.
+/// Any bits: NaNs with payload, denormals, negative zeros, infinities; the gains are as always.
 inline CycleRecord randomRecord(std::mt19937_64& random) {
   CycleRecord record;
   const std::uint64_t special[] = {0x8000000000000000, 1,
@@ -55,7 +55,7 @@ inline CycleRecord randomRecord(std::mt19937_64& random) {
                                    0x7ff0000000000001, 0xfff8dead0000beef,
                                    0x000fffffffffffff};
   char* const bytes = reinterpret_cast<char*>(&record);
-  for (std::size_t offset = 0; offset < sizeof(record); offset += 8) {
+  for (std::size_t offset = 0; offset < offsetof(CycleRecord, gains); offset += 8) {
     const std::uint64_t word = random() % 4 == 0 ? special[random() % 7] : random();
     std::memcpy(bytes + offset, &word, 8);
   }

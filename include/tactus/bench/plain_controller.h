@@ -69,8 +69,7 @@ class PlainController {
   Trajectory trajectory_;
   CommandLimiter limiter_;
   JointLimitAvoidance joint_limits_;
-  std::optional<ContactTransition> transition_;
-  std::optional<StiffnessEstimator> estimator_;
+  JointLimitZones zones_;
   std::optional<ControlLaw> law_;
 };
 

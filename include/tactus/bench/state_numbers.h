@@ -7,7 +7,8 @@ namespace tactus {
 /// Calls visit(name, index, value) for every number that a controller remembers from one cycle to
 /// the next; index is that of a joint or an axis, 0 for a single number. Each struct is taken apart
 /// as a whole, so that a member added to one of them does not compile before it is visited here.
-/// Left out are sample_sequence, which counts, and what is no number.
+/// Left out are sample_sequence, which counts, what is no number, and
+/// what only spares computing it again.
 template <typename Visit>
 void visitNumbers(const ControllerState& state, const Visit& visit) {
   const auto list = [&visit](const char* name, const auto& values) {
@@ -21,8 +22,8 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
     list(direction_name, direction);
   };
   const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
-               sample_sequence, sample_age_s, sample_fault, sample_detail, contact_point, contact] =
-      state;
+               sample_sequence, sample_age_s, sample_fault, sample_detail, contact_point, contact,
+               zones] = state;
   visit("waited_s", 0, waited_s);
   visit("progress", 0, progress);
   visit("return_share", 0, return_share);
@@ -31,7 +32,7 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
   visit("sample_age_s", 0, sample_age_s);
   point("force_N", "position_m", "direction", contact_point);
 
-  const auto& [held_point, push, transition, joint_space, estimator, approach, law, cut,
+  const auto& [held_point, push, has_push, transition, joint_space, estimator, approach, law, cut,
                is_resting] = contact;
   point("held.force_N", "held.position_m", "held.direction", held_point);
   list("push", push);
@@ -40,21 +41,24 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
   list("transition.p_lost", p_lost);
   visit("transition.gamma", 0, gamma);
 
-  const auto& [touching, joint_gamma, kappa, has_rested, joint_p_lost, joint_contact] = joint_space;
+  const auto& [touching, joint_gamma, kappa, has_rested, joint_p_lost, joint_contact, response,
+               fade] = joint_space;
   visit("joint_space.gamma", 0, joint_gamma);
   visit("joint_space.kappa", 0, kappa);
   list("joint_space.p_lost", joint_p_lost);
   point("joint_space.force_N", "joint_space.position_m", "joint_space.direction", joint_contact);
 
-  const auto& [stiffness, stiffness_raw, x_int_m, v_prev, F_prev] = estimator;
+  const auto& [stiffness, stiffness_raw, x_int_m, v_prev, F_prev, filter] = estimator;
   visit("estimator.stiffness", 0, stiffness);
   visit("estimator.stiffness_raw", 0, stiffness_raw);
   visit("estimator.x_int", 0, x_int_m);
   visit("estimator.v_prev", 0, v_prev);
   visit("estimator.F_prev", 0, F_prev);
 
-  const auto& [smoother, position, approach_estimator, memory, way_ahead, is_limiting] = approach;
-  const auto& [significant, before, two_before, peak, weight, X_BaseModule, smooth] = smoother;
+  const auto& [smoother, position, approach_estimator, memory, way_ahead, is_limiting,
+               memory_fade] = approach;
+  const auto& [significant, before, two_before, peak, weight, X_BaseModule, smooth, ringing,
+               smoothing] = smoother;
   visit("smoother.significant", 0, significant);
   list("smoother.force_before", before);
   list("smoother.force_two_before", two_before);
@@ -73,7 +77,7 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
   list("sensed.s2", s2);
   list("sensed.sensed", sensed);
   list("sensed.sensed_before", sensed_before);
-  const auto& [c, r, x_m, F_ref, F_before] = approach_estimator;
+  const auto& [c, r, x_m, F_ref, F_before, falling, forgetting] = approach_estimator;
   visit("approach.c", 0, c);
   visit("approach.r", 0, r);
   visit("approach.x", 0, x_m);
@@ -82,7 +86,7 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
   visit("approach.memory", 0, memory);
   visit("approach.way_ahead", 0, way_ahead);
 
-  const auto& [V, It] = law;
+  const auto& [V, It, null_speed] = law;
   visit("law.V", 0, V);
   visit("law.It", 0, It);
 }

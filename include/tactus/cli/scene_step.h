@@ -18,6 +18,7 @@ class SceneStep {
   void restart() noexcept;
 
   Controller controller_;
+  Gains gains_;
   SimulatedRobot fresh_robot_, robot_;
   double period_s_;
   long long cycles_a_run_;

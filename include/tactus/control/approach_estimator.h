@@ -1,15 +1,17 @@
 #pragma once
 
-#include "tactus/control/controller_config.h"
+#include "tactus/control/gains.h"
+#include "tactus/math/filter.h"
 
 namespace tactus {
 
 struct ApproachEstimatorState {
-  double stiffness_N_per_m = 0.0;      ///< c; c_0 at first
+  double stiffness_N_per_m = 0.0;      ///< c; to be set to c_0 at first
   double stiffness_raw_N_per_m = 0.0;  ///< r: the newest quotient; likewise
   double x_m = 0.0;                    ///< way since F_ref, as sensed; > 0 towards the obstacle
   double F_ref_N = 0.0;
   double F_before_N = 0.0;  ///< F_p of the newest sample
+  KnownLagShare filter, forgetting;
 };
 
 /// A force sample in contact, and the way that led to it.
@@ -35,29 +37,11 @@ struct ApproachSample {
 ///   force against the way by more than F_min:  re-armed
 /// r is clamped to its range. Without contact x = F_ref = 0, and c returns to c_0 with T_c.
 // clang-format on
-class ApproachEstimator {
- public:
-  ApproachEstimator(const StiffnessEstimatorConfig& config, double assumed_stiffness_N_per_m,
-                    double activation_force_N)
-      : config_(config),
-        assumed_N_per_m_(assumed_stiffness_N_per_m),
-        far_from_activation_N_(0.5 * activation_force_N) {}
+void estimateInContact(const ForceGains& gains, const ApproachSample& sample,
+                       ApproachEstimatorState& state) noexcept;
 
-  void touch(const ApproachSample& sample, ApproachEstimatorState& state) const noexcept;
-
-  /// A cycle without contact.
-  void release(double period_s, ApproachEstimatorState& state) const noexcept;
-
- private:
-  void load(const ApproachSample& sample, ApproachEstimatorState& state) const noexcept;
-  void unload(const ApproachSample& sample, ApproachEstimatorState& state) const noexcept;
-  /// r = stiffness, clamped; c falls towards it for falling_s.
-  void learn(double stiffness_N_per_m, double falling_s,
-             ApproachEstimatorState& state) const noexcept;
-
-  StiffnessEstimatorConfig config_;
-  double assumed_N_per_m_;
-  double far_from_activation_N_;
-};
+/// A cycle without contact.
+void forgetContact(const ForceGains& gains, double period_s,
+                   ApproachEstimatorState& state) noexcept;
 
 }  // namespace tactus

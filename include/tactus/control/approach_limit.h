@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "tactus/control/approach_estimator.h"
 #include "tactus/control/contact_smoother.h"
 #include "tactus/control/sensed_position.h"
@@ -15,6 +13,7 @@ struct ApproachLimitState {
   double memory_N_per_m = 0.0;  ///< m; 0: no limit
   double way_ahead_m = 0.0;     ///< e
   bool is_limiting = false;     ///< the residual motion was cut in the last cycle
+  KnownLagShare fade;           ///< of m
 };
 
 // clang-format off: equations
@@ -38,24 +37,25 @@ class ApproachLimit {
   ApproachLimitState initialState() const noexcept;
 
   /// Takes over a new reading of the sensor; the contact to use is state.smoother.contact.
-  void follow(const ContactPointState& sensor, const Pose& X_BaseModule,
+  void follow(const ForceGains& gains, const ContactPointState& sensor, const Pose& X_BaseModule,
               ApproachLimitState& state) const noexcept;
 
   /// a: J_p^T F^ of that contact; q_desired: at the start of the cycle.
-  void observe(const JointVector& a, double F_p_N, const JointVector& q_desired, double period_s,
+  void observe(const ForceGains& gains, const JointVector& a, double F_p_N,
+               const JointVector& q_desired, double period_s,
                ApproachLimitState& state) const noexcept;
 
   /// min(0, v_res + v_max), m/s; after observe().
-  double excess(double F_p_N, double v_res_m_per_s, ApproachLimitState& state) const noexcept;
-
- private:
-  void estimate(const JointVector& a, double F_p_N, double period_s,
+  double excess(const ForceGains& gains, double F_p_N, double v_res_m_per_s,
                 ApproachLimitState& state) const noexcept;
 
-  ForceControlConfig config_;
+ private:
+  void estimate(const ForceGains& gains, const JointVector& a, double F_p_N, double period_s,
+                ApproachLimitState& state) const noexcept;
+
+  bool has_estimator_;
   ContactSmoother smoother_;
   SensedPosition position_;
-  std::optional<ApproachEstimator> estimator_;
 };
 
 }  // namespace tactus

@@ -29,8 +29,10 @@ struct ContactReport {
 
 struct ContactControllerState {
   ContactPointState contact;  ///< with a return speed: held at where it was lost
-  /// With a return speed, multi-space only (else empty): how fast the law moved the tool at last.
+  /// Multi-space only (else empty): how fast the law moved the tool at last; zero without a return
+  /// speed, which alone asks.
   TaskVector push;
+  bool has_push = false;  ///< it may be other than zero
   ContactTransitionState transition;
   JointSpaceTransitionState joint_space_transition;  ///< instead, for joint space
   StiffnessEstimatorState estimator;
@@ -58,7 +60,7 @@ class ContactController {
   ContactControllerState initialState() const;
 
   /// sensor: the newest contact point. Fills the report from force_contact_N on.
-  void update(const TaskKinematics& kinematics, const ContactPointState& sensor,
+  void update(const Gains& gains, const TaskKinematics& kinematics, const ContactPointState& sensor,
               const CommandedMotion& commanded, double period_s, ContactControllerState& state,
               ContactReport& report, Motion& motion) const noexcept;
 
@@ -66,35 +68,36 @@ class ContactController {
   struct Contact;
 
   /// The contact that the law uses: as read, or smoothed by a stage.
-  const ContactPointState& follow(const ContactPointState& sensor, const TaskKinematics& kinematics,
+  const ContactPointState& follow(const Gains& gains, const ContactPointState& sensor,
+                                  const TaskKinematics& kinematics,
                                   const CommandedMotion& commanded, double period_s,
                                   ContactControllerState& state) const noexcept;
-  void rest(const Contact& contact, double period_s, ContactControllerState& state,
-            ContactReport& report, ControlLawInput& input) const noexcept;
-  void goOn(const Contact& contact, const ContactPointState& point,
-            ContactControllerState& state) const noexcept;
-  const ContactPointState& holdLost(const ContactPointState& sensor,
-                                    ContactControllerState& state) const noexcept;
+  void estimate(const ForceGains& gains, const Contact& contact, const CommandedMotion& commanded,
+                double period_s, ContactControllerState& state, ContactReport& report,
+                ControlLawInput& input) const noexcept;
+  void rest(const ForceGains& gains, const Contact& contact, double period_s,
+            ContactControllerState& state, ContactReport& report,
+            ControlLawInput& input) const noexcept;
   Contact locate(const TaskKinematics& kinematics, const ContactPointState& point) const noexcept;
-  void passTransition(const Contact& contact, double period_s, ContactControllerState& state,
-                      ContactReport& report, ControlLawInput& input) const noexcept;
-  void passJointSpaceTransition(const TaskKinematics& kinematics, const Contact& contact,
-                                double return_share, double period_s, ContactControllerState& state,
-                                ContactReport& report, ControlLawInput& input,
-                                Motion& motion) const noexcept;
+  void passContact(const ForceGains& gains, const Contact& contact, double period_s,
+                   ContactControllerState& state, ContactReport& report,
+                   ControlLawInput& input) const noexcept;
+  void passJointSpaceContact(const Gains& gains, const TaskKinematics& kinematics,
+                             const Contact& contact, double return_share, double period_s,
+                             ContactControllerState& state, ContactReport& report,
+                             ControlLawInput& input, Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
-  TaskVector pull(const TaskVector& error) const noexcept;
+  TaskVector pull(const Gains& gains, const TaskVector& error) const noexcept;
 
   SerialChain chain_;
   AttachedFrame link_;
   double initial_position_m_;
   TaskConfig task_;
-  ForceControlConfig config_;
+  bool is_joint_space_;
+  bool is_multi_space_;
+  bool has_estimator_;
   ScaledVector inv_sqrt_weights_;
   ControlLaw law_;
-  std::optional<ContactTransition> transition_;
-  std::optional<JointSpaceTransition> joint_space_transition_;
-  std::optional<StiffnessEstimator> estimator_;
   std::optional<ApproachLimit> approach_limit_;
 };
 

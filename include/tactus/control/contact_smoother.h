@@ -2,11 +2,12 @@
 
 #include "tactus/control/contact_point.h"
 #include "tactus/control/controller_config.h"
+#include "tactus/math/filter.h"
 
 namespace tactus {
 
 struct ContactSmootherState {
-  /// 6 sigma of the force's noise: a smaller change means nothing. N
+  /// 6 sigma of the force's noise: a smaller change means nothing; 0: no sample yet. N
   double significant_N = 0.0;
   Vector3 force_before_N = Vector3::Zero();      ///< of the newest sample
   Vector3 force_two_before_N = Vector3::Zero();  ///< and of the one before it
@@ -14,6 +15,7 @@ struct ContactSmootherState {
   double weight = 0.0;                           ///< sum of the weights of all samples, N^2
   Pose X_BaseModule;                             ///< at the newest sample
   ContactPointState contact;  ///< force as read, but for rebounds; point and direction smooth
+  KnownLagShare ringing, smoothing;
 };
 
 // clang-format off: equations
@@ -36,23 +38,19 @@ struct ContactSmootherState {
 // clang-format on
 class ContactSmoother {
  public:
-  /// min_significant_N: s_min; contact_threshold_N: F_th.
-  ContactSmoother(double min_significant_N, double contact_threshold_N,
-                  const TactileModuleConfig& module);
+  explicit ContactSmoother(const TactileModuleConfig& module);
 
   ContactSmootherState initialState() const noexcept;
 
-  /// Takes over a new reading of the sensor; the result is state.contact.
-  void update(const ContactPointState& sensor, const Pose& X_BaseModule,
+  /// Takes over a new reading of the sensor; the result is state.contact. Of the gains, s_min is
+  /// estimator.min_force_change_N.
+  void update(const ForceGains& gains, const ContactPointState& sensor, const Pose& X_BaseModule,
               ContactSmootherState& state) const noexcept;
 
  private:
   /// Keeps the peak, too.
   bool isRebound(const ContactPointState& sensor, ContactSmootherState& state) const noexcept;
-  void learnNoise(const Vector3& force_N, ContactSmootherState& state) const noexcept;
 
-  double min_significant_N_;
-  double contact_threshold_N_;
   double half_length_m_;
   double ringing_s_;
 };

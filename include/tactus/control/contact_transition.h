@@ -1,6 +1,7 @@
 #pragma once
 
-#include "tactus/control/controller_config.h"
+#include "tactus/control/gains.h"
+#include "tactus/math/types.h"
 
 namespace tactus {
 
@@ -15,16 +16,9 @@ struct ContactTransitionState {
 ///   delta = |p - p_lost|,   g = max(0, 1 - delta / d_t),   T_t = T_t,max g
 ///   without contact:  gamma goes to g, and the integral V to zero, with time constant T_t
 ///   in contact:       gamma = 1, reached over F_p = 0 .. engage_force_N
-class ContactTransition {
- public:
-  explicit ContactTransition(const ContactTransitionConfig& config) : config_(config) {}
-
-  /// Returns the factor by which the integral V decays in this cycle (1 in contact).
-  double update(double F_p_N, const Vector3& p_BaseContact, double period_s,
-                ContactTransitionState& state) const noexcept;
-
- private:
-  ContactTransitionConfig config_;
-};
+/// Returns the factor by which the integral V decays in this cycle (1 in contact).
+double passTransition(const ContactTransitionGains& gains, double F_p_N,
+                      const Vector3& p_BaseContact, double period_s,
+                      ContactTransitionState& state) noexcept;
 
 }  // namespace tactus

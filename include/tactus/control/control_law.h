@@ -1,13 +1,22 @@
 #pragma once
 
+#include <array>
+
 #include "tactus/control/controller_config.h"
 #include "tactus/math/contact_space.h"
 
 namespace tactus {
 
+/// 1 / (W^1/2 limit) of each joint, for a_scaled u_n; zero beyond the robot's joints.
+struct NullSpeedLimits {
+  double max_speed_m_per_s = 0.0, max_speed_rad_per_s = 0.0;  ///< that this follows from
+  ScaledVector inverse = ScaledVector::Zero();
+};
+
 struct ControlLawState {
   double V_m_per_s = 0.0;   ///< integral of (5), stored as int F_p / (T^2 c) dt
   double It_m_per_s = 0.0;  ///< windowed integral of (7), stored likewise; 0 without a second space
+  NullSpeedLimits null_speed;
 };
 
 struct ControlLawInput {
@@ -43,27 +52,24 @@ class ControlLaw {
   ControlLaw(const ForceControlConfig& config, const SerialChain& chain,
              const ScaledVector& inv_sqrt_weights);
 
-  void update(const ControlLawInput& input, const ContactSpace& space, double period_s,
-              ControlLawState& state, ControlLawOutput& output) const noexcept;
+  void update(const ForceGains& gains, const ControlLawInput& input, const ContactSpace& space,
+              double period_s, ControlLawState& state, ControlLawOutput& output) const noexcept;
 
   /// The factor of at most 1 that keeps every component of a scaled velocity within the null-space
   /// speed limits.
-  double speedShare(const ScaledVector& v_scaled) const noexcept;
+  double speedShare(const ForceGains& gains, const ScaledVector& v_scaled,
+                    NullSpeedLimits& limits) const noexcept;
 
  private:
-  /// x_ff - P F_p - V, m/s.
-  double singleSpace(const ControlLawInput& input, const ControlLawState& state) const noexcept;
-  /// -max(0, P (F_p - F_act) + I), m/s.
-  double secondSpace(const ControlLawInput& input, const ControlLawState& state) const noexcept;
-  double proportionalGain(double stiffness_N_per_m) const noexcept;
-  /// Adds a change to V or I as far as the above lets it.
-  void integrate(double change_m_per_s, const ControlLawInput& input, double period_s,
-                 double& integral_m_per_s) const noexcept;
+  NullSpeedLimits limits(const ForceGains& gains) const noexcept;
+  double proportionalGain(const ForceGains& gains, double stiffness_N_per_m) const noexcept;
 
-  ForceControlConfig config_;
+  Variant variant_;
+  int order_;
   bool has_null_space_;
   bool has_second_space_;
-  ScaledVector inv_max_null_speed_;  ///< 1 / (W^1/2 limit), for a_scaled u_n
+  ScaledVector inv_sqrt_weights_;
+  std::array<bool, kMaxJoints> is_prismatic_{};
 };
 
 }  // namespace tactus

@@ -42,6 +42,7 @@ struct ControllerState {
   FaultDetail sample_detail;          ///< of that fault, or of a sample too old
   ContactPointState contact_point;
   ContactControllerState contact;
+  JointLimitZones zones;  ///< of the last gains
 };
 
 /// The part of a cycle that needs no sensor: kinematics, factorisation and joint-limit cost of the
@@ -52,6 +53,8 @@ struct PreparedCycle {
   JointVector q_desired;  ///< and this configuration
   TaskVector push;        ///< and this push of the law, see TaskConfig
   double return_share = 1.0;
+  TaskGains task_gains;  ///< and these gains
+  JointLimitAvoidanceGains limit_gains;
   TaskKinematics kinematics;
   Motion motion;  ///< of task and joint limits, without contact
   TaskVector w, w_d_dot;
@@ -60,10 +63,13 @@ struct PreparedCycle {
 };
 
 /// One cycle of the paper: kinematics of the desired configuration, contact, law and limits. The
-/// output is a pure function of config, state, input, time and period, to the bit.
+/// output is a pure function of structure, state, input, gains, time and period, to the bit.
 class Controller {
  public:
   explicit Controller(const ControllerConfig& config);
+
+  /// The config's, for whoever does not tune.
+  const Gains& initialGains() const noexcept { return config_.gains; }
 
   ControllerState initialState() const { return initialState(config_.q_start); }
   /// For an arm that stands at q, near the configured start, m or rad.
@@ -86,29 +92,34 @@ class Controller {
   /// its progress.
   void coast(int missed_cycles, double period_s, ControllerState& state) const noexcept;
 
-  /// One cycle. t_s: the task's time, which goes on by period_s > 0 to the next cycle, or stands
-  /// still while state.is_stopping.
-  void update(const RobotInput& input, double t_s, double period_s, ControllerState& state,
-              ControllerOutput& output) const noexcept;
-
-  /// Does ahead what update() will need at t_s if the state is still the same then.
-  void prepare(double t_s, const ControllerState& state, PreparedCycle& prepared) const noexcept;
-
-  /// The same to the bit, but takes what is prepared, if it is for this time and state, and uses it
-  /// up. Between sensor and command only the contact is left to compute.
-  void update(const RobotInput& input, double t_s, double period_s, PreparedCycle& prepared,
+  /// One cycle. gains: any, another one each cycle if need be; t_s: the task's time, which goes on
+  /// by period_s > 0 to the next cycle, or stands still while state.is_stopping.
+  void update(const RobotInput& input, const Gains& gains, double t_s, double period_s,
               ControllerState& state, ControllerOutput& output) const noexcept;
 
+  /// Does ahead what update() will need at t_s if state and gains are still the same then. Of the
+  /// state changes only what is known of the gains.
+  void prepare(const Gains& gains, double t_s, ControllerState& state,
+               PreparedCycle& prepared) const noexcept;
+
+  /// The same to the bit, but takes what is prepared, if it is for this time, state and gains, and
+  /// uses it up. Between sensor and command only the contact is left to compute.
+  void update(const RobotInput& input, const Gains& gains, double t_s, double period_s,
+              PreparedCycle& prepared, ControllerState& state,
+              ControllerOutput& output) const noexcept;
+
  private:
-  void computeMotion(double path_time_s, const ControllerState& state,
+  void computeMotion(const Gains& gains, double path_time_s, ControllerState& state,
                      PreparedCycle& prepared) const noexcept;
-  void respond(const RobotInput& input, double period_s, PreparedCycle& prepared,
-               ControllerState& state, ControllerOutput& output) const noexcept;
+  void respond(const RobotInput& input, const Gains& gains, double period_s,
+               PreparedCycle& prepared, ControllerState& state,
+               ControllerOutput& output) const noexcept;
   void computeKinematics(double path_time_s, const ControllerState& state,
                          PreparedCycle& prepared) const noexcept;
-  void computeTaskMotion(const ControllerState& state, PreparedCycle& prepared) const noexcept;
-  void avoidJointLimits(const TaskKinematics& kinematics, const ControllerState& state,
-                        Motion& motion) const noexcept;
+  void computeTaskMotion(const TaskGains& gains, const ControllerState& state,
+                         PreparedCycle& prepared) const noexcept;
+  void avoidJointLimits(const JointLimitAvoidanceGains& gains, const TaskKinematics& kinematics,
+                        ControllerState& state, Motion& motion) const noexcept;
   Fault readTactileModule(const RobotInput& input, double period_s,
                           ControllerState& state) const noexcept;
   FaultDetail notFinite(const Motion& motion) const noexcept;

@@ -1,18 +1,17 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <optional>
 
+#include "tactus/control/gains.h"
 #include "tactus/math/serial_chain.h"
 #include "tactus/math/trajectory.h"
 #include "tactus/math/types.h"
 
-/// Everything a controller is told before it starts. A stage whose section is absent
-/// (std::nullopt) does not exist: it costs nothing and keeps no state.
+/// What a controller is told before it starts and cannot change while it runs: its structure. A
+/// stage that is absent here does not exist: it costs nothing and keeps no state. Numbers to be
+/// tuned are in gains.h.
 namespace tactus {
-
-inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 /// Limits of the last gate, one entry a joint; +-kNoLimit where there is none.
 struct JointLimits {
@@ -21,8 +20,8 @@ struct JointLimits {
   JointVector max_acceleration;  ///< m/s^2 or rad/s^2, > 0
 };
 
-/// What the tool shall do. After a contact, optional keys say how it gets back to its path; e, v
-/// and p below have the task's components alone.
+/// What the tool shall do. After a contact, TaskGains say how it gets back to its path; e, v and p
+/// below have the task's components alone.
 ///   Return speed, of position and of rotation each by itself: the correction v = beta (w_d - w) of
 ///   (2) becomes
 ///     v min(1, max(0, v_max - p v / |v|) / |v|)
@@ -38,19 +37,7 @@ struct JointLimits {
 struct TaskConfig {
   std::array<int, kMaxTaskSize> components{};  ///< 0..5: x, y, z, rx, ry, rz of the tool
   int size = 0;
-  double drift_gain_per_s = 5.0;                     ///< beta in (2)
-  std::optional<double> max_return_speed_m_per_s;    ///< v_max of position, > 0
-  std::optional<double> max_return_speed_rad_per_s;  ///< v_max of rotation, > 0
-  std::optional<double> wait_beyond_m;               ///< > 0
   TrajectoryConfig trajectory;
-};
-
-/// dH/dq_i of (1): zero in the middle of the range, rising linearly over the outer
-/// `active_fraction` of each half range to `gradient_at_limit`.
-struct JointLimitAvoidanceConfig {
-  double gain = 1.0;                ///< alpha in (1)
-  double gradient_at_limit = 3.52;  ///< m/s or rad/s
-  double active_fraction = 0.507;   ///< of the half range, 0 < f <= 1
 };
 
 struct TactileModuleConfig {
@@ -71,40 +58,10 @@ enum class Variant {
   kNullLimit,  ///< not the paper's: null space, and the approach-speed limit of approach_limit.h
 };
 
-/// What happens to feedforward and integral when contact is lost and found; see
-/// contact_transition.h, and for joint space joint_space_transition.h, for the equations.
-struct ContactTransitionConfig {
-  double max_time_constant_s = 1.0;  ///< T_t,max
-  double distance_m = 0.05;          ///< d_t
-  double engage_force_N = 0.0;       ///< F_eng: F_p over which the feedforward engages; 0: at once
-  /// F_rel: F_sen at which contact is lost in joint space, and above which an arm that goes on
-  /// after a stop is in contact.
-  double release_force_N = 0.3;
-  double search_speed_m_per_s = 0.01;  ///< v_search: joint space only, speed of the return
-};
-
-/// Algorithm 1; see stiffness_estimator.h. For null_limit see approach_estimator.h.
-struct StiffnessEstimatorConfig {
-  double min_force_change_N = 0.2;       ///< F_est,min
-  double filter_time_constant_s = 0.03;  ///< T_est
-  double min_N_per_m = 10.0;
-  double max_N_per_m = 1e6;
-};
-
 struct ForceControlConfig {
   Variant variant = Variant::kNullSpace;
-  int order = 2;                          ///< of the target dynamics (4): 1 or 2
-  double time_constant_s = 0.1;           ///< T
-  double damping = 0.5;                   ///< d, second order only
-  double contact_threshold_N = 1.2;       ///< F_th
-  double activation_force_N = 3.8;        ///< F_act, multi-space variants and null_limit only
-  double max_null_speed_m_per_s = 5.0;    ///< limit of u_n,q for prismatic joints
-  double max_null_speed_rad_per_s = 5.0;  ///< and for revolute joints
-  double pull_gain_per_s = 500.0;         ///< beta of the pull, joint space only
-  double min_approach_stiffness_N_per_m = 300.0;  ///< c_floor, null_limit only
-  double assumed_stiffness_N_per_m = 7000;        ///< c_0
-  ContactTransitionConfig transition;
-  std::optional<StiffnessEstimatorConfig> estimator;
+  int order = 2;               ///< of the target dynamics (4): 1 or 2
+  bool has_estimator = false;  ///< of the stiffness; else it is as assumed
 };
 
 struct ControllerConfig {
@@ -113,10 +70,11 @@ struct ControllerConfig {
   JointLimits limits{};
   TaskConfig task{};
   JointVector weights{};  ///< diagonal of W, > 0
-  std::optional<JointLimitAvoidanceConfig> joint_limit_avoidance{};
+  bool has_joint_limit_avoidance = false;
   std::optional<TactileModuleConfig> tactile_module{};
   double drive_lag_s = 0.005;  ///< nominal first-order lag of position; only null_limit asks
   std::optional<ForceControlConfig> force_control{};  ///< absent also for `variant: none`
+  Gains gains{};  ///< no structure: what the first cycle is given, and all where nobody tunes
 };
 
 }  // namespace tactus

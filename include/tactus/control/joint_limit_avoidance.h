@@ -9,6 +9,15 @@ struct JointLimitCost {
   double nearness = 0.0;  ///< s_max, 0 to 1: the joint nearest to a limit
 };
 
+/// What follows from these gains alone. Zero beyond the robot's joints, and for joints without
+/// limits.
+struct JointLimitZones {
+  JointLimitAvoidanceGains gains{0.0, 0.0, 0.0};   ///< f = 0: of none yet
+  ScaledVector inner_half = ScaledVector::Zero();  ///< half width of the zone without cost
+  ScaledVector inv_width = ScaledVector::Zero();   ///< 1 / (f half)
+  ScaledVector slope = ScaledVector::Zero();       ///< alpha W^-1/2 gradient_at_limit / (f half)
+};
+
 /// dH/dq of (1), pointing towards the nearer limit (N alpha dH/dq is subtracted):
 ///   s_i = max(0, (|q_i - mid_i| - (1 - f) half_i) / (f half_i))
 ///   dH/dq_i = gradient_at_limit s_i sign(q_i - mid_i)
@@ -17,17 +26,17 @@ struct JointLimitCost {
 /// W.
 class JointLimitAvoidance {
  public:
-  JointLimitAvoidance(const JointLimitAvoidanceConfig& config, const JointLimits& limits,
-                      const ScaledVector& inv_sqrt_weights);
+  JointLimitAvoidance(const JointLimits& limits, const ScaledVector& inv_sqrt_weights);
 
-  JointLimitCost evaluate(const JointVector& q) const noexcept;
+  JointLimitZones zones(const JointLimitAvoidanceGains& gains) const noexcept;
+
+  JointLimitCost evaluate(const JointLimitZones& zones, const JointVector& q) const noexcept;
 
  private:
   // Zero beyond the robot's joints, and for joints without limits.
-  ScaledVector middle_ = ScaledVector::Zero();      ///< of the range
-  ScaledVector inner_half_ = ScaledVector::Zero();  ///< half width of the zone without cost
-  ScaledVector inv_width_ = ScaledVector::Zero();   ///< 1 / (f half)
-  ScaledVector slope_ = ScaledVector::Zero();       ///< alpha W^-1/2 gradient_at_limit / (f half)
+  ScaledVector middle_ = ScaledVector::Zero();  ///< of the range
+  ScaledVector half_ = ScaledVector::Zero();    ///< half width of the range
+  ScaledVector inv_sqrt_weights_;
 };
 
 }  // namespace tactus

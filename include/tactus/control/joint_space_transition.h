@@ -1,7 +1,8 @@
 #pragma once
 
 #include "tactus/control/contact_point.h"
-#include "tactus/control/controller_config.h"
+#include "tactus/control/gains.h"
+#include "tactus/math/filter.h"
 
 namespace tactus {
 
@@ -12,6 +13,7 @@ struct JointSpaceTransitionState {
   bool has_rested = false;               ///< and kappa has not come back to where it goes
   Vector3 p_BaseLost = Vector3::Zero();  ///< where the contact point was last touching, m
   ContactPointState contact;             ///< point and direction that the law uses
+  KnownLagShare response, fade;          ///< with T, and with T_t,max
 };
 
 /// What a cycle needs to know of the contact besides its force.
@@ -56,27 +58,15 @@ struct IntegralShare {
 /// Where the arm rests between F_rel and F_th is not regulated: it follows from the integral that
 /// the engagement fills and T_t,max empties.
 // clang-format on
-class JointSpaceTransition {
- public:
-  explicit JointSpaceTransition(const ForceControlConfig& config) : config_(config) {}
+/// Takes over the sensor's point and direction; call before passTransition(). is_moving: false
+/// while the arm rests whatever the law says; then at once, as there is nothing to be smoothed.
+void followContact(const ForceGains& gains, const ContactPointState& sensor, bool is_moving,
+                   double period_s, JointSpaceTransitionState& state) noexcept;
 
-  /// Takes over the sensor's point and direction; call before update(). is_moving: false while the
-  /// arm rests whatever the law says; then at once, as there is nothing to be smoothed.
-  void follow(const ContactPointState& sensor, bool is_moving, double period_s,
-              JointSpaceTransitionState& state) const noexcept;
+IntegralShare passTransition(const ForceGains& gains, const JointSpaceTransitionInput& input,
+                             double period_s, JointSpaceTransitionState& state) noexcept;
 
-  IntegralShare update(const JointSpaceTransitionInput& input, double period_s,
-                       JointSpaceTransitionState& state) const noexcept;
-
-  /// In place of update(), in a cycle in which the arm rests whatever the law says.
-  void rest(JointSpaceTransitionState& state) const noexcept;
-
- private:
-  void engage(double F_p_N, double period_s, JointSpaceTransitionState& state) const noexcept;
-  void release(const JointSpaceTransitionInput& input, double period_s,
-               JointSpaceTransitionState& state) const noexcept;
-
-  ForceControlConfig config_;
-};
+/// In place of passTransition(), in a cycle in which the arm rests whatever the law says.
+void restTransition(JointSpaceTransitionState& state) noexcept;
 
 }  // namespace tactus

@@ -9,13 +9,13 @@ namespace tactus {
 /// 5/s an error e makes at most 1.4 e /s, and not 5.
 inline constexpr double kReturnRise_s = 1.0;
 
-inline bool hasReturnSpeed(const TaskConfig& task) noexcept {
-  return task.max_return_speed_m_per_s || task.max_return_speed_rad_per_s;
+inline bool hasReturnSpeed(const TaskGains& gains) noexcept {
+  return gains.max_return_speed_m_per_s < kNoLimit || gains.max_return_speed_rad_per_s < kNoLimit;
 }
 
 /// Scales a correction of the task's components, m/s and rad/s, down to the return speeds, see
 /// TaskConfig; push: p there, or empty.
-void limitReturnSpeed(const TaskConfig& task, const TaskVector& push,
+void limitReturnSpeed(const TaskGains& gains, const TaskConfig& task, const TaskVector& push,
                       TaskVector& correction) noexcept;
 
 }  // namespace tactus

@@ -15,6 +15,24 @@ inline double flushed(double x) noexcept { return std::abs(x) < 1e-100 ? 0.0 : x
 /// for an input held over the step. T = 0 covers all of it.
 double lagShare(double dt_s, double time_constant_s) noexcept;
 
+/// lagShare() that remembers its last result: the arguments hardly ever change, and an exponential
+/// costs more than most of what a cycle does with it.
+class KnownLagShare {
+ public:
+  double of(double dt_s, double time_constant_s) noexcept {
+    if (dt_s != dt_s_ || time_constant_s != time_constant_s_) {
+      dt_s_ = dt_s;
+      time_constant_s_ = time_constant_s;
+      share_ = lagShare(dt_s, time_constant_s);
+    }
+    return share_;
+  }
+
+ private:
+  double dt_s_ = 0.0, time_constant_s_ = 0.0;
+  double share_ = 1.0;
+};
+
 /// 3rd-order Butterworth low pass by the bilinear transform with prewarping, direct form II
 /// transposed: the filter of the tactile module (scipy.signal.butter(3, cutoff, fs=rate)). After a
 /// force is gone it ends at zero.

@@ -2,10 +2,9 @@
 
 #include <cstddef>
 #include <deque>
-#include <optional>
 #include <vector>
 
-#include "tactus/control/controller_config.h"
+#include "tactus/control/gains.h"
 #include "tactus/supervisor/cycle_record.h"
 
 namespace tactus {
@@ -31,9 +30,8 @@ struct ContactSummary {
 /// is known to 2e-6 of its length.
 class ContactList {
  public:
-  /// Without force control F_th and F_rel have their defaults. `expected_cycles` is only used to
-  /// allocate in advance.
-  ContactList(const std::optional<ForceControlConfig>& force_control, std::size_t expected_cycles);
+  /// `gains` has F_th and F_rel. `expected_cycles` is only used to allocate in advance.
+  ContactList(bool has_force_control, const ForceGains& gains, std::size_t expected_cycles);
 
   void add(const CycleRecord& record);
 

@@ -51,7 +51,6 @@ class RunLog {
   LogConfig config_;
   std::string folder_;
   LogDescription description_;
-  std::size_t cycle_bytes_;
   int part_ = 0;
   double t_s_ = 0.0;       ///< of the last cycle
   double looked_s_ = 0.0;  ///< when the disk was looked at, likewise

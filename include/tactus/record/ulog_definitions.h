@@ -14,6 +14,9 @@ struct UlogDefinitions {
   LogDescription description;
   TopicLayout topic;
   std::uint16_t cycle_id = 0;  ///< which data messages are cycles
+  bool has_gains = false;      ///< a log of an older version has none
+  GainsLayout gains;
+  std::uint16_t gains_id = 0;  ///< which data messages are gains
 };
 
 /// Reads up to the subscription of the cycles. Throws InputError, also for a log that ends before.

@@ -6,7 +6,9 @@
 #include <cstdint>
 
 /// What writer and reader of a log agree on: the PX4 ULog format, version 1
-/// (https://docs.px4.io/main/en/dev_log/ulog_file_format), with one topic, kCycleTopic.
+/// (https://docs.px4.io/main/en/dev_log/ulog_file_format), with two topics: kCycleTopic, and
+/// kGainsTopic with the gains of all cycles from there on, once before the first one of each file
+/// and whenever they have changed.
 ///
 /// A file is a header (magic, version, uint64 start time in us) and messages: uint16 size of the
 /// payload, char type, payload; all little-endian. The files a run was made of are stored as pairs
@@ -27,6 +29,7 @@ inline constexpr std::size_t kMaxMessageSize = 65535;
 inline constexpr std::size_t kFlagBitsSize = 40;
 
 inline constexpr char kCycleTopic[] = "cycle";
+inline constexpr char kGainsTopic[] = "gains";
 inline constexpr char kSourcePathKey[] = "source_path";
 inline constexpr char kSourceTextKey[] = "source_text";
 inline constexpr char kOverrideKeyKey[] = "override_key";

@@ -23,6 +23,9 @@ class UlogReader {
   /// Whether the log has a field of recordFields(): one of an older version may not.
   bool has(std::string_view field) const noexcept;
 
+  /// What the gains are as far as the log does not say: those of its scene.
+  void assumeGains(const Gains& gains) noexcept { gains_ = gains; }
+
   /// False at the end of the log. Entries of arrays beyond the shape, and fields that the log does
   /// not have, keep what they held.
   bool next(CycleRecord& record);
@@ -31,14 +34,14 @@ class UlogReader {
   bool cutOff() const noexcept { return messages_.cutOff(); }
 
  private:
-  bool isCycle(const UlogMessage& message) const;
-  void copy(const UlogMessage& message, CycleRecord& record) const noexcept;
-  std::size_t messageSize() const noexcept {
-    return sizeof(definitions_.cycle_id) + definitions_.topic.size;
-  }
+  /// Takes over gains; true for a cycle.
+  bool take(const UlogMessage& message, CycleRecord& record);
+  void checkSize(const UlogMessage& message, const char* what, std::size_t fields_size) const;
 
   UlogMessages messages_;
   UlogDefinitions definitions_;
+  Gains gains_;
+  bool knows_gains_ = false;  ///< the log has said what they are
 };
 
 /// Opens a log for reading; throws InputError.

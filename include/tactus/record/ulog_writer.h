@@ -32,6 +32,9 @@ std::string logDefinitions(const LogDescription& description);
 /// What a log grows by each cycle.
 std::size_t logBytesACycle(const RecordShape& shape);
 
+/// And before the first cycle of a file, and each cycle with other gains than the one before.
+std::size_t logBytesOfGains();
+
 /// Writes cycles to a ULog file. A log cut off anywhere is readable up to the cut.
 class UlogWriter {
  public:
@@ -41,6 +44,9 @@ class UlogWriter {
   /// Copies the record into a buffer and writes that out when it is full, about every 500 cycles.
   /// Throws RunError if it cannot be written.
   void write(const CycleRecord& record);
+
+  /// What the log would grow by, bytes.
+  std::size_t sizeOf(const CycleRecord& record) const noexcept;
 
   /// Writes out what is in the buffer; throws RunError.
   void flush() { file_.flush(); }
@@ -55,9 +61,14 @@ class UlogWriter {
   void close() { file_.close(); }
 
  private:
+  bool hasOtherGains(const CycleRecord& record) const noexcept;
+  char* beginData(std::uint16_t id, std::size_t size, double t_s);
+
   OutputFile file_;
   std::vector<CopyRun> runs_;  ///< from a record to a data message, header included
   std::size_t data_size_;      ///< of a data message, header included, bytes
+  bool has_gains_ = false;     ///< written any
+  Gains gains_;                ///< as written at last
 };
 
 }  // namespace tactus

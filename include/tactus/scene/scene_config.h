@@ -24,15 +24,9 @@ struct TrajectorySection {
   std::optional<HoldSection> hold;
 };
 
-struct ControllerSection {
-  ForceControlConfig force;                  ///< without what `stiffness` says
-  std::optional<double> activation_force_N;  ///< some variants need it
-};
-
 struct StiffnessSection {
-  double assumed_N_per_m = 0.0;
   std::optional<double> stiffest_N_per_m;
-  std::optional<StiffnessEstimatorConfig> estimate;
+  bool has_estimate = false;
 };
 
 struct TroubleSection {
@@ -66,11 +60,12 @@ struct SceneConfig {
   std::string robot;  ///< path as written
   double period_s = kDefaultPeriod_s;
   std::optional<std::vector<double>> start;  ///< absent: the robot's home
+  Gains gains;                               ///< of all sections below
   TaskConfig task = positionTask();          ///< without trajectory
   TrajectorySection trajectory;
   std::optional<std::vector<double>> weights;  ///< absent: all 1
-  std::optional<JointLimitAvoidanceConfig> joint_limit_avoidance;
-  std::optional<ControllerSection> controller;
+  bool has_joint_limit_avoidance = false;
+  std::optional<ForceControlConfig> controller;  ///< without what `stiffness` says
   std::optional<StiffnessSection> stiffness;
   SimulationSection simulation;
   bool requires_real_time = RealTimeConfig{}.required;

@@ -32,6 +32,9 @@ class ControlCycle {
  public:
   ControlCycle(const ControllerConfig& controller, const HardwareConfig& hardware, double period_s);
 
+  /// What the next cycles are given; at first the config's.
+  void tune(const Gains& gains) noexcept { gains_ = gains; }
+
   void receive(int bus, std::span<const CanFrame> frames) noexcept { robot_.receive(bus, frames); }
   void update(const CycleInput& input) noexcept;
   /// Does ahead, while frames travel and drives move, what the next cycle needs and already can
@@ -79,6 +82,7 @@ class ControlCycle {
   };
 
   Controller controller_;
+  Gains gains_;
   CanRobot robot_;
   JointPlaces places_;
   std::array<const char*, kMaxJoints> joint_units_;

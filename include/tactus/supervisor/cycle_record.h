@@ -13,7 +13,7 @@ namespace tactus {
 /// Everything the log holds of one cycle, in the order of the columns of `tactus export`. Every
 /// member is made of 8-byte words, so that the record has no padding and is copied as it lies;
 /// of the arrays only as many entries count as the robot has joints and the task components.
-/// record_fields.h names the members; a member without an entry there is not logged.
+/// record_fields.h names the members; a member without an entry there is not logged, but gains.
 struct CycleRecord {
   double t_s = 0.0;
   double force_sensor_N = 0.0;
@@ -44,17 +44,19 @@ struct CycleRecord {
   std::uint64_t missed_cycles = 0;  ///< skipped by the loop just before this one
   double path_time_s = 0.0;         ///< the reference's clock: task_time_s less the time it waited
   double tool_rotation_error_rad = 0.0;  ///< as tool_error_m; only for tasks with a rotation
+  Gains gains;                           ///< of this cycle; the log has them where they change
 };
 
 static_assert(std::is_trivially_copyable_v<CycleRecord> && std::is_standard_layout_v<CycleRecord>);
 static_assert(sizeof(CycleRecord) ==
-              8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 5 + 2));
+              8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 5 + 2) + sizeof(Gains));
 
 /// Copies one cycle into a record; wake_latency_ns and step_ns are left to the caller, who alone
 /// knows a clock, and tool_rotation_error_rad. tool_error_m: see CycleRecord. Entries of arrays
 /// beyond the robot's joints and the task's components keep what they held.
-void fillRecord(double t_s, const RobotInput& input, const ControllerOutput& output,
-                const Vector3& tool_error_m, CycleRecord& record) noexcept;
+void fillRecord(double t_s, const RobotInput& input, const Gains& gains,
+                const ControllerOutput& output, const Vector3& tool_error_m,
+                CycleRecord& record) noexcept;
 
 /// The controller's input of a logged cycle; `joints` entries of q_measured.
 RobotInput recordedInput(const CycleRecord& record, int joints) noexcept;

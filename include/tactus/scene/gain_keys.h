@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tactus/control/gains.h"
+#include "tactus/scene/key_table.h"
+
+/// The keys of a scene that are gains: where each lies in Gains, and what it may be.
+namespace tactus {
+
+struct GainKey {
+  std::string path;  ///< "controller.time_constant_s"
+  KeySpec spec;
+  std::size_t offset;  ///< in Gains, bytes
+};
+
+/// Every word of Gains once, in its order.
+const std::vector<GainKey>& gainKeys();
+
+struct GainProblem {
+  std::string path, problem, expectation;
+};
+
+/// The first gain that is out of its range, or does not go with another one or with the period.
+std::optional<GainProblem> findGainProblem(const Gains& gains, bool is_joint_space,
+                                           double period_s);
+
+/// The latter alone, for gains whose ranges are checked.
+std::optional<GainProblem> findGainConflict(const Gains& gains, bool is_joint_space,
+                                            double period_s);
+
+}  // namespace tactus
