@@ -103,6 +103,7 @@ std::vector<double> parseNumbers(const Reading& r, const YamlNode& node, const s
   const int size = static_cast<int>(node.items.size());
   if (node.kind != Kind::kList || size < min || size > max) r.fail(node, path, describe(node));
   std::vector<double> numbers;
+  numbers.reserve(node.items.size());
   for (int i = 0; i < size; ++i) {
     numbers.push_back(parseNumber<double>(r, node.items[i], fmt::format("{}[{}]", path, i)));
   }
@@ -237,6 +238,7 @@ void refuseDecimalComma(const YamlNode& node, const YamlEntry& entry, const std:
 void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
                        const std::string& prefix) {
   std::vector<std::string> known;
+  known.reserve(keys.size());
   for (const KeySpec& spec : keys) known.push_back(spec.key);
   for (const YamlEntry& entry : node.entries) {
     if (std::ranges::count(known, entry.key) > 0) continue;
