@@ -20,10 +20,12 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
     visit(position, 0, position_m);
     list(direction_name, direction);
   };
-  const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, sample_sequence,
-               sample_age_s, sample_fault, sample_detail, contact_point, contact] = state;
+  const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
+               sample_sequence, sample_age_s, sample_fault, sample_detail, contact_point, contact] =
+      state;
   visit("waited_s", 0, waited_s);
   visit("progress", 0, progress);
+  visit("return_share", 0, return_share);
   list("q_desired", q_desired);
   list("velocity_before", velocity_before);
   visit("sample_age_s", 0, sample_age_s);
