@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tactus/bench/instruction_count.h"
+#include "tactus/bench/report_page.h"
 #include "tactus/bench/step_study.h"
 #include "tactus/bench/study.h"
 #include "tactus/cli/commands.h"
@@ -97,7 +98,19 @@ void writeFiles(const fs::path& folder, const std::vector<StudyResult>& results)
     for (const Table& table : result.tables)
       writeText(folder / (table.name + ".csv"), csvText(table));
   }
-  writeText(folder / "report.html", reportPage(results));
+  writeText(folder / "report.json", reportJson(results));
+}
+
+/// The tables are what was measured; without a page they are there all the same.
+void makePage(const fs::path& folder, bool is_quiet) {
+  const std::string problem = makeReportPage(ownPath().parent_path() / "tactus-report", folder);
+  const std::string name = fs::absolute(folder).string();
+  if (!problem.empty()) {
+    fmt::print(stderr, "no report.html: {}; the tables are in {}, `tactus-report {}` draws them\n",
+               problem, name, name);
+  } else if (!is_quiet) {
+    fmt::print("\nreport: {}\n", name + "/report.html");
+  }
 }
 
 Json toJson(const std::vector<StudyResult>& results) {
@@ -140,14 +153,14 @@ void bench(const Options& options) {
   }
   if (options.folder.empty()) return;
   writeFiles(options.folder, results);
-  if (!options.json)
-    fmt::print("\nreport: {}\n", fs::absolute(fs::path(options.folder) / "report.html").string());
+  makePage(options.folder, options.json);
 }
 
 void parse(CLI::App& app, Options& options, int argc, char** argv) {
   app.add_option("SCENE", options.scenes,
                  "Scenes to run; absent: those in config/scenes, or installed");
-  app.add_option("-o,--output", options.folder, "Folder for CSV files and report.html");
+  app.add_option("-o,--output", options.folder,
+                 "Folder for CSV files, report.json and report.html");
   app.add_option("--study", options.names, studyHelp())
       ->allow_extra_args(false)
       ->check(CLI::IsMember(studyNames()));

@@ -88,13 +88,15 @@ void addStability(const std::string& path, const Scene& scene, const std::vector
 Plot makePlot(const Table& runs, const char* x_column, const char* x_label, const char* y_column,
               const char* y_label) {
   Plot plot;
+  plot.table = runs.name;
+  plot.x_column = x_column;
+  plot.y_column = y_column;
   plot.x_label = x_label;
   plot.y_label = y_label;
   std::string before;
   for (std::size_t row = 0; row < runs.rows.size(); ++row) {
     const std::string& scene = runs.word(row, "scene");
-    if (scene != before)
-      plot.series.push_back(select(runs, scene, x_column, y_column, {{"scene", scene}}));
+    if (scene != before) plot.series.push_back({scene, {{"scene", scene}}});
     before = scene;
   }
   return plot;

@@ -8,7 +8,7 @@ namespace tactus {
 namespace {
 
 constexpr double kDuration_s = 14.0;
-constexpr double kGone_s = 8.0;
+constexpr double kVanishes_s = 8.0;
 constexpr double kPressing_m = 0.03;
 constexpr double kPressing_Hz = 0.1;  ///< in and out once within 5 s, away for as long
 
@@ -24,7 +24,7 @@ ExtremeCase pressed(std::string group, std::string name, const Start& start, dou
   setHold(kDuration_s, extreme.overrides);
   extreme.change = [=](Scene& scene) {
     scene.controller.q_start = start(scene.controller.limits);
-    addBeside({0.6, side, 0.001}, stiffness, kPressing_m, kPressing_Hz, kGone_s, scene);
+    addBeside({0.6, side, 0.001}, stiffness, kPressing_m, kPressing_Hz, kVanishes_s, scene);
   };
   return extreme;
 }

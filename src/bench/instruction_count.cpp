@@ -1,15 +1,13 @@
 #include "tactus/bench/instruction_count.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <stdlib.h>
-#include <sys/wait.h>
-#include <unistd.h>
 #include <valgrind/callgrind.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "tactus/bench/child_program.h"
 #include "tactus/record/run_error.h"
 
 namespace tactus {
@@ -37,24 +35,6 @@ class ScratchFolder {
  private:
   fs::path path_;
 };
-
-/// Silent; false unless it ends with 0.
-bool runSilently(const std::vector<std::string>& command) {
-  std::vector<char*> arguments;
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  const pid_t child = ::fork();
-  if (child < 0) return false;
-  if (child == 0) {
-    const int null = ::open("/dev/null", O_WRONLY);
-    ::dup2(null, STDOUT_FILENO);
-    ::dup2(null, STDERR_FILENO);
-    ::execvp(arguments[0], arguments.data());
-    ::_exit(127);
-  }
-  int status = 0;
-  return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
 
 /// A dump says `desc: Trigger: Client Request: LABEL` and `totals: COUNT`.
 void readDump(const fs::path& path, std::map<std::string, double>& counts) {
@@ -97,7 +77,7 @@ std::map<std::string, double> countInstructions(const std::vector<std::string>& 
                                     "--callgrind-out-file=" + (folder.path() / "dump").string()};
   words.insert(words.end(), command.begin(), command.end());
   std::map<std::string, double> counts;
-  if (!runSilently(words)) return counts;
+  if (runProgram(words).exit_code != 0) return counts;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
     readDump(entry.path(), counts);
   return counts;

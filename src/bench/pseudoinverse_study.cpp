@@ -96,18 +96,20 @@ namespace {
 /// A series for each method and scalar.
 Plot makePlot(const Table& table, int task_size, const char* x_column) {
   Plot plot;
+  plot.table = table.name;
+  plot.x_column = x_column;
+  plot.y_column = "error_max";
   for (const char* scalar : {"double", "float"}) {
     for (const PseudoinverseMethod<double>& method : textbookMethods<double>())
-      plot.series.push_back(select(table, fmt::format("{}, {}", method.name, scalar), x_column,
-                                   "error_max",
-                                   {{"method", method.name},
-                                    {"scalar", std::string(scalar)},
-                                    {"task_components", double(task_size)}}));
+      plot.series.push_back({fmt::format("{}, {}", method.name, scalar),
+                             {{"method", method.name},
+                              {"scalar", std::string(scalar)},
+                              {"task_components", double(task_size)}}});
   }
   for (const PseudoinverseMethod<double>& method : ourMethods())
     plot.series.insert(plot.series.begin(),
-                       select(table, method.name + ", double", x_column, "error_max",
-                              {{"method", method.name}, {"task_components", double(task_size)}}));
+                       {method.name + ", double",
+                        {{"method", method.name}, {"task_components", double(task_size)}}});
   plot.y_label = "largest relative error of J# w";
   return plot;
 }

@@ -1,82 +1,70 @@
-#include <fmt/format.h>
+#include "tactus/bench/report_page.h"
 
-#include <cmath>
+#include <nlohmann/json.hpp>
 
-#include "tactus/bench/study.h"
+#include "tactus/bench/child_program.h"
 
 namespace tactus {
 namespace {
 
-constexpr const char* kStyle = R"(
-:root { color-scheme: light dark; --ink: #1d2430; --paper: #fdfdfc; --faint: #5d6675;
-  --grid: #d9dce1; --c0: #2563c9; --c1: #c8352b; --c2: #157f43; --c3: #c96a00; --c4: #7d3fc0;
-  --c5: #0f7f8c; --c6: #b0307e; --c7: #6b6b1e; }
-@media (prefers-color-scheme: dark) { :root { --ink: #e4e7ec; --paper: #14181f; --faint: #a0a9b8;
-  --grid: #333a46; --c0: #82aeff; --c1: #ff8277; --c2: #52c98a; --c3: #f2a93b; --c4: #c49bff;
-  --c5: #5fd0dd; --c6: #ff86cc; --c7: #cfcf5c; } }
-body { margin: 0; background: var(--paper); color: var(--ink);
-  font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; }
-main { max-width: 58rem; margin: 0 auto; padding: 2rem 1.25rem 4rem; }
-h1 { font-size: 1.7rem; } h2 { font-size: 1.2rem; margin: 2.75rem 0 .75rem; }
-figure { margin: 0 0 2.5rem; } svg { display: block; width: 100%; height: auto; }
-svg text { font-size: 11px; fill: var(--ink); } svg .grid { stroke: var(--grid); fill: none; }
-figcaption { font-size: .92rem; color: var(--faint); } figcaption b { color: var(--ink); }
-.series { fill: var(--c); } .series .line { fill: none; stroke: var(--c); stroke-width: 1.5; }
-.c0 { --c: var(--c0); } .c1 { --c: var(--c1); } .c2 { --c: var(--c2); } .c3 { --c: var(--c3); }
-.c4 { --c: var(--c4); } .c5 { --c: var(--c5); } .c6 { --c: var(--c6); } .c7 { --c: var(--c7); }
-.wide { overflow: auto; max-height: 30rem; }
-table { border-collapse: collapse; font-size: .85rem; }
-th, td { padding: .3rem .8rem .3rem 0; text-align: left; font-variant-numeric: tabular-nums; }
-thead th { border-bottom: 1.5px solid var(--ink); } tbody tr { border-bottom: 1px solid var(--grid); }
-summary { cursor: pointer; color: var(--faint); }
-)";
+using Json = nlohmann::ordered_json;
 
-std::string shortText(const Cell& cell) {
-  if (const std::string* word = std::get_if<std::string>(&cell)) return escapeHtml(*word);
-  const double number = std::get<double>(cell);
-  return std::isfinite(number) ? fmt::format("{:.4g}", number) : "";
+Json toJson(const Series& series) {
+  Json where = Json::object();
+  for (const auto& [column, cell] : series.filter)
+    std::visit([&where, &name = column](const auto& value) { where[name] = value; }, cell);
+  return {{"label", series.label}, {"where", where}};
 }
 
-std::string tableText(const Table& table) {
-  std::string text = "<div class=\"wide\"><table><thead><tr>";
-  for (const std::string& column : table.columns)
-    text += fmt::format("<th scope=\"col\">{}</th>", escapeHtml(column));
-  text += "</tr></thead>\n<tbody>\n";
-  for (const std::vector<Cell>& row : table.rows) {
-    text += "<tr>";
-    for (const Cell& cell : row) text += fmt::format("<td>{}</td>", shortText(cell));
-    text += "</tr>\n";
-  }
-  return text + "</tbody></table></div>\n";
+Json toJson(const Plot& plot) {
+  const auto scale = [](Scale s) { return s == Scale::kLinear ? "linear" : "log"; };
+  Json json = {{"title", plot.title},
+               {"note", plot.note},
+               {"table", plot.table},
+               {"x", plot.x_column},
+               {"y", plot.y_column},
+               {"x_label", plot.x_label},
+               {"y_label", plot.y_label},
+               {"x_scale", scale(plot.x_scale)},
+               {"y_scale", scale(plot.y_scale)},
+               {"has_lines", plot.has_lines},
+               {"series", Json::array()}};
+  for (const Series& series : plot.series) json["series"].push_back(toJson(series));
+  return json;
 }
 
-std::string sectionText(const StudyResult& result) {
-  std::string text =
-      fmt::format("<h2>{}</h2>\n<p>{}</p>\n", escapeHtml(result.title), escapeHtml(result.text));
-  for (const Plot& plot : result.plots) {
-    text += fmt::format("<figure>\n{}<figcaption><b>{}</b> {}</figcaption></figure>\n",
-                        svgText(plot), escapeHtml(plot.title), escapeHtml(plot.note));
-  }
-  for (const Table& table : result.tables) {
-    text += fmt::format("<details><summary>{}.csv</summary>\n{}</details>\n",
-                        escapeHtml(table.name), tableText(table));
-  }
-  return text;
+Json toJson(const StudyResult& result) {
+  Json json = {{"title", result.title},
+               {"text", result.text},
+               {"plots", Json::array()},
+               {"tables", Json::array()}};
+  for (const Plot& plot : result.plots) json["plots"].push_back(toJson(plot));
+  for (const Table& table : result.tables) json["tables"].push_back(table.name);
+  return json;
+}
+
+/// Of a Python error the one that says what it is.
+std::string lastLine(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.substr(text.rfind('\n') + 1);
 }
 
 }  // namespace
 
-std::string reportPage(const std::vector<StudyResult>& results) {
-  std::string text = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>Tactus: error against run time</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n"
-      "<h1>Error against run time</h1>\n",
-      kStyle);
-  const Table goals = goalTable(results);
-  if (!goals.rows.empty()) text += "<h2>Goals</h2>\n" + tableText(goals);
-  for (const StudyResult& result : results) text += sectionText(result);
-  return text + "</main>\n</body>\n</html>\n";
+std::string reportJson(const std::vector<StudyResult>& results) {
+  Json sections = Json::array();
+  for (const StudyResult& result : results) sections.push_back(toJson(result));
+  const Json json = {{"sections", sections}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string makeReportPage(const std::filesystem::path& program,
+                           const std::filesystem::path& folder) {
+  const ChildResult result =
+      runProgram({program.string(), std::filesystem::absolute(folder).string()});
+  if (result.exit_code == 0) return "";
+  if (!result.errors.empty()) return lastLine(result.errors);
+  return program.string() + ": cannot be run, expected it beside tactus-bench, and python3";
 }
 
 }  // namespace tactus

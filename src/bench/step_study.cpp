@@ -63,8 +63,9 @@ Plot makePlot(const Table& table, const char* column, const char* label) {
   Plot plot;
   plot.title = fmt::format("{} of one step over the number of joints.", label);
   plot.note = "Position task (3 components), unless 6 are named.";
-  plot.x_label = "joints";
-  plot.y_label = column;
+  plot.table = table.name;
+  plot.x_label = plot.x_column = "joints";
+  plot.y_label = plot.y_column = column;
   plot.x_scale = Scale::kLinear;
   struct Line {
     const char* code;
@@ -76,13 +77,11 @@ Plot makePlot(const Table& table, const char* column, const char* label) {
                         {kCodeKdl, 6, 1},      {kCodeWdlsOnce, 3, 0}, {kCodeNsoOnce, 6, 0}};
   for (const Line& line : lines)
     plot.series.push_back(
-        select(table,
-               fmt::format("{}{}, {}", line.code, line.task_components == 6 ? " (6)" : "",
-                           line.contacts > 0 ? "contact" : "free"),
-               "joints", column,
-               {{"code", std::string(line.code)},
-                {"task_components", double(line.task_components)},
-                {"contacts", double(line.contacts)}}));
+        {fmt::format("{}{}, {}", line.code, line.task_components == 6 ? " (6)" : "",
+                     line.contacts > 0 ? "contact" : "free"),
+         {{"code", std::string(line.code)},
+          {"task_components", double(line.task_components)},
+          {"contacts", double(line.contacts)}}});
   return plot;
 }
 
@@ -104,10 +103,10 @@ Goal linearGoal(const Table& table, int contacts) {
   goal.text = fmt::format(
       "step, {} contacts: instructions over joints, deviation from a straight line", contacts);
   goal.limit = 0.05;
-  const Series series = select(
-      table, "", "joints", "instructions",
+  const auto points = findPoints(
+      table, "joints", "instructions",
       {{"code", std::string(kCodeOurs)}, {"task_components", 3.0}, {"contacts", double(contacts)}});
-  goal.measured = deviationFromLine(series.points);
+  goal.measured = deviationFromLine(points);
   return goal;
 }
 

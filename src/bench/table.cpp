@@ -56,6 +56,16 @@ double findNumber(const Table& table, std::string_view column_name, const Filter
   throw std::out_of_range(fmt::format("table {} has no such row", table.name));
 }
 
+std::vector<std::array<double, 2>> findPoints(const Table& table, std::string_view x_column,
+                                              std::string_view y_column, const Filter& filter) {
+  std::vector<std::array<double, 2>> points;
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    if (matches(table, row, filter))
+      points.push_back({table.number(row, x_column), table.number(row, y_column)});
+  }
+  return points;
+}
+
 std::string csvText(const Table& table) {
   std::string text;
   const auto addLine = [&text](const auto& cells, const auto& toText) {

@@ -33,7 +33,7 @@ CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
       q_commanded_(JointVector::Zero(static_cast<int>(hardware.drives.size()))) {
   drives_.reserve(hardware.drives.size());
   for (const DriveConfig& drive : hardware.drives) {
-    drives_.emplace_back(drive, hardware.canopen, brakeDeadline_s(hardware), period_s);
+    drives_.emplace_back(drive, hardware.canopen, period_s);
     has_drives_[drive.bus] = true;
   }
   if (!hardware.tactile) return;

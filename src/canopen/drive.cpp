@@ -26,12 +26,11 @@ PowerGoal powerGoal(DriveGoal goal, bool has_fault) noexcept {
 
 }  // namespace
 
-Drive::Drive(const DriveConfig& config, const CanopenConfig& canopen, double stop_deadline_s,
-             double period_s)
+Drive::Drive(const DriveConfig& config, const CanopenConfig& canopen, double period_s)
     : config_(config),
       heartbeat_timeout_cycles_(cyclesLasting(canopen.heartbeat_timeout_s, period_s)),
       answer_timeout_cycles_(cyclesLasting(canopen.sdo_timeout_s, period_s)),
-      stop_deadline_cycles_(cyclesLasting(stop_deadline_s, period_s)),
+      stop_deadline_cycles_(cyclesLasting(canopen.stop_deadline_s, period_s)),
       setup_(config, canopen, period_s),
       velocity_counts_(config.sign * config.counts_per_unit),
       rest_watch_(period_s) {}

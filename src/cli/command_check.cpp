@@ -12,7 +12,7 @@
 #include "tactus/scene/bus_load_text.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/json.h"
-#include "tactus/scene/key_table.h"
+#include "tactus/scene/key_words.h"
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/path_check.h"
 #include "tactus/scene/stability_check.h"
@@ -35,8 +35,8 @@ struct StartPose {
 /// What was found about a scene that is accepted.
 struct Findings {
   StartPose start;
-  std::vector<std::string> path_warnings;
   std::optional<StabilityReport> stability;
+  std::vector<std::string> warnings;  ///< of the path, then of the stability
 };
 
 StartPose computeStart(const ControllerConfig& config) {
@@ -46,9 +46,17 @@ StartPose computeStart(const ControllerConfig& config) {
           smallestSingularValueAtStart(config, JointVector::Ones(config.chain.size()))};
 }
 
+Findings examine(const Scene& scene) {
+  Findings findings{computeStart(scene.controller), checkStability(scene), checkPath(scene)};
+  if (!findings.stability) return findings;
+  const std::vector<std::string>& more = findings.stability->warnings;
+  findings.warnings.insert(findings.warnings.end(), more.begin(), more.end());
+  return findings;
+}
+
 std::vector<std::string> taskComponents(const TaskConfig& task) {
   std::vector<std::string> names;
-  for (int i = 0; i < task.size; ++i) names.push_back(componentNames()[task.components[i]]);
+  for (int i = 0; i < task.size; ++i) names.push_back(wordOf(kComponentWords, task.components[i]));
   return names;
 }
 
@@ -124,7 +132,7 @@ Json checkJson(const Scene& scene, const Findings& findings) {
                {"joints", joints},
                {"tool_start_m", {tool.x(), tool.y(), tool.z()}},
                {"smallest_singular_value_at_start", findings.start.smallest_singular_value},
-               {"path_warnings", findings.path_warnings}};
+               {"warnings", findings.warnings}};
   if (findings.stability) json["stability"] = stabilityJson(*findings.stability);
   addHardware(scene, json);
   return json;
@@ -146,7 +154,6 @@ std::string stabilityText(const StabilityReport& stability) {
                     loop.name, margins.largest_stiffness_ratio, margins.gain_margin,
                     20.0 * std::log10(margins.gain_margin), loop.phaseMargin_deg()));
   }
-  for (const std::string& warning : stability.warnings) text += textLine("warning", warning);
   return text;
 }
 
@@ -168,8 +175,8 @@ std::string toText(const Scene& scene, const Findings& findings) {
   line("start", fmt::format("tool at ({:.4f}, {:.4f}, {:.4f}) m, smallest singular value {:.3g}",
                             start.p_BaseTool.x(), start.p_BaseTool.y(), start.p_BaseTool.z(),
                             start.smallest_singular_value));
-  for (const std::string& warning : findings.path_warnings) line("warning", warning);
   if (findings.stability) text += stabilityText(*findings.stability);
+  for (const std::string& warning : findings.warnings) line("warning", warning);
   if (!scene.hardware) return text;
   line("hardware", fmt::format("{}", fmt::join(hardwareStageNames(*scene.hardware), ", ")));
   const std::vector<BusLoad> loads = busLoads(*scene.hardware, scene.period_s);
@@ -181,8 +188,7 @@ std::string toText(const Scene& scene, const Findings& findings) {
 
 void runCheck(const CheckOptions& options) {
   const Scene scene = loadScene(options.scene, parseOverrides(options.settings));
-  const Findings findings = {computeStart(scene.controller), checkPath(scene),
-                             checkStability(scene)};
+  const Findings findings = examine(scene);
   checkLogSize(scene);
   const std::string report =
       options.json ? jsonText(checkJson(scene, findings)) : toText(scene, findings);

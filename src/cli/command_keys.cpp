@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -17,7 +18,8 @@ namespace tactus {
 namespace {
 
 struct KeysOptions {
-  std::string path, manual, schema;
+  std::vector<std::string> paths;  ///< or symbols
+  std::string manual, schema;
   bool json = false;
 };
 
@@ -30,7 +32,10 @@ struct Selection {
 [[noreturn]] void failUnknown(const std::string& path) {
   std::vector<std::string> known;
   for (const FileFormat& format : fileFormats()) {
-    for (const KeyRow& row : keyRows(format.keys)) known.push_back(row.spec->key);
+    for (const KeyRow& row : keyRows(format.keys)) {
+      known.push_back(row.spec->key);
+      if (!row.spec->symbol.empty()) known.push_back(row.spec->symbol);
+    }
   }
   const std::string nearest = nearestWord(path.substr(path.rfind('.') + 1), known);
   failAt({std::make_shared<std::string>("KEY"), 1, 1}, path, "no such key",
@@ -38,13 +43,30 @@ struct Selection {
                          : "expected perhaps " + inQuotes(nearest));
 }
 
-std::vector<Selection> select(const std::string& path) {
+/// The rows of a file that any of the paths means, each once, in the order of the paths.
+std::vector<KeyRow> selectRows(const FileFormat& format, const std::vector<std::string>& paths) {
+  if (paths.empty()) return keyRows(format.keys);
+  std::vector<KeyRow> rows;
+  for (const std::string& path : paths) {
+    for (KeyRow& row : findKeyRows(format.keys, path)) {
+      if (std::ranges::count(rows, row.spec, &KeyRow::spec) == 0) rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+std::vector<Selection> select(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    const auto knows = [&](const FileFormat& format) {
+      return !findKeyRows(format.keys, path).empty();
+    };
+    if (std::ranges::none_of(fileFormats(), knows)) failUnknown(path);
+  }
   std::vector<Selection> selections;
   for (const FileFormat& format : fileFormats()) {
-    auto rows = path.empty() ? keyRows(format.keys) : findKeyRows(format.keys, path);
+    std::vector<KeyRow> rows = selectRows(format, paths);
     if (!rows.empty()) selections.push_back({format, std::move(rows)});
   }
-  if (selections.empty()) failUnknown(path);
   return selections;
 }
 
@@ -135,7 +157,7 @@ FileFormat formatOf(const std::string& name) {
 std::string describe(const KeysOptions& options) {
   if (!options.manual.empty()) return manualPage(formatOf(options.manual));
   if (!options.schema.empty()) return jsonSchema(formatOf(options.schema));
-  const std::vector<Selection> selections = select(options.path);
+  const std::vector<Selection> selections = select(options.paths);
   return options.json ? jsonText(toJson(selections)) : toText(selections);
 }
 
@@ -145,7 +167,9 @@ void addKeysCommand(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("keys", "Explain the keys of scenes and robots, all or some");
   const auto options = std::make_shared<KeysOptions>();
-  command->add_option("KEY", options->path, "A key or section: damping, simulation.obstacles");
+  command->add_option(
+      "KEY", options->paths,
+      "Keys, sections or symbols of the paper: damping, simulation.obstacles, F_act");
   command->add_flag("--json", options->json, "Print JSON");
   const CLI::IsMember formats({"scene", "robot"});
   command->add_option("--man", options->manual, "Print the manual page of a file's format")

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <system_error>
@@ -29,8 +30,17 @@ struct SimulateOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> settings;
   std::string directory;
+  std::optional<std::string> name;
   bool json = false;
 };
+
+void checkName(const SimulateOptions& options) {
+  if (!options.name) return;
+  checkRunName(*options.name);
+  if (options.scenes.size() == 1) return;
+  failAt({std::make_shared<std::string>(*options.name), 1, 1}, "--name",
+         fmt::format("one folder for {} scenes", options.scenes.size()), "expected one scene");
+}
 
 /// All scenes are loaded before the first one runs, so that bad input writes nothing.
 std::vector<Scene> loadScenes(const SimulateOptions& options) {
@@ -53,7 +63,7 @@ std::vector<fs::path> prepareFolders(const SimulateOptions& options,
                                      const std::vector<Scene>& scenes) {
   std::vector<fs::path> folders;
   for (const Scene& scene : scenes)
-    folders.push_back(prepareRunFolder(options.directory, scene.name));
+    folders.push_back(prepareRunFolder(options.directory, options.name.value_or(scene.name)));
   return folders;
 }
 
@@ -101,6 +111,7 @@ SimulationResult simulateScene(const Scene& scene, const fs::path& folder) {
 }
 
 int simulateScenes(const SimulateOptions& options) {
+  checkName(options);
   const std::vector<Scene> scenes = loadScenes(options);
   const std::vector<fs::path> folders = prepareFolders(options, scenes);
   int exit_code = kExitDone;
@@ -132,6 +143,7 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
                    "Folder for <scene>/run.ulg and "
                    "<scene>/summary.json")
       ->required();
+  command->add_option("--name", options->name, kNameHelp);
   command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
   command->add_flag("--json", options->json, "Print the summaries as one JSON list");
   command->callback([options, &exit_code] { exit_code = simulateScenes(*options); });

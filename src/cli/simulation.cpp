@@ -45,6 +45,7 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
   RunSummary summary(scene.controller,
                      static_cast<std::size_t>(std::min(cycles, kMaxReservedCycles)));
   ControllerState state = controller.initialState();
+  const ToolRotationError rotation_error(scene.controller);
   RobotInput input;
   ControllerOutput output;
   CycleRecord record;
@@ -62,6 +63,7 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
     noteFault(output, t_s, end);
     robot.write(output.velocity);
     fillRecord(t_s, input, output, error, record);
+    rotation_error.fill(record);
     sink(record);
     summary.add(record);
   }

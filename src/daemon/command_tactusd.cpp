@@ -1,12 +1,14 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tactus/daemon/daemon_program.h"
 #include "tactus/daemon/daemon_run.h"
 #include "tactus/record/log_size.h"
+#include "tactus/record/run_folder.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/exit_code.h"
 #include "tactus/scene/input_error.h"
@@ -18,16 +20,20 @@ namespace {
 struct DaemonArguments {
   std::string scene, folder;
   std::vector<std::string> settings;
+  std::optional<std::string> name;
   double duration_s = 0.0;
 };
 
 int runScene(const DaemonArguments& options) {
+  if (options.name && options.folder.empty()) throw CLI::RequiresError("--name", "--output");
+  if (options.name) checkRunName(*options.name);
   const Scene scene = loadHardwareScene(options.scene, options.settings, "to run on");
   checkStability(scene);
   checkLogSize(scene);
   DaemonOptions run;
   run.duration_s = options.duration_s;
   run.folder = options.folder;
+  run.name = options.name.value_or(scene.name);
   const Fault fault = runDaemon(scene, run);
   return fault == Fault::kNone ? kExitDone : kExitFault;
 }
@@ -41,6 +47,7 @@ int tactusdProgram(int argc, char** argv) {
   app.add_option("SCENE", options.scene, "Scene file")->required();
   app.add_option("-o,--output", options.folder,
                  "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files");
+  app.add_option("--name", options.name, kNameHelp);
   app.add_option("--duration", options.duration_s, "End after so many seconds of motion")
       ->check(CLI::Range(1e-3, 1e9));
   app.add_option("--set", options.settings, kSetHelp)->allow_extra_args(false);

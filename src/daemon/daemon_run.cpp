@@ -114,8 +114,8 @@ std::unique_ptr<HardwareLoop> openHardware(const Scene& scene, double duration_s
   }
 }
 
-std::string runFolder(const Scene& scene, const DaemonOptions& options) {
-  return options.folder.empty() ? "" : prepareRunFolder(options.folder, scene.name).string();
+std::string runFolder(const DaemonOptions& options) {
+  return options.folder.empty() ? "" : prepareRunFolder(options.folder, options.name).string();
 }
 
 void nameForbiddenCall(const SystemCallFilter& filter) {
@@ -175,7 +175,7 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   refusals.insert(refusals.end(), thread.refusals().begin(), thread.refusals().end());
   judgeRefusals(refusals, real_time.required);
   // A run that is refused leaves no files.
-  Telemetry telemetry(scene, runFolder(scene, options), link);
+  Telemetry telemetry(scene, runFolder(options), link);
 
   // While stop signals are blocked, so that its thread never gets one.
   const ServiceWatchdog watchdog(link.pulse, real_time.max_late_cycles);

@@ -7,14 +7,13 @@
 #include "tactus/daemon/status_sink.h"
 #include "tactus/daemon/summary_sink.h"
 #include "tactus/record/fault_text.h"
-#include "tactus/record/tool_error.h"
 
 namespace tactus {
 
 /// In an order that counts: the summary tells of the closed log, and the status is there before the
 /// service manager hears of it, and people look.
 Telemetry::Telemetry(const Scene& scene, const std::string& folder, LoopLink& link)
-    : scene_(scene), link_(link) {
+    : scene_(scene), link_(link), rotation_error_(scene.controller) {
   const LogState* log_state = nullptr;
   if (!folder.empty()) {
     auto log = std::make_unique<LogSink>(scene, folder);
@@ -29,6 +28,7 @@ Telemetry::Telemetry(const Scene& scene, const std::string& folder, LoopLink& li
 void Telemetry::drain() {
   while (LoopRecord* const record = link_.records.front()) {
     if (record->is_in_motion) fillToolError(scene_.controller, record->cycle);
+    if (record->is_in_motion) rotation_error_.fill(record->cycle);
     for (const auto& sink : sinks_) sink->add(*record);
     link_.records.release();
   }

@@ -17,40 +17,67 @@ constexpr std::size_t kMostSamples = std::size_t{1} << 20;
 
 }  // namespace
 
-ContactList::ContactList(bool has_force_control, std::size_t expected_cycles)
-    : has_force_control_(has_force_control) {
+ContactList::ContactList(const std::optional<ForceControlConfig>& force_control,
+                         std::size_t expected_cycles)
+    : has_force_control_(force_control.has_value()) {
+  const ForceControlConfig config = force_control.value_or(ForceControlConfig());
+  threshold_N_ = config.contact_threshold_N;
+  release_N_ = config.transition.release_force_N;
   present_.samples.reserve(std::min(expected_cycles, kMostSamples));
 }
 
 void ContactList::add(const CycleRecord& record) {
-  if (present_.cycles == 0 && !starts(record)) return;
+  if (present_.confirmed_cycles == 0 && !isTouch(record)) {
+    if (present_.cycles > 0) clear();
+    return;
+  }
   const Sample sample{record.t_s, record.force_sensor_N};
   keep(sample);
-  present_.peak_force_N = std::max(present_.peak_force_N, sample.force_N);
-  const bool is_touching = sample.force_N > kTouchForce_N;
-  if (present_.is_touching && !is_touching) present_.released_s = sample.t_s;
-  present_.is_touching = is_touching;
-  if (is_touching || sample.t_s - present_.released_s < kReleasePause_s - kTimeTolerance_s) return;
+  if (present_.confirmed_cycles == 0 && !has_force_control_ && sample.force_N <= threshold_N_)
+    return;
+  ++present_.confirmed_cycles;
+  keepNewest(sample);
+  if (!isReleased()) return;
   finished_.push_back(summarise(true));
-  std::vector<Sample> emptied = std::move(present_.samples);
-  emptied.clear();
-  present_ = {};
-  present_.samples = std::move(emptied);
+  clear();
 }
 
 std::vector<ContactSummary> ContactList::contacts() const {
   std::vector<ContactSummary> contacts = finished_;
-  if (present_.cycles > 0) contacts.push_back(summarise(false));
+  if (present_.confirmed_cycles > 0) contacts.push_back(summarise(false));
   return contacts;
 }
 
-bool ContactList::starts(const CycleRecord& record) const noexcept {
+bool ContactList::isTouch(const CycleRecord& record) const noexcept {
   return has_force_control_ ? record.force_contact_N > 0.0 : record.force_sensor_N > kTouchForce_N;
+}
+
+/// By the mean: single samples of a free arm are above F_rel and those of one that leans on
+/// something below it where the sensor is noisy.
+bool ContactList::isReleased() const noexcept {
+  const std::deque<Sample>& newest = present_.newest;
+  const bool is_full = static_cast<std::size_t>(present_.confirmed_cycles) > newest.size();
+  return is_full && present_.newest_sum_N <= release_N_ * static_cast<double>(newest.size());
+}
+
+double ContactList::releaseTime_s() const noexcept {
+  for (const Sample& sample : present_.newest) {
+    if (sample.force_N <= release_N_) return sample.t_s;
+  }
+  return present_.newest.front().t_s;  // their sum is rounded
+}
+
+/// Room that was allocated stays.
+void ContactList::clear() {
+  std::vector<Sample> samples = std::move(present_.samples);
+  samples.clear();
+  present_ = {};
+  present_.samples = std::move(samples);
 }
 
 /// Where there is no more room, every other sample goes, and from then on every other one comes.
 void ContactList::keep(const Sample& sample) {
-  present_.newest = sample;
+  present_.peak_force_N = std::max(present_.peak_force_N, sample.force_N);
   if (present_.cycles++ % present_.stride != 0) return;
   std::vector<Sample>& samples = present_.samples;
   if (samples.size() >= kMostSamples) {
@@ -61,13 +88,23 @@ void ContactList::keep(const Sample& sample) {
   samples.push_back(sample);
 }
 
+void ContactList::keepNewest(const Sample& sample) {
+  std::deque<Sample>& newest = present_.newest;
+  newest.push_back(sample);
+  present_.newest_sum_N += sample.force_N;
+  while (newest.front().t_s <= sample.t_s - kReleasePause_s + kTimeTolerance_s) {
+    present_.newest_sum_N -= newest.front().force_N;
+    newest.pop_front();
+  }
+}
+
 ContactSummary ContactList::summarise(bool is_released) const {
   const std::vector<Sample>& samples = present_.samples;
   ContactSummary contact;
   contact.start_s = samples.front().t_s;
-  contact.end_s = is_released ? present_.released_s : present_.newest.t_s;
+  contact.end_s = is_released ? releaseTime_s() : present_.newest.back().t_s;
   contact.peak_force_N = present_.peak_force_N;
-  Sample rest = present_.newest;
+  Sample rest = present_.newest.back();
   std::size_t settled = samples.size() - 1;
   if (is_released) {
     const double rest_s = contact.end_s - kReleasePause_s + kTimeTolerance_s;

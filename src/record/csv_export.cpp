@@ -4,6 +4,15 @@
 #include "tactus/record/ulog_reader.h"
 
 namespace tactus {
+namespace {
+
+/// Of a number from a log, which may be any.
+template <typename Enum>
+std::string_view nameOf(std::uint64_t number, std::size_t count, const char* (*name)(Enum)) {
+  return number < count ? name(static_cast<Enum>(number)) : "unknown";
+}
+
+}  // namespace
 
 void exportCsv(const std::string& log_path, const std::string& csv_path) {
   refuseOverwriting(log_path, csv_path);
@@ -13,10 +22,14 @@ void exportCsv(const std::string& log_path, const std::string& csv_path) {
   std::vector<RecordColumn> columns = recordColumns(reader.description().shape);
   std::erase_if(columns, [&](const RecordColumn& column) { return !reader.has(column.field); });
   for (const RecordColumn& column : columns) csv.add(column.name);
+  csv.add("fault_name");
+  csv.add("mode_name");
   csv.endLine();
   CycleRecord record;
   while (reader.next(record)) {
     for (const RecordColumn& column : columns) csv.add(record, column);
+    csv.add(nameOf(record.fault, faultTable().size(), faultName));
+    csv.add(nameOf(record.mode, kModeCount, modeName));
     csv.endLine();
   }
   csv.close();

@@ -59,6 +59,8 @@ constexpr std::array kFields = {
     RecordField{"write_ns", "ns", kScalar, kInt64, kObservation, AT(write_ns)},
     RecordField{"missed_cycles", "", kScalar, kUint64, kInput, AT(missed_cycles), true},
     RecordField{"path_time_s", "s", kScalar, kDouble, kOutput, AT(path_time_s), true},
+    RecordField{"tool_rotation_error_rad", "rad", kOfRotation, kDouble, kObservation,
+                AT(tool_rotation_error_rad), true},
 };
 #undef AT
 
@@ -66,9 +68,20 @@ constexpr std::array kFields = {
 
 std::span<const RecordField> recordFields() noexcept { return kFields; }
 
+bool isArray(FieldShape shape) noexcept { return shape == kPerJoint || shape == kPerTaskComponent; }
+
 std::size_t RecordShape::entries(const RecordField& field) const noexcept {
-  if (field.shape == kScalar) return 1;
-  return static_cast<std::size_t>(field.shape == kPerJoint ? joints : task_size);
+  switch (field.shape) {
+    case kScalar:
+      return 1;
+    case kPerJoint:
+      return static_cast<std::size_t>(joints);
+    case kPerTaskComponent:
+      return static_cast<std::size_t>(task_size);
+    case kOfRotation:
+      return has_rotation ? 1 : 0;
+  }
+  return 0;
 }
 
 const char* typeName(FieldType type) noexcept {
@@ -81,7 +94,7 @@ std::vector<RecordColumn> recordColumns(const RecordShape& shape) {
   for (const RecordField& field : kFields) {
     for (std::size_t i = 0; i < shape.entries(field); ++i) {
       std::string name = field.name;
-      if (field.shape != kScalar) name += fmt::format("_{}", i + 1);
+      if (isArray(field.shape)) name += fmt::format("_{}", i + 1);
       columns.push_back(
           {std::move(name), field.name, field.type, field.role, field.offset + i * kWord});
     }

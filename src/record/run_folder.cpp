@@ -29,9 +29,15 @@ void removeEarlier(const fs::path& path, const std::string& expectation) {
 
 }  // namespace
 
-fs::path prepareRunFolder(const std::string& directory, const std::string& scene) {
+void checkRunName(const std::string& name) {
+  if (!name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos) return;
+  failAt({std::make_shared<std::string>(name), 1, 1}, "--name", inQuotes(name) + " is no name",
+         "expected that of one folder, without /");
+}
+
+fs::path prepareRunFolder(const std::string& directory, const std::string& name) {
   if (directory.empty()) failAtOutput("", "no folder", "expected a path");
-  const fs::path folder = fs::path(directory) / scene;
+  const fs::path folder = fs::path(directory) / name;
   std::error_code error;
   fs::create_directories(folder, error);
   if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) {

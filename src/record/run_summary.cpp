@@ -6,6 +6,7 @@
 
 #include "tactus/record/fault_text.h"
 #include "tactus/record/output_file.h"
+#include "tactus/record/tool_error.h"
 
 namespace tactus {
 namespace {
@@ -31,6 +32,11 @@ void addTo(Json& json, const RunFigures& figures) {
   json["tcp_error_max_m"] = figures.tcp_error_max_m;
   json["tcp_error_rms_m"] = figures.tcp_error_rms_m;
   json["tcp_error_final_m"] = figures.tcp_error_final_m;
+  if (const auto& rotation = figures.tcp_rotation_error) {
+    json["tcp_rotation_error_max_rad"] = rotation->max_rad;
+    json["tcp_rotation_error_rms_rad"] = rotation->rms_rad;
+    json["tcp_rotation_error_final_rad"] = rotation->final_rad;
+  }
   json["peak_joint_speed_squared"] = figures.peak_joint_speed_squared;
   json["joints_at_limit_cycles"] = figures.joints_at_limit_cycles;
   json["stiffness_final_N_per_m"] = figures.stiffness_final_N_per_m;
@@ -43,7 +49,9 @@ void addTo(Json& json, const RunFigures& figures) {
 }  // namespace
 
 RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
-    : limits_(config.limits), contacts_(config.force_control.has_value(), expected_cycles) {}
+    : limits_(config.limits), contacts_(config.force_control, expected_cycles) {
+  if (hasRotation(config.task)) figures_.tcp_rotation_error.emplace();
+}
 
 void RunSummary::add(const CycleRecord& record) {
   addFigures(record);
@@ -58,12 +66,22 @@ void RunSummary::addFigures(const CycleRecord& record) noexcept {
   }
   figures_.final_force_N = record.force_sensor_N;
   figures_.stiffness_final_N_per_m = record.stiffness_N_per_m;
+  addToolError(record);
+  addJoints(record);
+  step_times_.add(record.step_ns);
+}
+
+void RunSummary::addToolError(const CycleRecord& record) noexcept {
   const double error_m = norm(record.tool_error_m);
   figures_.tcp_error_max_m = std::max(figures_.tcp_error_max_m, error_m);
   figures_.tcp_error_final_m = error_m;
   squared_error_sum_m2_ += error_m * error_m;
-  addJoints(record);
-  step_times_.add(record.step_ns);
+  if (!figures_.tcp_rotation_error) return;
+  const double error_rad = record.tool_rotation_error_rad;
+  RotationError& rotation = *figures_.tcp_rotation_error;
+  rotation.max_rad = std::max(rotation.max_rad, error_rad);
+  rotation.final_rad = error_rad;
+  squared_rotation_sum_rad2_ += error_rad * error_rad;
 }
 
 void RunSummary::addJoints(const CycleRecord& record) noexcept {
@@ -81,8 +99,10 @@ void RunSummary::addJoints(const CycleRecord& record) noexcept {
 RunFigures RunSummary::figures() const {
   RunFigures figures = figures_;
   if (figures.cycles > 0) {
-    figures.tcp_error_rms_m =
-        std::sqrt(squared_error_sum_m2_ / static_cast<double>(figures.cycles));
+    const auto cycles = static_cast<double>(figures.cycles);
+    figures.tcp_error_rms_m = std::sqrt(squared_error_sum_m2_ / cycles);
+    if (figures.tcp_rotation_error)
+      figures.tcp_rotation_error->rms_rad = std::sqrt(squared_rotation_sum_rad2_ / cycles);
   }
   figures.contacts = contacts_.contacts();
   figures.step_time_ns = timeFigures(step_times_);

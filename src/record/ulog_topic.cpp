@@ -93,7 +93,8 @@ std::string findShape(const std::vector<LoggedField>& fields, RecordShape& shape
     return fmt::format("no field w with an entry for each task component, 1 to {} are expected",
                        kMaxTaskSize);
   }
-  shape = {static_cast<int>(q->entries), static_cast<int>(w->entries)};
+  shape = {static_cast<int>(q->entries), static_cast<int>(w->entries),
+           find(fields, "tool_rotation_error_rad") != nullptr};
   return {};
 }
 

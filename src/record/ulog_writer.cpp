@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <stdexcept>
 
+#include "tactus/record/tool_error.h"
 #include "tactus/record/ulog_format.h"
 
 namespace tactus {
@@ -13,6 +15,9 @@ namespace {
 
 constexpr std::size_t kTextChunk = 32768;
 constexpr std::uint16_t kCycleId = 0;
+constexpr const char* kArraysInfo =
+    "q[0], dq[0], q_measured[0] are of joint/1, q_1 and so on in CSV; w[0], wd[0], wd_dot[0] of "
+    "component/1, w_1 and so on in CSV";
 constexpr std::size_t kDataHeaderSize =
     kMessageHeaderSize + sizeof(kCycleId) + sizeof(std::uint64_t);
 
@@ -40,6 +45,7 @@ std::vector<CopyRun> packedRuns(const RecordShape& shape, std::size_t message_of
   std::vector<CopyRun> runs;
   for (const RecordField& field : recordFields()) {
     const std::size_t size = shape.entries(field) * sizeof(double);
+    if (size == 0) continue;
     appendRun({field.offset, message_offset, size}, runs);
     message_offset += size;
   }
@@ -56,8 +62,9 @@ void appendMessage(std::string& bytes, char type, std::string_view payload) {
 void appendFormat(std::string& bytes, const RecordShape& shape) {
   std::string format = fmt::format("{}:uint64_t timestamp;", kCycleTopic);
   for (const RecordField& field : recordFields()) {
+    if (shape.entries(field) == 0) continue;
     format += typeName(field.type);
-    if (field.shape != FieldShape::kScalar) format += fmt::format("[{}]", shape.entries(field));
+    if (isArray(field.shape)) format += fmt::format("[{}]", shape.entries(field));
     format += fmt::format(" {};", field.name);
   }
   appendMessage(bytes, 'F', format);
@@ -68,6 +75,15 @@ void appendInfo(std::string& bytes, std::string_view name, std::string_view valu
   appendKey(payload, textKey(name, value));
   payload += value;
   appendMessage(bytes, 'I', payload);
+}
+
+/// What a reader of the log alone needs to know of its numbers.
+void appendNames(std::string& bytes) {
+  for (const FaultRow& row : faultTable())
+    appendInfo(bytes, fmt::format("fault/{}", static_cast<int>(row.fault)), row.name);
+  for (int i = 0; i < kModeCount; ++i)
+    appendInfo(bytes, fmt::format("mode/{}", i), modeName(static_cast<Mode>(i)));
+  appendInfo(bytes, "arrays", kArraysInfo);
 }
 
 void appendMultiInfo(std::string& bytes, std::string_view name, std::string_view value) {
@@ -97,7 +113,8 @@ void appendParameter(std::string& bytes, std::string name, double value) {
 
 LogDescription describeLog(const Scene& scene) {
   LogDescription description;
-  description.shape = {scene.controller.chain.size(), scene.controller.task.size};
+  const TaskConfig& task = scene.controller.task;
+  description.shape = {scene.controller.chain.size(), task.size, hasRotation(task)};
   description.infos = {{"ver_sw", TACTUS_VERSION},
                        {"scene", scene.name},
                        {"variant", scene.variant},
@@ -105,6 +122,10 @@ LogDescription describeLog(const Scene& scene) {
   for (std::size_t i = 0; i < scene.joint_names.size(); ++i) {
     description.infos.emplace_back(fmt::format("joint/{}", i + 1), scene.joint_names[i]);
   }
+  constexpr std::array kComponents = {"x", "y", "z", "rx", "ry", "rz"};
+  for (int i = 0; i < task.size; ++i)
+    description.infos.emplace_back(fmt::format("component/{}", i + 1),
+                                   kComponents[task.components[i]]);
   description.parameters = scene.numbers;
   description.sources = scene.sources;
   description.overrides = scene.overrides;
@@ -119,8 +140,10 @@ std::string logDefinitions(const LogDescription& description) {
   appendInfo(bytes, "sys_name", "tactus");
   for (const auto& [name, value] : description.infos) appendInfo(bytes, name, value);
   for (const RecordField& field : recordFields()) {
-    if (*field.unit) appendInfo(bytes, fmt::format("unit/{}", field.name), field.unit);
+    if (*field.unit && description.shape.entries(field) > 0)
+      appendInfo(bytes, fmt::format("unit/{}", field.name), field.unit);
   }
+  appendNames(bytes);
   for (const auto& [name, value] : description.parameters) appendParameter(bytes, name, value);
   for (const SourceFile& source : description.sources) {
     appendMultiInfo(bytes, kSourcePathKey, source.path);

@@ -22,23 +22,27 @@ int findJoint(const LoadingRobot& l, const std::string& joint, const std::string
 }
 
 /// What is given in the unit of the joint. The other unit is refused.
-DriveUnits chooseUnits(const LoadingRobot& l, const DriveDraft& drive, int joint,
+DriveUnits chooseUnits(const LoadingRobot& l, const DriveSection& drive, int joint,
                        const std::string& path) {
   const bool is_prismatic = l.chain.joints[joint].type == JointType::kPrismatic;
   const std::string unit = is_prismatic ? "m" : "rad";
   const std::string other_unit = is_prismatic ? "rad" : "m";
-  for (const char* stem : {"counts_per_", "offset_", "max_following_error_"}) {
-    const std::string other = fmt::format("{}.{}{}", path, stem, other_unit);
-    if (l.isGiven(other)) {
-      l.fail(other,
-             fmt::format("joint {} is {}", inQuotes(drive.joint),
-                         is_prismatic ? "prismatic" : "revolute"),
-             stem + unit);
-    }
+  const DriveUnits& other = is_prismatic ? drive.radians : drive.metres;
+  const auto refuse = [&](const std::optional<double>& value, const std::string& stem) {
+    if (!value) return;
+    l.fail(fmt::format("{}.{}{}", path, stem, other_unit),
+           fmt::format("joint {} is {}", inQuotes(drive.joint),
+                       is_prismatic ? "prismatic" : "revolute"),
+           stem + unit);
+  };
+  refuse(other.counts_per_unit, "counts_per_");
+  refuse(other.offset, "offset_");
+  refuse(other.max_following_error, "max_following_error_");
+  const DriveUnits& units = is_prismatic ? drive.metres : drive.radians;
+  if (!units.counts_per_unit) {
+    l.fail(path + ".counts_per_" + unit, "is missing", "a number >= 1 in 1/" + unit);
   }
-  const std::string counts = path + ".counts_per_" + unit;
-  if (!l.isGiven(counts)) l.fail(counts, "is missing", "a number >= 1 in 1/" + unit);
-  return is_prismatic ? drive.metres : drive.radians;
+  return units;
 }
 
 /// Positions and velocities are counts in an INTEGER32 on the bus.
@@ -64,16 +68,16 @@ void checkCounts(const LoadingRobot& l, const DriveConfig& drive, const std::str
 }
 
 DriveConfig makeDrive(const LoadingRobot& l, std::size_t i) {
-  const DriveDraft& draft = l.draft.drives[i];
+  const DriveSection& given = l.config.drives.joints[i];
   const std::string path = fmt::format("drives.joints[{}]", i);
-  DriveConfig drive = draft.config;
-  drive.joint = findJoint(l, draft.joint, path + ".joint");
-  drive.bus = findBus(l, draft.interface, path + ".interface");
+  DriveConfig drive = given.config;
+  drive.joint = findJoint(l, given.joint, path + ".joint");
+  drive.bus = findBus(l, given.interface, path + ".interface");
   if (drive.sign == 0) l.fail(path + ".sign", "'0' is no sign", "1 or -1");
-  const DriveUnits units = chooseUnits(l, draft, drive.joint, path);
-  drive.counts_per_unit = units.counts_per_unit;
-  drive.offset = units.offset;
-  drive.max_following_error = units.max_following_error;
+  const DriveUnits units = chooseUnits(l, given, drive.joint, path);
+  drive.counts_per_unit = *units.counts_per_unit;
+  drive.offset = units.offset.value_or(drive.offset);
+  drive.max_following_error = units.max_following_error.value_or(drive.max_following_error);
   drive.max_velocity = l.chain.limits.max_velocity[drive.joint];
   checkCounts(l, drive, path);
   return drive;
@@ -82,13 +86,13 @@ DriveConfig makeDrive(const LoadingRobot& l, std::size_t i) {
 /// From the entries before it.
 void checkIsDistinct(const LoadingRobot& l, std::size_t i) {
   const std::string path = fmt::format("drives.joints[{}]", i);
-  const DriveDraft& drive = l.draft.drives[i];
-  if (drive.config.node_id == l.draft.canopen.master_node_id) {
+  const DriveSection& drive = l.config.drives.joints[i];
+  if (drive.config.node_id == l.can.canopen.master_node_id) {
     l.fail(path + ".node_id", fmt::format("{} is the master's", drive.config.node_id),
            "another one than can.master_node_id");
   }
   for (std::size_t k = 0; k < i; ++k) {
-    const DriveDraft& other = l.draft.drives[k];
+    const DriveSection& other = l.config.drives.joints[k];
     if (other.joint == drive.joint) {
       l.fail(path + ".joint",
              fmt::format("{} has a drive already, in entry {}", inQuotes(drive.joint), k),
@@ -107,12 +111,12 @@ void checkIsDistinct(const LoadingRobot& l, std::size_t i) {
 
 std::string listOfBuses(const LoadingRobot& l) {
   std::vector<std::string> names;
-  for (const BusConfig& bus : l.draft.buses) names.push_back(bus.interface);
+  for (const BusConfig& bus : l.can.buses) names.push_back(bus.interface);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
 int findBus(const LoadingRobot& l, const std::string& interface, const std::string& path) {
-  const std::vector<BusConfig>& buses = l.draft.buses;
+  const std::vector<BusConfig>& buses = l.can.buses;
   const auto bus = std::ranges::find(buses, interface, &BusConfig::interface);
   if (bus == buses.end()) {
     l.fail(path, inQuotes(interface) + " is none of can.buses", "one of " + listOfBuses(l));
@@ -121,11 +125,11 @@ int findBus(const LoadingRobot& l, const std::string& interface, const std::stri
 }
 
 std::vector<DriveConfig> loadDrives(const LoadingRobot& l) {
-  if (!l.isGiven("drives.joints")) {
+  if (l.config.drives.joints.empty()) {
     l.fail("drives.joints", "is missing", "a list of one drive a moving joint beside can");
   }
   std::vector<DriveConfig> drives;
-  for (std::size_t i = 0; i < l.draft.drives.size(); ++i) {
+  for (std::size_t i = 0; i < l.config.drives.joints.size(); ++i) {
     checkIsDistinct(l, i);
     drives.push_back(makeDrive(l, i));
   }

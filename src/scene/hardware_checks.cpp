@@ -6,60 +6,86 @@
 
 #include "tactus/canopen/drive_setup.h"
 #include "tactus/scene/bus_load_text.h"
+#include "tactus/scene/scene_checks.h"
 
 namespace tactus {
 namespace {
 
-void checkCycle(const YamlNode& scene, const ConfigDraft& draft) {
-  if (interpolationPeriod(draft.period_s)) return;
+void checkCycle(const YamlNode& scene, double period_s) {
+  if (interpolationPeriod(period_s)) return;
   failAt(locate(scene, "period_s"), "period_s",
-         fmt::format("drives cannot be told of {} s", draft.period_s),
+         fmt::format("drives cannot be told of {} s", period_s),
          "expected 1 to 255 times a power of ten of seconds (object 60C2), as 0.001 or 0.00125");
 }
 
-void checkHeartbeat(const YamlNode& root, const ConfigDraft& draft) {
+void checkHeartbeat(const YamlNode& root, double period_s, const CanSection& can) {
   const char* const key = "can.heartbeat_period_s";
-  const double heartbeat_s = draft.canopen.heartbeat_period_s;
-  if (heartbeat_s >= draft.period_s) return;
+  const double heartbeat_s = can.canopen.heartbeat_period_s;
+  if (heartbeat_s >= period_s) return;
   failAt(locate(root, key), key, fmt::format("{} s is shorter than a cycle", heartbeat_s),
-         fmt::format("expected at least the scene's period_s = {}", draft.period_s));
+         fmt::format("expected at least the scene's period_s = {}", period_s));
 }
 
 /// A measured position answers a setpoint two cycles later: with more, the loop overshoots.
-void checkTrackingGains(const YamlNode& root, const ConfigDraft& draft) {
+void checkTrackingGains(const YamlNode& root, double period_s,
+                        const std::vector<DriveSection>& drives) {
   constexpr double kMaxStep = 0.5;
-  for (std::size_t i = 0; i < draft.drives.size(); ++i) {
-    const double gain_per_s = draft.drives[i].config.tracking_gain_per_s;
-    if (gain_per_s * draft.period_s <= kMaxStep) continue;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const double gain_per_s = drives[i].config.tracking_gain_per_s;
+    if (gain_per_s * period_s <= kMaxStep) continue;
     const std::string key = fmt::format("drives.joints[{}].tracking_gain_per_s", i);
     failAt(locate(root, key), key, fmt::format("{} is too high", gain_per_s),
-           fmt::format("expected at most {} / period_s = {}", kMaxStep, kMaxStep / draft.period_s));
+           fmt::format("expected at most {} / period_s = {}", kMaxStep, kMaxStep / period_s));
   }
 }
 
-void checkBusLoads(const YamlNode& root, const ConfigDraft& draft, const HardwareConfig& hardware) {
+bool isOverloaded(const BusLoad& load) {
   constexpr double kRounding = 1e-9;
-  const std::vector<BusLoad> loads = busLoads(hardware, draft.period_s);
+  return load.share() > kMaxBusLoad + kRounding;
+}
+
+/// How a bus is relieved: by the shortest cycle that overloads none and fits all else, or by other
+/// means where there is no such cycle.
+std::string cureOfOverload(double period_s, const RobotConfig& config,
+                           const HardwareConfig& hardware) {
+  constexpr int kStepsPerSecond = 100000;
+  constexpr int kMaxSteps = 2000;  // 0.02 s, the longest cycle
+  const double filter_rate_hz = electronicsOf(config).filter_rate_hz;
+  for (int steps = static_cast<int>(period_s * kStepsPerSecond); steps <= kMaxSteps; ++steps) {
+    const double longer_s = static_cast<double>(steps) / kStepsPerSecond;
+    if (longer_s <= period_s || longer_s > hardware.canopen.heartbeat_period_s ||
+        !interpolationPeriod(longer_s) ||
+        (hardware.tactile && !fitsModule(longer_s, filter_rate_hz)) ||
+        std::ranges::any_of(busLoads(hardware, longer_s), isOverloaded))
+      continue;
+    return fmt::format("a period_s of at least {}", longer_s);
+  }
+  return "fewer drives on this bus";
+}
+
+void checkBusLoads(const YamlNode& root, double period_s, const RobotConfig& config,
+                   const HardwareConfig& hardware) {
+  const std::vector<BusLoad> loads = busLoads(hardware, period_s);
   for (std::size_t i = 0; i < loads.size(); ++i) {
-    if (loads[i].share() <= kMaxBusLoad + kRounding) continue;
+    if (!isOverloaded(loads[i])) continue;
     const std::string& interface = hardware.buses[i].interface;
-    const auto given = std::ranges::find(draft.buses, interface, &BusConfig::interface);
-    const std::string key = fmt::format("can.buses[{}]", given - draft.buses.begin());
-    failAt(
-        locate(root, key), key,
-        fmt::format("{} is overloaded: {}", interface, describeBusLoad(loads[i], draft.period_s)),
-        fmt::format("expected at most {:.4g} %", 100.0 * kMaxBusLoad));
+    const auto given = std::ranges::find(config.can->buses, interface, &BusConfig::interface);
+    const std::string key = fmt::format("can.buses[{}]", given - config.can->buses.begin());
+    failAt(locate(root, key), key,
+           fmt::format("{} is overloaded: {}", interface, describeBusLoad(loads[i], period_s)),
+           fmt::format("expected at most {:.4g} %: {}", 100.0 * kMaxBusLoad,
+                       cureOfOverload(period_s, config, hardware)));
   }
 }
 
 }  // namespace
 
-void checkHardware(const YamlNode& scene, const YamlNode& robot, const ConfigDraft& draft,
-                   const HardwareConfig& hardware) {
-  checkCycle(scene, draft);
-  checkHeartbeat(robot, draft);
-  checkTrackingGains(robot, draft);
-  checkBusLoads(robot, draft, hardware);
+void checkHardware(const YamlNode& scene, const YamlNode& robot, double period_s,
+                   const RobotConfig& config, const HardwareConfig& hardware) {
+  checkCycle(scene, period_s);
+  checkHeartbeat(robot, period_s, *config.can);
+  checkTrackingGains(robot, period_s, config.drives.joints);
+  checkBusLoads(robot, period_s, config, hardware);
 }
 
 }  // namespace tactus

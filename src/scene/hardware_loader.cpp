@@ -19,26 +19,9 @@ bool isDeviceName(std::string_view name, std::size_t max_size) {
          name != "..";
 }
 
-void refuseKeysWithoutCan(const LoadingRobot& l) {
-  for (const char* key : {"drives.joints", "drives.start_tolerance", "tactile_module.interface",
-                          "gpio", "real_time"}) {
-    if (l.isGiven(key)) l.fail(key, "the robot has no can section", "one, or not this key");
-  }
-}
-
-void refuseKeysOfModuleOnNoBus(const LoadingRobot& l) {
-  if (l.isGiven("tactile_module.interface")) return;
-  for (const char* key : {"first_id", "filter_in_daemon", "tare"}) {
-    const std::string path = std::string("tactile_module.") + key;
-    if (l.isGiven(path)) {
-      l.fail(path, "the module is on no bus", "tactile_module.interface, or not this key");
-    }
-  }
-}
-
 void checkBuses(const LoadingRobot& l) {
   constexpr std::size_t kMaxInterfaceName = 15;  // IFNAMSIZ with its end
-  const std::vector<BusConfig>& buses = l.draft.buses;
+  const std::vector<BusConfig>& buses = l.can.buses;
   for (std::size_t i = 0; i < buses.size(); ++i) {
     const std::string& name = buses[i].interface;
     const std::string path = fmt::format("can.buses[{}].interface", i);
@@ -53,7 +36,7 @@ void checkBuses(const LoadingRobot& l) {
 }
 
 void checkHeartbeat(const LoadingRobot& l) {
-  const CanopenConfig& canopen = l.draft.canopen;
+  const CanopenConfig& canopen = l.can.canopen;
   constexpr double kTolerance = 1e-6;
   const auto checkMilliseconds = [&](const char* key, double seconds) {
     if (std::abs(seconds * 1e3 - std::round(seconds * 1e3)) <= kTolerance) return;
@@ -105,22 +88,21 @@ void checkModuleIds(const LoadingRobot& l, const HardwareConfig& hardware) {
   }
 }
 
-CanTactileConfig makeModule(const LoadingRobot& l) {
-  const SimulatedModuleConfig& module = l.draft.plant.module;
+CanTactileConfig makeModule(const LoadingRobot& l, const TactileModuleSection& module) {
   const std::string path = "tactile_module.interface";
-  if (!l.isGiven(path)) l.fail(path, "is missing", "one of " + listOfBuses(l));
-  CanTactileConfig config = l.draft.can_tactile;
-  config.bus = findBus(l, l.draft.module_interface, path);
-  config.first_id = static_cast<std::uint32_t>(l.draft.module_first_id);
-  config.calibration = module.calibration;
-  config.counts_per_N = module.counts_per_N;
-  config.sample_period_s = module.sample_period_s;
-  if (!l.draft.filter_in_daemon) return config;
-  config.filter_cutoff_hz = module.filter_cutoff_hz;
-  if (module.filter_cutoff_hz * module.sample_period_s >= 0.5) {
+  if (!module.interface) l.fail(path, "is missing", "one of " + listOfBuses(l));
+  CanTactileConfig config = module.on_bus;
+  config.bus = findBus(l, *module.interface, path);
+  config.calibration = module.electronics.calibration;
+  config.counts_per_N = module.electronics.counts_per_N;
+  config.sample_period_s = module.electronics.sample_period_s;
+  if (!module.filter_in_daemon) return config;
+  const double cutoff_hz = module.config.filter_cutoff_hz;
+  config.filter_cutoff_hz = cutoff_hz;
+  if (cutoff_hz * config.sample_period_s >= 0.5) {
     l.fail("tactile_module.filter_cutoff_hz",
-           fmt::format("{} Hz is too high for a filter in the daemon", module.filter_cutoff_hz),
-           fmt::format("less than half the samples' rate of {} Hz", 1.0 / module.sample_period_s));
+           fmt::format("{} Hz is too high for a filter in the daemon", cutoff_hz),
+           fmt::format("less than half the samples' rate of {} Hz", 1.0 / config.sample_period_s));
   }
   return config;
 }
@@ -156,30 +138,26 @@ bool isUsed(const HardwareConfig& hardware, int bus) {
 
 }  // namespace
 
-std::optional<HardwareConfig> loadHardware(const YamlNode& root, const ConfigDraft& draft,
+std::optional<HardwareConfig> loadHardware(const YamlNode& root, const RobotConfig& config,
                                            const UrdfChain& chain) {
-  const LoadingRobot l{root, draft, chain};
-  if (!l.isGiven("can")) {
-    refuseKeysWithoutCan(l);
-    refuseKeysOfModuleOnNoBus(l);
-    return std::nullopt;
-  }
+  if (!config.can) return std::nullopt;
+  const LoadingRobot l{root, config, *config.can, chain};
   checkBuses(l);
   checkHeartbeat(l);
-  HardwareConfig hardware{.buses = draft.buses,
+  HardwareConfig hardware{.buses = l.can.buses,
                           .drives = loadDrives(l),
-                          .canopen = draft.canopen,
+                          .canopen = l.can.canopen,
                           .tactile = std::nullopt,
-                          .gpio = draft.gpio,
-                          .real_time = draft.real_time,
-                          .start_tolerance = draft.start_tolerance};
-  if (l.isGiven("tactile_module")) {
-    hardware.tactile = makeModule(l);
+                          .gpio = config.gpio,
+                          .real_time = config.real_time,
+                          .start_tolerance = config.drives.start_tolerance};
+  if (config.tactile_module) {
+    hardware.tactile = makeModule(l, *config.tactile_module);
     checkModuleIds(l, hardware);
   }
-  for (std::size_t i = 0; i < draft.buses.size(); ++i) {
+  for (std::size_t i = 0; i < l.can.buses.size(); ++i) {
     if (isUsed(hardware, static_cast<int>(i))) continue;
-    l.fail(fmt::format("can.buses[{}]", i), "nothing is on " + inQuotes(draft.buses[i].interface),
+    l.fail(fmt::format("can.buses[{}]", i), "nothing is on " + inQuotes(l.can.buses[i].interface),
            "a drive or the tactile module, or no such bus");
   }
   if (hardware.gpio) checkLines(l, *hardware.gpio);

@@ -38,9 +38,15 @@ std::vector<KeyRow> keyRows(const std::vector<KeySpec>& keys) {
 
 std::string keyFacts(const KeySpec& spec) {
   std::string text = describeExpectation(spec);
-  if (spec.presence == Presence::kRequired) return text + "; required";
-  const bool has_default = spec.presence == Presence::kDefaulted && !spec.default_value.empty();
-  return text + (has_default ? "; default " + spec.default_value : "; optional");
+  if (spec.presence == Presence::kRequired) {
+    text += "; required";
+  } else if (!spec.default_value.empty()) {
+    text += "; default " + spec.default_value;
+  } else {
+    text += "; optional";
+  }
+  if (!spec.needs.section.empty()) text += "; only with " + spec.needs.section;
+  return text + (spec.symbol.empty() ? "" : "; symbol " + spec.symbol);
 }
 
 std::vector<KeyRow> findKeyRows(const std::vector<KeySpec>& keys, std::string_view path) {
@@ -48,7 +54,8 @@ std::vector<KeyRow> findKeyRows(const std::vector<KeySpec>& keys, std::string_vi
   std::vector<KeyRow> found;
   for (KeyRow& row : keyRows(keys)) {
     const std::string words = "." + withoutIndices(row.path);
-    if (words.ends_with(wanted) || words.find(wanted + ".") != std::string::npos)
+    if (words.ends_with(wanted) || words.find(wanted + ".") != std::string::npos ||
+        (!path.empty() && row.spec->symbol == path))
       found.push_back(std::move(row));
   }
   return found;

@@ -36,7 +36,11 @@ Paths are relative to the file that they stand in.
 .B \-\-set
 .IR key = value
 of the commands lays one more value over the scene, as in
-.BR \-\-set\~simulation.obstacles[0].x_m=0.7 .
+.BR \-\-set\~simulation.obstacles[0].x_m=0.7 ;
+keys of the robot begin with
+.BR robot. ,
+as in
+.BR \-\-set\~robot.drives.joints[0].node_id=3 .
 )",
     R"(.SH EXAMPLES
 A band in the way of the arm that gives way in its null space:
@@ -120,7 +124,7 @@ Anchors, aliases, tags and second documents are not accepted.
 prints a part of what follows.
 Editors that know JSON schemas check and explain the keys while you type, with the first line of
 the example.
-Numbers in parentheses are equations of the paper: F. Sygulla, C. Schuetz, D. Rixen,
+Symbols and numbers in parentheses, of equations, are those of the paper: F. Sygulla, C. Schuetz, D. Rixen,
 .IR "Adaptive Motion Control in Uncertain Environments using Tactile Feedback" .
 )";
 

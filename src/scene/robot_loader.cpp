@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "tactus/scene/hardware_loader.h"
@@ -13,15 +14,16 @@ namespace {
 
 constexpr const char* kModuleKey = "tactile_module";
 
-void checkModule(const YamlNode& root, const ConfigDraft& draft) {
-  const SimulatedModuleConfig& module = draft.plant.module;
+void checkModule(const YamlNode& root, const TactileModuleSection& section) {
+  const TactileModuleConfig& config = section.config;
+  const SimulatedModuleConfig& module = section.electronics;
   const auto fail = [&](const std::string& key, const std::string& problem,
                         const std::string& expectation) {
     const std::string path = std::string(kModuleKey) + "." + key;
     failAt(locate(root, path), path, problem, "expected " + expectation);
   };
-  if (module.filter_cutoff_hz >= 0.5 * module.filter_rate_hz) {
-    fail("filter_cutoff_hz", fmt::format("{} Hz is too high", module.filter_cutoff_hz),
+  if (config.filter_cutoff_hz >= 0.5 * module.filter_rate_hz) {
+    fail("filter_cutoff_hz", fmt::format("{} Hz is too high", config.filter_cutoff_hz),
          fmt::format("less than half the filter's rate of {} Hz", module.filter_rate_hz));
   }
   const double filter_steps = module.sample_period_s * module.filter_rate_hz;
@@ -31,9 +33,9 @@ void checkModule(const YamlNode& root, const ConfigDraft& draft) {
          fmt::format("{} s is {} filter periods", module.sample_period_s, filter_steps),
          "a multiple of 1 / filter_rate_hz");
   }
-  if (draft.module.max_sample_age_s < module.sample_period_s) {
+  if (config.max_sample_age_s < module.sample_period_s) {
     fail("max_sample_age_s",
-         fmt::format("{} s is shorter than the sample period", draft.module.max_sample_age_s),
+         fmt::format("{} s is shorter than the sample period", config.max_sample_age_s),
          fmt::format("at least {} s", module.sample_period_s));
   }
   Eigen::FullPivLU<Eigen::Matrix<double, 4, 8>> decomposition(module.calibration);
@@ -69,28 +71,38 @@ void checkWithinLimits(const JointVector& q, const YamlNode& root, const std::st
   }
 }
 
-LoadedRobot loadRobot(const SourceFile& file, SourceReader& reader, ConfigDraft& draft) {
-  YamlNode root = parseYaml(file);
-  readSection(root, robotKeys(), "", draft);
-  const SourceFile urdf =
-      reader.read(resolvePath(file.path, draft.urdf), "urdf", locate(root, "urdf"));
+std::string SceneSettings::resolve(const std::string& named_in, std::string_view key,
+                                   const std::string& reference) const {
+  const bool is_set = std::ranges::count(overrides, key, &Override::key) > 0;
+  return resolvePath(is_set ? scene_path : named_in, reference);
+}
 
-  const NamedFrame tip{draft.tip, "tip", locate(root, "tip")};
+LoadedRobot loadRobot(const SourceFile& file, const SceneSettings& settings, SourceReader& reader,
+                      NamedNumbers& numbers) {
+  YamlNode root = parseYaml(file);
+  for (const Override& setting : settings.overrides) {
+    if (setting.key.starts_with(kRobotPrefix)) applyOverride(root, setting, kRobotPrefix.size());
+  }
+  RobotConfig config = readRobotConfig(root, numbers);
+  const SourceFile urdf = reader.read(settings.resolve(file.path, "robot.urdf", config.urdf),
+                                      "urdf", locate(root, "urdf"));
+
+  const NamedFrame tip{config.tip, "tip", locate(root, "tip")};
   std::optional<NamedFrame> module_link;
-  if (findGiven(root, kModuleKey)) {
+  if (config.tactile_module) {
     const std::string key = std::string(kModuleKey) + ".link";
-    module_link = {draft.module_link, key, locate(root, key)};
-    checkModule(root, draft);
+    module_link = {config.tactile_module->link, key, locate(root, key)};
+    checkModule(root, *config.tactile_module);
   }
   UrdfChain chain = loadUrdfChain(urdf, tip, module_link);
-  checkWithinLimits(toJointVector(draft.home, root, "home", chain), root, "home", chain);
-  if (!draft.max_acceleration.empty()) {
+  checkWithinLimits(toJointVector(config.home, root, "home", chain), root, "home", chain);
+  if (config.max_acceleration) {
     chain.limits.max_acceleration =
-        toJointVector(draft.max_acceleration, root, "limits.acceleration", chain);
+        toJointVector(*config.max_acceleration, root, "limits.acceleration", chain);
   }
-  if (chain.module_link) draft.module.link = *chain.module_link;
-  std::optional<HardwareConfig> hardware = loadHardware(root, draft, chain);
-  return {std::move(root), std::move(chain), std::move(hardware)};
+  if (chain.module_link) config.tactile_module->config.link = *chain.module_link;
+  std::optional<HardwareConfig> hardware = loadHardware(root, config, chain);
+  return {std::move(root), std::move(config), std::move(chain), std::move(hardware)};
 }
 
 }  // namespace tactus

@@ -6,13 +6,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "tactus/scene/key_words.h"
+
 namespace tactus {
 namespace {
 
 /// What the checks look at.
 struct Checked {
   const YamlNode& root;
-  const ConfigDraft& draft;
+  const SceneConfig& scene;
   const LoadedRobot& robot;
   const JointVector& q_start;
 
@@ -22,20 +24,23 @@ struct Checked {
   }
 };
 
+bool isOfPosition(int component) { return component < 3; }
+
 void checkTask(const Checked& c) {
   const std::size_t joint_count = c.robot.chain.joints.size();
-  if (c.draft.components.size() > joint_count) {
-    c.fail("task.components", fmt::format("a list of {}", c.draft.components.size()),
+  const TaskConfig& task = c.scene.task;
+  if (static_cast<std::size_t>(task.size) > joint_count) {
+    c.fail("task.components", fmt::format("a list of {}", task.size),
            fmt::format("at most {}, as many as there are joints", joint_count));
   }
   // One explicit step of the drift term must not overshoot.
-  if (c.draft.task.drift_gain_per_s * c.draft.period_s > 1.0) {
-    c.fail("task.drift_gain_per_s", fmt::format("{} is too high", c.draft.task.drift_gain_per_s),
-           fmt::format("at most 1 / period_s = {}", 1.0 / c.draft.period_s));
+  if (task.drift_gain_per_s * c.scene.period_s > 1.0) {
+    c.fail("task.drift_gain_per_s", fmt::format("{} is too high", task.drift_gain_per_s),
+           fmt::format("at most 1 / period_s = {}", 1.0 / c.scene.period_s));
   }
-  const bool has_position = std::ranges::any_of(
-      c.draft.components, [](const std::string& component) { return component.size() == 1; });
-  if (c.draft.task.wait_beyond_m && !has_position) {
+  const auto end = task.components.begin() + task.size;
+  const bool has_position = std::any_of(task.components.begin(), end, isOfPosition);
+  if (task.wait_beyond_m && !has_position) {
     c.fail("task.wait_beyond_m", "the task has no position that could lag",
            "x, y or z among task.components, or no such key");
   }
@@ -60,9 +65,9 @@ void checkReach(const Checked& c, const Waypoint& waypoint, const std::string& p
   kinematics.computePose(c.q_start, pose);
   const Vector3 target = framePosition(pose, chain.tip) + waypoint.displacement_m;
   double squared_distance = 0.0;
-  for (const std::string& component : c.draft.components) {
-    const std::size_t axis = component.size() == 1 ? component[0] - 'x' : 3;
-    if (axis < 3) squared_distance += target[axis] * target[axis];
+  for (int i = 0; i < c.scene.task.size; ++i) {
+    const int axis = c.scene.task.components[i];
+    if (isOfPosition(axis)) squared_distance += target[axis] * target[axis];
   }
   const double distance = std::sqrt(squared_distance);
   if (distance > largestReach_m(chain)) {
@@ -71,38 +76,42 @@ void checkReach(const Checked& c, const Waypoint& waypoint, const std::string& p
   }
 }
 
+void checkWaypoint(const Checked& c, const Waypoint& waypoint, const std::string& path) {
+  checkReach(c, waypoint, path);
+  const double angle = waypoint.rotation_vector_rad.norm();
+  if (angle > std::numbers::pi) {
+    c.fail(path + ".rotation_vector_rad", fmt::format("turns by {:.4g} rad", angle),
+           "at most half a turn");
+  }
+}
+
 void checkTrajectory(const Checked& c) {
   const std::string section = "task.trajectory";
+  const TrajectorySection& trajectory = c.scene.trajectory;
   std::vector<std::string> given;
-  for (const char* kind : {"line", "waypoints", "hold"}) {
-    if (findGiven(c.root, section + "." + kind)) given.push_back(kind);
-  }
+  if (trajectory.line) given.push_back("line");
+  if (!trajectory.waypoints.empty()) given.push_back("waypoints");
+  if (trajectory.hold) given.push_back("hold");
   if (given.empty()) c.fail(section, "no motion", "one of line, waypoints, hold");
   if (given.size() > 1) {
     c.fail(section + "." + given[1], "a second kind of motion besides " + given[0],
            "one of line, waypoints, hold");
   }
-  const std::vector<Waypoint>& waypoints = c.draft.task.trajectory.waypoints;
-  for (std::size_t i = 0; i < waypoints.size(); ++i) {
-    const bool is_line = given[0] == "line";
-    const std::string path =
-        is_line ? section + ".line" : fmt::format("{}.waypoints[{}]", section, i);
-    checkReach(c, waypoints[i], path);
-    const double angle = waypoints[i].rotation_vector_rad.norm();
-    if (angle > std::numbers::pi) {
-      c.fail(path + ".rotation_vector_rad", fmt::format("turns by {:.4g} rad", angle),
-             "at most half a turn");
-    }
-    if (is_line && waypoints[i].displacement_m.isZero(0.0) &&
-        waypoints[i].rotation_vector_rad.isZero(0.0)) {
-      c.fail(section + ".line", "does not move", "displacement_m or rotation_vector_rad, or hold");
-    }
+  for (std::size_t i = 0; i < trajectory.waypoints.size(); ++i) {
+    checkWaypoint(c, trajectory.waypoints[i], fmt::format("{}.waypoints[{}]", section, i));
+  }
+  if (!trajectory.line) return;
+  const std::string path = section + ".line";
+  checkWaypoint(c, *trajectory.line, path);
+  if (trajectory.line->displacement_m.isZero(0.0) &&
+      trajectory.line->rotation_vector_rad.isZero(0.0)) {
+    c.fail(path, "does not move", "displacement_m or rotation_vector_rad, or hold");
   }
 }
 
 void checkJointSpace(const Checked& c) {
-  const ForceControlConfig& force = c.draft.force;
-  if (!findGiven(c.root, "redundancy.joint_limit_avoidance")) {
+  const ForceControlConfig& force = c.scene.controller->force;
+  if (!c.scene.joint_limit_avoidance) {
     c.fail(
         "redundancy.joint_limit_avoidance", "is missing",
         "a section with the variant joint_space, whose pull would drive joints onto their limits");
@@ -112,27 +121,31 @@ void checkJointSpace(const Checked& c) {
            fmt::format("{} N is not below the contact threshold", force.transition.release_force_N),
            fmt::format("less than contact_threshold_N = {}", force.contact_threshold_N));
   }
-  if (force.pull_gain_per_s * c.draft.period_s > 1.0) {
+  if (force.pull_gain_per_s * c.scene.period_s > 1.0) {
     c.fail("controller.pull_gain_per_s", fmt::format("{} is too high", force.pull_gain_per_s),
-           fmt::format("at most 1 / period_s = {}", 1.0 / c.draft.period_s));
+           fmt::format("at most 1 / period_s = {}", 1.0 / c.scene.period_s));
   }
 }
 
+bool needsActivationForce(Variant variant) {
+  return variant == Variant::kNullTask || variant == Variant::kNullJoint ||
+         variant == Variant::kNullLimit;
+}
+
 void checkController(const Checked& c) {
-  if (!findGiven(c.root, "controller")) return;
-  if (!findGiven(c.robot.root, "tactile_module")) {
+  if (!c.scene.controller) return;
+  if (!c.robot.config.tactile_module) {
     c.fail("controller", "the robot has no tactile_module", "no controller, or such a robot");
   }
-  const bool is_multi_space = c.draft.variant == "null_task" || c.draft.variant == "null_joint" ||
-                              c.draft.variant == "null_limit";
-  if (is_multi_space && !findGiven(c.root, "controller.activation_force_N")) {
+  const Variant variant = c.scene.controller->force.variant;
+  const std::string name = wordOf(kVariantWords, variant);
+  if (needsActivationForce(variant) && !c.scene.controller->activation_force_N) {
     c.fail("controller.activation_force_N", "is missing",
-           fmt::format("a number > 0 in N with the variant {}", c.draft.variant));
+           fmt::format("a number > 0 in N with the variant {}", name));
   }
-  if (c.draft.variant == "joint_space") checkJointSpace(c);
-  if (c.draft.variant != "none" && !findGiven(c.root, "stiffness")) {
-    c.fail("stiffness", "is missing",
-           fmt::format("a section with the variant {}", c.draft.variant));
+  if (variant == Variant::kJointSpace) checkJointSpace(c);
+  if (variant != Variant::kNone && !c.scene.stiffness) {
+    c.fail("stiffness", "is missing", fmt::format("a section with the variant {}", name));
   }
 }
 
@@ -140,48 +153,49 @@ void checkController(const Checked& c) {
 void checkDuration(const Checked& c) {
   constexpr double kMaxCycles = 1e8;
   const std::string key = "simulation.duration_s";
-  if (c.draft.duration_s < c.draft.period_s) {
-    c.fail(key, fmt::format("{} s is shorter than a cycle", c.draft.duration_s),
-           fmt::format("at least period_s = {}", c.draft.period_s));
+  if (c.scene.simulation.duration_s < c.scene.period_s) {
+    c.fail(key, fmt::format("{} s is shorter than a cycle", c.scene.simulation.duration_s),
+           fmt::format("at least period_s = {}", c.scene.period_s));
   }
-  if (c.draft.duration_s > kMaxCycles * c.draft.period_s) {
-    c.fail(key, fmt::format("{} s is more than {:g} cycles", c.draft.duration_s, kMaxCycles),
-           fmt::format("at most {} s with period_s = {}", kMaxCycles * c.draft.period_s,
-                       c.draft.period_s));
+  if (c.scene.simulation.duration_s > kMaxCycles * c.scene.period_s) {
+    c.fail(key,
+           fmt::format("{} s is more than {:g} cycles", c.scene.simulation.duration_s, kMaxCycles),
+           fmt::format("at most {} s with period_s = {}", kMaxCycles * c.scene.period_s,
+                       c.scene.period_s));
   }
 }
 
 void checkSimulatedModule(const Checked& c) {
-  const std::string key = "simulation.tactile_module.filter_cutoff_hz";
-  const double limit_hz = 0.5 * c.draft.plant.module.filter_rate_hz;
-  if (findGiven(c.root, key) && c.draft.simulated_filter_cutoff_hz >= limit_hz) {
-    c.fail(key, fmt::format("{} Hz is too high", c.draft.simulated_filter_cutoff_hz),
+  const std::optional<double>& cutoff_hz = c.scene.simulation.filter_cutoff_hz;
+  const double limit_hz = 0.5 * electronicsOf(c.robot.config).filter_rate_hz;
+  if (cutoff_hz && *cutoff_hz >= limit_hz) {
+    c.fail("simulation.tactile_module.filter_cutoff_hz",
+           fmt::format("{} Hz is too high", *cutoff_hz),
            fmt::format("less than half the filter's rate, {} Hz", limit_hz));
   }
 }
 
-/// The simulated module filters a whole number of times a cycle, or once in a whole number of them.
 void checkPeriod(const Checked& c) {
-  if (!findGiven(c.root, "controller")) return;
-  const double filter_steps = c.draft.period_s * c.draft.plant.module.filter_rate_hz;
-  const double ratio = std::max(filter_steps, 1.0 / filter_steps);
-  constexpr double kTolerance = 1e-7;
-  if (std::abs(ratio - std::round(ratio)) > kTolerance) {
-    c.fail("period_s", fmt::format("{} s does not fit the tactile module", c.draft.period_s),
+  if (!c.scene.controller) return;
+  const double filter_rate_hz = electronicsOf(c.robot.config).filter_rate_hz;
+  if (!fitsModule(c.scene.period_s, filter_rate_hz)) {
+    c.fail("period_s", fmt::format("{} s does not fit the tactile module", c.scene.period_s),
            fmt::format("a multiple or a whole part of its filter period of {} s",
-                       1.0 / c.draft.plant.module.filter_rate_hz));
+                       1.0 / filter_rate_hz));
   }
   // A sample that is not new is a period old at once.
-  if (c.draft.module.max_sample_age_s < c.draft.period_s) {
+  const double max_sample_age_s = c.robot.config.tactile_module->config.max_sample_age_s;
+  if (max_sample_age_s < c.scene.period_s) {
     const std::string key = "tactile_module.max_sample_age_s";
     failAt(locate(c.robot.root, key), key,
-           fmt::format("{} s is shorter than a cycle", c.draft.module.max_sample_age_s),
-           fmt::format("expected at least the scene's period_s = {}", c.draft.period_s));
+           fmt::format("{} s is shorter than a cycle", max_sample_age_s),
+           fmt::format("expected at least the scene's period_s = {}", c.scene.period_s));
   }
 }
 
 void checkStiffness(const Checked& c) {
-  const auto& estimator = c.draft.force.estimator;
+  if (!c.scene.stiffness) return;
+  const auto& estimator = c.scene.stiffness->estimate;
   if (estimator && estimator->min_N_per_m >= estimator->max_N_per_m) {
     c.fail("stiffness.estimate.max_N_per_m",
            fmt::format("{} is not above min_N_per_m", estimator->max_N_per_m),
@@ -190,8 +204,8 @@ void checkStiffness(const Checked& c) {
 }
 
 void checkObstacles(const Checked& c) {
-  for (std::size_t i = 0; i < c.draft.plant.obstacles.size(); ++i) {
-    const ObstacleConfig& obstacle = c.draft.plant.obstacles[i];
+  for (std::size_t i = 0; i < c.scene.simulation.obstacles.size(); ++i) {
+    const ObstacleConfig& obstacle = c.scene.simulation.obstacles[i];
     const std::string path = fmt::format("simulation.obstacles[{}]", i);
     if (obstacle.vanishes_s <= obstacle.appears_s) {
       c.fail(path + ".vanishes_s", fmt::format("{} s is too early", obstacle.vanishes_s),
@@ -208,9 +222,16 @@ void checkObstacles(const Checked& c) {
 
 }  // namespace
 
-void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobot& robot,
+bool fitsModule(double period_s, double filter_rate_hz) {
+  const double filter_steps = period_s * filter_rate_hz;
+  const double ratio = std::max(filter_steps, 1.0 / filter_steps);
+  constexpr double kTolerance = 1e-7;
+  return std::abs(ratio - std::round(ratio)) <= kTolerance;
+}
+
+void checkScene(const YamlNode& root, const SceneConfig& scene, const LoadedRobot& robot,
                 const JointVector& q_start) {
-  const Checked checked{root, draft, robot, q_start};
+  const Checked checked{root, scene, robot, q_start};
   checkTask(checked);
   checkTrajectory(checked);
   checkController(checked);

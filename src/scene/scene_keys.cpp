@@ -1,295 +1,210 @@
 #include "tactus/scene/key_builders.h"
+#include "tactus/scene/key_defaults.h"
+#include "tactus/scene/scene_config.h"
+#include "tactus/scene/simulation_keys.h"
+#include "tactus/scene/task_keys.h"
 
 namespace tactus {
 namespace {
 
 using namespace keys;
-using Draft = ConfigDraft;
 
-Waypoint& waypoint(Draft& d) { return d.task.trajectory.waypoints.back(); }
-void addWaypoint(Draft& d) { d.task.trajectory.waypoints.emplace_back(); }
-
-std::vector<KeySpec> lineKeys() {
+Table<JointLimitAvoidanceConfig> avoidanceKeys() {
+  using Config = JointLimitAvoidanceConfig;
   return {
-      defaulted("[0, 0, 0]",
-                vector3("displacement_m", "m", within(-100, 100),
-                        "target position relative to the start, base frame",
-                        [](Draft& d) -> Vector3& { return waypoint(d).displacement_m; })),
-      defaulted("[0, 0, 0]",
-                vector3("rotation_vector_rad", "rad", within(-4, 4),
-                        "target orientation relative to the start: axis times angle, base frame",
-                        [](Draft& d) -> Vector3& { return waypoint(d).rotation_vector_rad; })),
-      defaulted("0.1", number("speed_m_per_s", "m/s", above(0, 10), "cruise speed of the position",
-                              [](Draft& d) -> double& { return waypoint(d).speed_m_per_s; })),
-      defaulted("0.5",
-                number("angular_speed_rad_per_s", "rad/s", above(0, 10),
-                       "largest speed of the orientation",
-                       [](Draft& d) -> double& { return waypoint(d).angular_speed_rad_per_s; })),
-      defaulted("0.5", number("ramp_s", "s", above(0, 1000),
-                              "length of the sin^2 speed ramps at both ends",
-                              [](Draft& d) -> double& { return waypoint(d).ramp_s; })),
+      withSymbol("alpha", number("gain", "", within(0, 1000),
+                                 "how strongly the null space keeps joints off their limits: "
+                                 "factor of dH/dq in (1)",
+                                 &Config::gain)),
+      number("gradient_at_limit", "m/s or rad/s", above(0, 1000),
+             "how fast a joint on its limit is driven back: its dH/dq", &Config::gradient_at_limit),
+      number("active_fraction", "", above(0, 1),
+             "outer part of the half range in which the gradient rises", &Config::active_fraction),
   };
 }
 
-std::vector<KeySpec> waypointKeys() {
-  std::vector<KeySpec> rows = lineKeys();
-  rows.push_back(defaulted("0", number("pause_s", "s", within(0, kMaxTime_s), "rest after arrival",
-                                       [](Draft& d) -> double& { return waypoint(d).pause_s; })));
-  return rows;
-}
-
-KeySpec taskSection() {
-  KeySpec components = value(ValueType::kChoiceList, "components", "",
-                             "what the task controls of the tool, base frame",
-                             [](Draft& d) -> std::vector<std::string>& { return d.components; });
-  components.choices = componentNames();
-  components.count = {1, kMaxTaskSize};
-  return section(
-      "task", "what the tool shall do",
-      {
-          defaulted("[x, y, z]", components),
-          defaulted("5", number("drift_gain_per_s", "1/s", within(0, 1e4),
-                                "beta of (2): pulls the tool back to its reference",
-                                [](Draft& d) -> double& { return d.task.drift_gain_per_s; })),
-          optional(number(
-              "max_return_speed_m_per_s", "m/s", above(0, 10),
-              "largest speed at which beta pulls the position back, as after a contact; "
-              "absent: beta times its error",
-              [](Draft& d) -> double& { return d.task.max_return_speed_m_per_s.emplace(); })),
-          optional(number(
-              "max_return_speed_rad_per_s", "rad/s", above(0, 10),
-              "largest speed at which beta pulls the orientation back; absent: beta "
-              "times its error",
-              [](Draft& d) -> double& { return d.task.max_return_speed_rad_per_s.emplace(); })),
-          optional(number(
-              "wait_beyond_m", "m", above(0, 10),
-              "lag of the tool's position beyond which the reference goes on slower; beyond twice "
-              "that it stands still until the tool has caught up; absent: it never waits",
-              [](Draft& d) -> double& { return d.task.wait_beyond_m.emplace(); })),
-          section("trajectory", "the reference w_d; exactly one of line, waypoints, hold",
-                  {
-                      defaulted("0", number("start_s", "s", within(0, kMaxTime_s),
-                                            "rest before the first motion",
-                                            [](Draft& d) -> double& {
-                                              return d.task.trajectory.start_s;
-                                            })),
-                      optional(section("line", "one straight motion", lineKeys(), addWaypoint)),
-                      optional(sectionList("waypoints", {1, 1000},
-                                           "straight motions with a stop at every corner",
-                                           waypointKeys(), addWaypoint)),
-                      optional(section("hold", "stay at the start pose", {})),
-                  }),
-      });
-}
-
-KeySpec redundancySection() {
-  return section(
+Row<SceneConfig> redundancySection() {
+  return optional(group<SceneConfig>(
       "redundancy", "how the joints share a motion",
       {
-          optional(oneAJoint("weights", "", within(1e-6, 1e6),
-                             "diagonal of W in (1): a heavy joint moves less; absent: all 1",
-                             [](Draft& d) -> std::vector<double>& { return d.weights; })),
-          optional(section(
-              "joint_limit_avoidance", "dH/dq of (1): keeps the joints off their limits",
-              {
-                  defaulted("1", number("gain", "", within(0, 1000), "alpha of (1)",
-                                        [](Draft& d) -> double& {
-                                          return d.joint_limit_avoidance->gain;
-                                        })),
-                  defaulted("3.52", number("gradient_at_limit", "m/s or rad/s", above(0, 1000),
-                                           "dH/dq of a joint on its limit",
-                                           [](Draft& d) -> double& {
-                                             return d.joint_limit_avoidance->gradient_at_limit;
-                                           })),
-                  defaulted("0.507",
-                            number("active_fraction", "", above(0, 1),
-                                   "outer part of the half range in which the gradient rises",
-                                   [](Draft& d) -> double& {
-                                     return d.joint_limit_avoidance->active_fraction;
-                                   })),
-              },
-              [](Draft& d) { d.joint_limit_avoidance.emplace(); })),
-      });
+          withSymbol("W", oneAJoint("weights", "", within(1e-6, 1e6),
+                                    "a joint with a larger one moves less: diagonal of W in (1); "
+                                    "absent: all 1",
+                                    &SceneConfig::weights)),
+          section("joint_limit_avoidance",
+                  "keeps the joints off their limits, by dH/dq of (1); absent: nothing does",
+                  &SceneConfig::joint_limit_avoidance, avoidanceKeys()),
+      }));
 }
 
-KeySpec transitionSection() {
-  return section(
-      "transition", "how feedforward and integral fade when contact is lost",
-      {
-          defaulted("1", number("max_time_constant_s", "s", above(0, 100),
-                                "T_t,max: time constant of the fade right after the loss",
-                                [](Draft& d) -> double& {
-                                  return d.force.transition.max_time_constant_s;
-                                })),
-          defaulted("0.05",
-                    number("distance_m", "m", above(0, 10),
-                           "d_t: distance from the lost contact at which all is faded",
-                           [](Draft& d) -> double& { return d.force.transition.distance_m; })),
-          defaulted("0",
-                    number("engage_force_N", "N", within(0, 1000),
-                           "force range over which the feedforward engages; 0: at once",
-                           [](Draft& d) -> double& { return d.force.transition.engage_force_N; })),
-          defaulted("0.3",
-                    number("release_force_N", "N", above(0, 1000),
-                           "F_rel: reading below which joint_space has lost contact, and above "
-                           "which an arm that goes on after a stop is in contact",
-                           [](Draft& d) -> double& { return d.force.transition.release_force_N; })),
-          defaulted("0.01", number("search_speed_m_per_s", "m/s", within(0, 10),
-                                   "v_search, joint_space only: speed of the return to a lost "
-                                   "contact",
-                                   [](Draft& d) -> double& {
-                                     return d.force.transition.search_speed_m_per_s;
-                                   })),
-      });
+Table<ContactTransitionConfig> transitionKeys() {
+  using Config = ContactTransitionConfig;
+  return {
+      withSymbol("T_t,max", number("max_time_constant_s", "s", above(0, 100),
+                                   "time constant of the fade right after the loss",
+                                   &Config::max_time_constant_s)),
+      withSymbol("d_t", number("distance_m", "m", above(0, 10),
+                               "distance from the lost contact at which all is faded",
+                               &Config::distance_m)),
+      withSymbol("F_eng", number("engage_force_N", "N", within(0, 1000),
+                                 "force range over which the feedforward engages; 0: at once",
+                                 &Config::engage_force_N)),
+      withSymbol("F_rel", number("release_force_N", "N", above(0, 1000),
+                                 "reading below which joint_space has lost contact, and above "
+                                 "which an arm that goes on after a stop is in contact",
+                                 &Config::release_force_N)),
+      withSymbol("v_search", number("search_speed_m_per_s", "m/s", within(0, 10),
+                                    "speed of the return to a lost contact, joint_space only",
+                                    &Config::search_speed_m_per_s)),
+  };
 }
 
-KeySpec controllerSection() {
-  KeySpec variant =
-      value(ValueType::kChoice, "variant", "",
-            "what gives way to contact: null_space the null space, the tool keeps its task; "
-            "joint_space all joints; task_space the tool alone; null_task, "
-            "null_joint the null space, and above activation_force_N the tool or "
-            "all joints; null_limit the null space, and the tool as far as the force "
-            "would else pass activation_force_N; none nothing, it is only measured",
-            [](Draft& d) -> std::string& { return d.variant; });
-  variant.choices = variantNames();
-  return section(
-      "controller", "force control; absent: the tactile module is not even read",
-      {
-          variant,
-          defaulted("2", integer("order", within(1, 2), "order of the target dynamics (4)",
-                                 [](Draft& d) -> int& { return d.force.order; })),
-          defaulted("0.1", number("time_constant_s", "s", within(0.001, 100),
-                                  "T of the target dynamics (4): smaller is faster, less stable",
-                                  [](Draft& d) -> double& { return d.force.time_constant_s; })),
-          defaulted("0.5", number("damping", "", above(0, 10), "d of (4), second order only",
-                                  [](Draft& d) -> double& { return d.force.damping; })),
-          defaulted("1.2", number("contact_threshold_N", "N", within(0, 1000),
-                                  "F_th: a smaller reading is no contact",
-                                  [](Draft& d) -> double& { return d.force.contact_threshold_N; })),
-          optional(number("activation_force_N", "N", above(0, 1000),
-                          "F_act: contact force from which null_task, null_joint and null_limit "
-                          "leave the null space",
-                          [](Draft& d) -> double& { return d.force.activation_force_N; })),
-          defaulted("5",
-                    number("max_null_speed_m_per_s", "m/s", above(0, 1000),
-                           "limit of the null-space reaction of a prismatic joint",
-                           [](Draft& d) -> double& { return d.force.max_null_speed_m_per_s; })),
-          defaulted("5",
-                    number("max_null_speed_rad_per_s", "rad/s", above(0, 1000),
-                           "limit of the null-space reaction of a revolute joint",
-                           [](Draft& d) -> double& { return d.force.max_null_speed_rad_per_s; })),
-          defaulted("500", number("pull_gain_per_s", "1/s", within(0, 1e4),
-                                  "beta of joint_space in contact; drift_gain_per_s holds "
-                                  "elsewhere",
-                                  [](Draft& d) -> double& { return d.force.pull_gain_per_s; })),
-          defaulted(
-              "300",
-              number("min_approach_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
-                     "c_floor, null_limit only: softer contact is approached no faster "
-                     "than this, for what may be behind it",
-                     [](Draft& d) -> double& { return d.force.min_approach_stiffness_N_per_m; })),
-          defaulted("", transitionSection()),
-      });
+Row<ForceControlConfig> variantRow() {
+  return required(
+      choice("variant",
+             "what gives way to contact: null_space the null space, the tool keeps its task; "
+             "joint_space all joints; task_space the tool alone; null_task, "
+             "null_joint the null space, and above activation_force_N the tool or "
+             "all joints; null_limit the null space, and the tool as far as the force "
+             "would else pass activation_force_N; none nothing, it is only measured",
+             &ForceControlConfig::variant, kVariantWords));
 }
 
-KeySpec stiffnessSection() {
-  return section(
-      "stiffness", "what the law believes about the obstacle's stiffness",
-      {
-          number("assumed_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
-                 "c_0: where the estimate starts, or stays without one",
-                 [](Draft& d) -> double& { return d.force.assumed_stiffness_N_per_m; }),
-          optional(number("stiffest_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
-                          "stiffest contact, obstacle and arm in series, for which the gains must "
-                          "be stable; absent: as stiff as assumed",
-                          [](Draft& d) -> double& { return d.stiffest_N_per_m; })),
-          optional(section(
-              "estimate", "Algorithm 1, or with null_limit an estimator of its own; absent: none",
-              {
-                  defaulted("0.2", number("min_force_change_N", "N", above(0, 1000),
-                                          "F_est,min: change of force that makes an estimate",
-                                          [](Draft& d) -> double& {
-                                            return d.force.estimator->min_force_change_N;
-                                          })),
-                  defaulted("0.03", number("filter_time_constant_s", "s", above(0, 100),
-                                           "T_est: smoothing of the estimate",
-                                           [](Draft& d) -> double& {
-                                             return d.force.estimator->filter_time_constant_s;
-                                           })),
-                  defaulted("10", number("min_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
-                                         "smallest raw estimate",
-                                         [](Draft& d) -> double& {
-                                           return d.force.estimator->min_N_per_m;
-                                         })),
-                  defaulted("1e6", number("max_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
-                                          "largest raw estimate",
-                                          [](Draft& d) -> double& {
-                                            return d.force.estimator->max_N_per_m;
-                                          })),
-              },
-              [](Draft& d) { d.force.estimator.emplace(); })),
-      });
+Table<ForceControlConfig> responseKeys() {
+  using Config = ForceControlConfig;
+  return {
+      integer("order", within(1, 2),
+              "of the motion that a force is answered with, the target dynamics (4)",
+              &Config::order),
+      withSymbol("T", number("time_constant_s", "s", within(0.001, 100),
+                             "how fast the force is brought to zero: smaller is faster, less "
+                             "stable; time constant of the target dynamics (4)",
+                             &Config::time_constant_s)),
+      withSymbol("d", number("damping", "", above(0, 10),
+                             "how little the force overshoots: damping of the target dynamics (4), "
+                             "second order only",
+                             &Config::damping)),
+      withSymbol("F_th", number("contact_threshold_N", "N", within(0, 1000),
+                                "a smaller reading is no contact", &Config::contact_threshold_N)),
+  };
 }
 
-KeySpec requirementSection() {
-  return section(
-      "real_time", "what this scene asks of the machine that runs it on hardware",
-      {defaulted("true", boolean("required", "false: run even where real time is not granted",
-                                 [](Draft& d) -> bool& { return d.real_time.required; }))});
+Table<ForceControlConfig> responseLimitKeys() {
+  using Config = ForceControlConfig;
+  return {
+      number("max_null_speed_m_per_s", "m/s", above(0, 1000),
+             "limit of the null-space reaction of a prismatic joint",
+             &Config::max_null_speed_m_per_s),
+      number("max_null_speed_rad_per_s", "rad/s", above(0, 1000),
+             "limit of the null-space reaction of a revolute joint",
+             &Config::max_null_speed_rad_per_s),
+      withSymbol("beta", number("pull_gain_per_s", "1/s", within(0, 1e4),
+                                "how fast joint_space pulls the tool back while in contact; "
+                                "drift_gain_per_s holds elsewhere",
+                                &Config::pull_gain_per_s)),
+      withSymbol("c_floor",
+                 number("min_approach_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                        "null_limit only: softer contact is approached no faster "
+                        "than this, for what may be behind it",
+                        &Config::min_approach_stiffness_N_per_m)),
+      section("transition", "how feedforward and integral fade when contact is lost",
+              &Config::transition, transitionKeys()),
+  };
 }
 
-KeySpec logSection() {
-  return section(
-      "log", "how much of a disk the log of tactusd may take; the arm never stops for it",
-      {
-          optional(number("max_bytes", "bytes", within(1e6, 1e15),
-                          "a run.ulg that would grow larger becomes run.1.ulg, what was that "
-                          "run.2.ulg and so on, and a new one is begun; absent: no limit",
-                          [](Draft& d) -> double& { return d.log.max_bytes; })),
-          defaulted("4", integer("keep", within(0, kMaxKeptLogs),
-                                 "how many older files stay besides run.ulg",
-                                 [](Draft& d) -> int& { return d.log.keep; })),
-          defaulted("1e8", number("min_free_bytes", "bytes", within(0, 1e15),
-                                  "the log stops when less of its disk is free; 0: when all of it "
-                                  "is full",
-                                  [](Draft& d) -> double& { return d.log.min_free_bytes; })),
-      });
+Table<ControllerSection> controllerKeys() {
+  const auto force = &ControllerSection::force;
+  const Table<ControllerSection> activation = {
+      withSymbol("F_act", number("activation_force_N", "N", above(0, 1000),
+                                 "contact force from which null_task, null_joint and null_limit "
+                                 "leave the null space",
+                                 &ControllerSection::activation_force_N)),
+  };
+  return join(inside(force, {variantRow()}), inside(force, responseKeys()), activation,
+              inside(force, responseLimitKeys()));
+}
+
+Table<StiffnessEstimatorConfig> estimateKeys() {
+  using Config = StiffnessEstimatorConfig;
+  return {
+      withSymbol("F_est,min",
+                 number("min_force_change_N", "N", above(0, 1000),
+                        "change of force that makes an estimate", &Config::min_force_change_N)),
+      withSymbol("T_est", number("filter_time_constant_s", "s", above(0, 100),
+                                 "smoothing of the estimate", &Config::filter_time_constant_s)),
+      number("min_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m), "smallest raw estimate",
+             &Config::min_N_per_m),
+      number("max_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m), "largest raw estimate",
+             &Config::max_N_per_m),
+  };
+}
+
+Table<StiffnessSection> stiffnessKeys() {
+  using Config = StiffnessSection;
+  return {
+      withSymbol("c_0",
+                 required(number("assumed_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                                 "stiffness of the contact that the law reckons with: where the "
+                                 "estimate starts, or stays without one",
+                                 &Config::assumed_N_per_m))),
+      withSymbol("c_e", number("stiffest_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                               "stiffest contact, obstacle and arm in series, for which the gains "
+                               "must be stable; absent: as stiff as assumed",
+                               &Config::stiffest_N_per_m)),
+      section("estimate",
+              "estimates the stiffness while in contact, by Algorithm 1 or with null_limit by an "
+              "estimator of its own; absent: it stays as assumed",
+              &Config::estimate, estimateKeys()),
+  };
+}
+
+Table<LogConfig> logKeys() {
+  return {
+      optional(number("max_bytes", "bytes", within(1e6, 1e15),
+                      "a run.ulg that would grow larger becomes run.1.ulg, what was that "
+                      "run.2.ulg and so on, and a new one is begun; absent: no limit",
+                      &LogConfig::max_bytes)),
+      integer("keep", within(0, kMaxKeptLogs), "how many older files stay besides run.ulg",
+              &LogConfig::keep),
+      number("min_free_bytes", "bytes", within(0, 1e15),
+             "the log stops when less of its disk is free; 0: when all of it is full",
+             &LogConfig::min_free_bytes),
+  };
+}
+
+Table<SceneConfig> sceneTable() {
+  using Config = SceneConfig;
+  return {
+      text("extends", "scene that this one changes, relative to this file", &Config::extends),
+      text("robot", "robot description, relative to the file that names it", &Config::robot),
+      number("period_s", "s", within(1e-5, 0.02), "of the control cycle", &Config::period_s),
+      oneAJoint("start", "m or rad", within(-1e6, 1e6),
+                "joint positions at the start; absent: the robot's home", &Config::start),
+      taskSection(),
+      redundancySection(),
+      section("controller", "force control; absent: the tactile module is not even read",
+              &Config::controller, controllerKeys()),
+      section("stiffness", "what the law believes about the obstacle's stiffness",
+              &Config::stiffness, stiffnessKeys()),
+      simulationSection(),
+      group<Config>("real_time", "what this scene asks of the machine that runs it on hardware",
+                    {boolean("required", "false: run even where real time is not granted",
+                             &Config::requires_real_time)}),
+      section("log", "how much of a disk the log of tactusd may take; the arm never stops for it",
+              &Config::log, logKeys()),
+  };
 }
 
 }  // namespace
 
-const std::vector<std::string>& variantNames() {
-  static const std::vector<std::string> names = {
-      "none", "null_space", "joint_space", "task_space", "null_task", "null_joint", "null_limit"};
-  return names;
-}
-
-const std::vector<std::string>& componentNames() {
-  static const std::vector<std::string> names = {"x", "y", "z", "rx", "ry", "rz"};
-  return names;
-}
-
 const std::vector<KeySpec>& sceneKeys() {
-  static const std::vector<KeySpec> table = {
-      optional(text("extends", "scene that this one changes, relative to this file",
-                    [](Draft& d) -> std::string& { return d.extends; })),
-      text("robot", "robot description, relative to the file that names it",
-           [](Draft& d) -> std::string& { return d.robot; }),
-      defaulted("0.001", number("period_s", "s", within(1e-5, 0.02), "of the control cycle",
-                                [](Draft& d) -> double& { return d.period_s; })),
-      optional(oneAJoint("start", "m or rad", within(-1e6, 1e6),
-                         "joint positions at the start; absent: the robot's home",
-                         [](Draft& d) -> std::vector<double>& { return d.start; })),
-      taskSection(),
-      optional(redundancySection()),
-      optional(controllerSection()),
-      optional(stiffnessSection()),
-      simulationSection(),
-      defaulted("", requirementSection()),
-      defaulted("", logSection()),
-  };
-  return table;
+  static const std::vector<KeySpec> keys = [] {
+    std::vector<KeySpec> rows = specsOf(sceneTable());
+    SceneConfig config;
+    addDefaults(rows, &config);
+    return rows;
+  }();
+  return keys;
 }
 
 }  // namespace tactus

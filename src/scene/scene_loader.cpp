@@ -7,6 +7,7 @@
 
 #include "tactus/scene/hardware_checks.h"
 #include "tactus/scene/hardware_loader.h"
+#include "tactus/scene/key_words.h"
 #include "tactus/scene/robot_loader.h"
 #include "tactus/scene/scene_checks.h"
 #include "tactus/scene/source_reader.h"
@@ -49,64 +50,81 @@ void applyOverrides(YamlNode& root, const std::vector<Override>& overrides) {
       failAt({std::make_shared<std::string>("--set " + setting.key), 1, 1}, setting.key,
              "cannot be set here", "expected in a file");
     }
-    applyOverride(root, setting);
+    if (!setting.key.starts_with(kRobotPrefix)) applyOverride(root, setting);
   }
 }
 
-/// The robot's path is meant relative to the file that names it; on the command line, to the scene.
-std::string robotPath(const YamlNode& root, const std::string& scene_path, const std::string& robot,
-                      const std::vector<Override>& overrides) {
-  const bool is_overridden = std::ranges::count(overrides, "robot", &Override::key) > 0;
-  return resolvePath(is_overridden ? scene_path : *locate(root, "robot").file, robot);
-}
-
-JointVector readStart(const YamlNode& root, const ConfigDraft& draft, const LoadedRobot& robot) {
-  if (draft.start.empty()) return toJointVector(draft.home, robot.root, "home", robot.chain);
-  const JointVector q_start = toJointVector(draft.start, root, "start", robot.chain);
+JointVector readStart(const YamlNode& root, const SceneConfig& config, const LoadedRobot& robot) {
+  if (!config.start) return toJointVector(robot.config.home, robot.root, "home", robot.chain);
+  const JointVector q_start = toJointVector(*config.start, root, "start", robot.chain);
   checkWithinLimits(q_start, root, "start", robot.chain);
   return q_start;
 }
 
-ControllerConfig makeController(const YamlNode& root, const ConfigDraft& draft,
+TaskConfig makeTask(const SceneConfig& config) {
+  TaskConfig task = config.task;
+  const TrajectorySection& trajectory = config.trajectory;
+  task.trajectory = {trajectory.start_s, trajectory.waypoints};
+  if (trajectory.line) task.trajectory.waypoints = {*trajectory.line};
+  return task;
+}
+
+ForceControlConfig makeForceControl(const SceneConfig& config) {
+  ForceControlConfig force = config.controller->force;
+  force.activation_force_N =
+      config.controller->activation_force_N.value_or(force.activation_force_N);
+  force.assumed_stiffness_N_per_m = config.stiffness->assumed_N_per_m;
+  force.estimator = config.stiffness->estimate;
+  return force;
+}
+
+ControllerConfig makeController(const YamlNode& root, const SceneConfig& config,
                                 const LoadedRobot& robot, const JointVector& q_start) {
   const UrdfChain& chain = robot.chain;
-  const auto joint_count = static_cast<Eigen::Index>(chain.joints.size());
-  ControllerConfig config{
+  ControllerConfig controller{
       .chain = SerialChain(chain.joints, chain.tip), .q_start = q_start, .limits = chain.limits};
-  config.task = draft.task;
-  config.task.size = static_cast<int>(draft.components.size());
-  for (int i = 0; i < config.task.size; ++i) {
-    config.task.components[i] = static_cast<int>(
-        std::ranges::find(componentNames(), draft.components[i]) - componentNames().begin());
+  controller.task = makeTask(config);
+  controller.weights = config.weights
+                           ? toJointVector(*config.weights, root, "redundancy.weights", chain)
+                           : JointVector(JointVector::Ones(q_start.size()));
+  controller.joint_limit_avoidance = config.joint_limit_avoidance;
+  if (!config.controller) return controller;
+  controller.tactile_module = robot.config.tactile_module->config;
+  controller.drive_lag_s = robot.config.drives.position_lag_s;
+  if (config.controller->force.variant != Variant::kNone) {
+    controller.force_control = makeForceControl(config);
   }
-  config.weights = draft.weights.empty()
-                       ? JointVector::Ones(joint_count)
-                       : toJointVector(draft.weights, root, "redundancy.weights", chain);
-  config.joint_limit_avoidance = draft.joint_limit_avoidance;
-  if (!findGiven(root, "controller")) return config;
-  config.tactile_module = draft.module;
-  config.tactile_module->filter_cutoff_hz = draft.plant.module.filter_cutoff_hz;
-  config.drive_lag_s = draft.plant.drive_lag_s;
-  if (draft.variant == "none") return config;
-  config.force_control = draft.force;
-  config.force_control->variant = static_cast<Variant>(
-      std::ranges::find(variantNames(), draft.variant) - variantNames().begin());
-  return config;
+  return controller;
 }
 
 /// The robot as it is simulated, which may differ from the one that the controller reckons with.
-PlantConfig makePlant(const YamlNode& root, const ConfigDraft& draft) {
-  PlantConfig plant = draft.plant;
-  if (findGiven(root, "simulation.drive_lag_s")) plant.drive_lag_s = draft.simulated_drive_lag_s;
-  if (findGiven(root, "simulation.tactile_module.filter_cutoff_hz"))
-    plant.module.filter_cutoff_hz = draft.simulated_filter_cutoff_hz;
+PlantConfig makePlant(const SimulationSection& simulation, const RobotConfig& robot) {
+  PlantConfig plant;
+  plant.drive_lag_s = simulation.drive_lag_s.value_or(robot.drives.position_lag_s);
+  plant.robot_stiffness_N_per_m = robot.stiffness_N_per_m;
+  plant.obstacles = simulation.obstacles;
+  plant.module = simulation.module;
+  if (robot.tactile_module) {
+    const TactileModuleSection& module = *robot.tactile_module;
+    plant.cover_radius_m = module.cover_radius_m;
+    plant.module.filter_cutoff_hz = module.config.filter_cutoff_hz;
+    plant.module.filter_rate_hz = module.electronics.filter_rate_hz;
+    plant.module.sample_period_s = module.electronics.sample_period_s;
+    plant.module.calibration = module.electronics.calibration;
+    plant.module.counts_per_N = module.electronics.counts_per_N;
+  }
+  plant.module.filter_cutoff_hz =
+      simulation.filter_cutoff_hz.value_or(plant.module.filter_cutoff_hz);
   return plant;
 }
 
 /// What the scene needs of the robot's hardware: without a controller, the module is not read.
-std::optional<HardwareConfig> chooseHardware(const YamlNode& root, const LoadedRobot& robot) {
-  if (!robot.hardware || findGiven(root, "controller")) return robot.hardware;
-  return withoutTactileModule(*robot.hardware);
+std::optional<HardwareConfig> chooseHardware(const SceneConfig& config, const LoadedRobot& robot) {
+  if (!robot.hardware) return std::nullopt;
+  HardwareConfig hardware =
+      config.controller ? *robot.hardware : withoutTactileModule(*robot.hardware);
+  hardware.real_time.required = config.requires_real_time;
+  return hardware;
 }
 
 /// A scene's name is that of its file, and the name of a folder with its results.
@@ -124,30 +142,36 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
   SourceReader reader(std::move(provider));
   YamlNode root = readScene(reader.readFirst(path), reader, {});
   applyOverrides(root, overrides);
-  ConfigDraft draft;
-  readSection(root, sceneKeys(), "", draft);
-  const std::string robot_path = robotPath(root, path, draft.robot, overrides);
+  NamedNumbers numbers;
+  const SceneConfig config = readSceneConfig(root, numbers);
+  const SceneSettings settings{path, overrides};
+  const SourcePosition robot_at = locate(root, "robot");
+  const std::string robot_path = settings.resolve(*robot_at.file, "robot", config.robot);
   const LoadedRobot robot =
-      loadRobot(reader.read(robot_path, "robot", locate(root, "robot")), reader, draft);
-  const JointVector q_start = readStart(root, draft, robot);
-  checkScene(root, draft, robot, q_start);
-  const std::optional<HardwareConfig> hardware = chooseHardware(root, robot);
-  if (hardware && use == SceneUse::kHardware) checkHardware(root, robot.root, draft, *hardware);
+      loadRobot(reader.read(robot_path, "robot", robot_at), settings, reader, numbers);
+  const JointVector q_start = readStart(root, config, robot);
+  checkScene(root, config, robot, q_start);
+  const std::optional<HardwareConfig> hardware = chooseHardware(config, robot);
+  if (hardware && use == SceneUse::kHardware) {
+    checkHardware(root, robot.root, config.period_s, robot.config, *hardware);
+  }
+  const Variant variant = config.controller ? config.controller->force.variant : Variant::kNone;
+  const StiffnessSection stiffness = config.stiffness.value_or(StiffnessSection{});
   Scene scene{.name = sceneName(path),
-              .controller = makeController(root, draft, robot, q_start),
-              .variant = draft.variant,
-              .period_s = draft.period_s,
-              .duration_s = draft.duration_s,
-              .stiffest_N_per_m = draft.stiffest_N_per_m,
-              .plant = makePlant(root, draft),
+              .controller = makeController(root, config, robot, q_start),
+              .variant = wordOf(kVariantWords, variant),
+              .period_s = config.period_s,
+              .duration_s = config.simulation.duration_s,
+              .stiffest_N_per_m = stiffness.stiffest_N_per_m.value_or(0.0),
+              .plant = makePlant(config.simulation, robot.config),
               .robot_name = robot.chain.robot_name,
               .joint_names = robot.chain.joint_names,
               .sources = reader.files(),
               .overrides = overrides,
-              .numbers = std::move(draft.numbers),
+              .numbers = std::move(numbers),
               .hardware = hardware,
-              .log = draft.log,
-              .troubles = loadTroubles(root, draft, hardware),
+              .log = config.log,
+              .troubles = loadTroubles(root, config.simulation.troubles, hardware),
               .tree = std::make_shared<const YamlNode>(root)};
   return scene;
 }

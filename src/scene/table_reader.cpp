@@ -7,7 +7,9 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <cstdint>
 
+#include "tactus/scene/key_table.h"
 #include "tactus/scene/number_text.h"
 
 namespace tactus {
@@ -15,12 +17,19 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
-/// One value on its way from a node to the draft.
+/// What the values of a file have in common.
+struct File {
+  const YamlNode& root;
+  NamedNumbers& numbers;
+};
+
+/// One value on its way from a node to a config.
 struct Reading {
   const YamlNode& node;
   const KeySpec& spec;
   std::string path;
-  ConfigDraft& draft;
+  void* owner;  ///< the struct that the row is of
+  File& file;
 
   [[noreturn]] void fail(const YamlNode& at, const std::string& key,
                          const std::string& problem) const {
@@ -29,24 +38,36 @@ struct Reading {
   [[noreturn]] void failType() const { fail(node, path, describe(node)); }
 };
 
-template <class T>
-T& target(const Reading& r) {
-  return std::get<T& (*)(ConfigDraft&)>(r.spec.target)(r.draft);
-}
+void readSection(const YamlNode& node, const std::vector<KeySpec>& keys, const std::string& path,
+                 void* owner, File& file);
 
 std::from_chars_result fromChars(std::string_view text, double& value) {
   return std::from_chars(text.data(), text.data() + text.size(), value);
 }
 
 /// Whole numbers may be hexadecimal: 0x100.
-template <std::integral T>
-std::from_chars_result fromChars(std::string_view text, T& value) {
+std::from_chars_result fromChars(std::string_view text, std::int64_t& value) {
   const bool is_hex = text.starts_with("0x");
   const std::string_view digits = text.substr(is_hex ? 2 : 0);
   if (is_hex && digits.starts_with('-')) return {digits.data(), std::errc::invalid_argument};
   return std::from_chars(digits.data(), text.data() + text.size(), value, is_hex ? 16 : 10);
 }
 
+bool areDigits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// "0.1" of "0,1"; empty if the text is no number with a decimal comma.
+std::string withDecimalPoint(std::string text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) return "";
+  text[comma] = '.';
+  double number = 0.0;
+  const auto [stop, error] = fromChars(withoutPlus(text), number);
+  return error == std::errc() && stop == text.data() + text.size() ? text : "";
+}
+
+/// T: double or std::int64_t.
 template <class T>
 T parseNumber(const Reading& r, const YamlNode& node, const std::string& path) {
   if (node.kind != Kind::kScalar || node.quoted) r.fail(node, path, describe(node));
@@ -56,6 +77,11 @@ T parseNumber(const Reading& r, const YamlNode& node, const std::string& path) {
   const auto [stop, error] = fromChars(text, value);
   if (error == std::errc::result_out_of_range) {
     r.fail(node, path, inQuotes(node.text) + " is out of range");
+  }
+  const std::string point = withDecimalPoint(node.text);
+  if (!point.empty() && r.spec.type != ValueType::kInteger) {
+    failAt(node.at, path, inQuotes(node.text) + " is not a number but has a decimal comma",
+           "expected " + describeExpectation(r.spec) + ", with a decimal point: " + point);
   }
   if (error != std::errc() || stop != end) {
     r.fail(node, path, inQuotes(node.text) + " is not " + r.spec.numberNoun());
@@ -68,7 +94,7 @@ T parseNumber(const Reading& r, const YamlNode& node, const std::string& path) {
   if (number < range.lower || number > range.upper || (range.lower_open && number == range.lower)) {
     r.fail(node, path, inQuotes(node.text) + " is out of range");
   }
-  r.draft.numbers.emplace_back(path, number);
+  r.file.numbers.emplace_back(path, number);
   return value;
 }
 
@@ -83,25 +109,6 @@ std::vector<double> parseNumbers(const Reading& r, const YamlNode& node, const s
   return numbers;
 }
 
-void readInteger(const Reading& r) {
-  if (std::holds_alternative<int& (*)(ConfigDraft&)>(r.spec.target)) {
-    target<int>(r) = parseNumber<int>(r, r.node, r.path);
-  } else {
-    target<std::uint64_t>(r) = parseNumber<std::uint64_t>(r, r.node, r.path);
-  }
-}
-
-void readBoolean(const Reading& r) {
-  const bool is_word = r.node.kind == Kind::kScalar && !r.node.quoted;
-  if (!is_word || (r.node.text != "true" && r.node.text != "false")) r.failType();
-  target<bool>(r) = r.node.text == "true";
-}
-
-void readText(const Reading& r) {
-  if (r.node.kind != Kind::kScalar || r.node.text.empty()) r.failType();
-  target<std::string>(r) = r.node.text;
-}
-
 std::string parseChoice(const Reading& r, const YamlNode& node, const std::string& path) {
   const auto& choices = r.spec.choices;
   if (node.kind != Kind::kScalar || std::ranges::count(choices, node.text) == 0) {
@@ -110,92 +117,121 @@ std::string parseChoice(const Reading& r, const YamlNode& node, const std::strin
   return node.text;
 }
 
-void readChoiceList(const Reading& r) {
+void requireList(const Reading& r) {
   const int size = static_cast<int>(r.node.items.size());
   if (r.node.kind != Kind::kList || size < r.spec.count.min || size > r.spec.count.max) {
     r.failType();
   }
+}
+
+std::vector<std::string> parseChoices(const Reading& r) {
+  if (r.spec.type == ValueType::kChoice) return {parseChoice(r, r.node, r.path)};
+  requireList(r);
   std::vector<std::string> words;
-  for (int i = 0; i < size; ++i) {
+  for (std::size_t i = 0; i < r.node.items.size(); ++i) {
     const std::string path = fmt::format("{}[{}]", r.path, i);
     words.push_back(parseChoice(r, r.node.items[i], path));
     if (std::ranges::count(words, words.back()) > 1) {
       r.fail(r.node.items[i], path, inQuotes(words.back()) + " is given twice");
     }
   }
-  target<std::vector<std::string>>(r) = words;
+  return words;
 }
 
-void readNumberList(const Reading& r) {
-  const auto numbers = parseNumbers(r, r.node, r.path, r.spec.count.min, r.spec.count.max);
-  if (std::holds_alternative<Vector3& (*)(ConfigDraft&)>(r.spec.target)) {
-    target<Vector3>(r) = Eigen::Map<const Vector3>(numbers.data());
-  } else {
-    target<std::vector<double>>(r) = numbers;
-  }
-}
+/// Reads a value into its place, by the place's type.
+struct ValueReader {
+  const Reading& r;
 
-void readNumberTable(const Reading& r) {
-  auto& table = target<Eigen::Matrix<double, 4, 8>>(r);
-  if (r.node.kind != Kind::kList || static_cast<int>(r.node.items.size()) != r.spec.count.min) {
-    r.failType();
+  void operator()(double* number) const { *number = parseNumber<double>(r, r.node, r.path); }
+  template <std::integral T>
+  void operator()(T* number) const {  // the row's range is within that of T
+    *number = static_cast<T>(parseNumber<std::int64_t>(r, r.node, r.path));
   }
-  for (int row = 0; row < r.spec.count.min; ++row) {
-    const auto numbers = parseNumbers(r, r.node.items[row], fmt::format("{}[{}]", r.path, row),
-                                      r.spec.columns, r.spec.columns);
-    for (int column = 0; column < r.spec.columns; ++column) table(row, column) = numbers[column];
+  void operator()(bool* truth) const {
+    const bool is_word = r.node.kind == Kind::kScalar && !r.node.quoted;
+    if (!is_word || (r.node.text != "true" && r.node.text != "false")) r.failType();
+    *truth = r.node.text == "true";
   }
-}
+  void operator()(std::string* text) const {
+    if (r.node.kind != Kind::kScalar || r.node.text.empty()) r.failType();
+    *text = r.node.text;
+  }
+  void operator()(std::vector<double>* numbers) const {
+    *numbers = parseNumbers(r, r.node, r.path, r.spec.count.min, r.spec.count.max);
+  }
+  void operator()(Vector3* vector) const {
+    *vector = Eigen::Map<const Vector3>(parseNumbers(r, r.node, r.path, 3, 3).data());
+  }
+  void operator()(Eigen::Matrix<double, 4, 8>* table) const {
+    requireList(r);
+    for (int row = 0; row < r.spec.count.min; ++row) {
+      const auto numbers = parseNumbers(r, r.node.items[row], fmt::format("{}[{}]", r.path, row),
+                                        r.spec.columns, r.spec.columns);
+      for (int column = 0; column < r.spec.columns; ++column) {
+        (*table)(row, column) = numbers[column];
+      }
+    }
+  }
+  void operator()(const WordsTarget& words) const { words.set(parseChoices(r)); }
+};
 
 void readSectionList(const Reading& r) {
-  const int size = static_cast<int>(r.node.items.size());
-  if (r.node.kind != Kind::kList || size < r.spec.count.min || size > r.spec.count.max) {
-    r.failType();
-  }
-  for (int i = 0; i < size; ++i) {
-    r.spec.begin(r.draft);
-    readSection(r.node.items[i], r.spec.keys, fmt::format("{}[{}]", r.path, i), r.draft);
+  requireList(r);
+  for (std::size_t i = 0; i < r.node.items.size(); ++i) {
+    readSection(r.node.items[i], r.spec.keys, fmt::format("{}[{}]", r.path, i),
+                r.spec.enter(r.owner), r.file);
   }
 }
 
-void readValue(const Reading& r) {
-  switch (r.spec.type) {
-    case ValueType::kNumber:
-      target<double>(r) = parseNumber<double>(r, r.node, r.path);
-      return;
-    case ValueType::kInteger:
-      return readInteger(r);
-    case ValueType::kBoolean:
-      return readBoolean(r);
-    case ValueType::kText:
-      return readText(r);
-    case ValueType::kChoice:
-      target<std::string>(r) = parseChoice(r, r.node, r.path);
-      return;
-    case ValueType::kChoiceList:
-      return readChoiceList(r);
-    case ValueType::kNumberList:
-      return readNumberList(r);
-    case ValueType::kNumberTable:
-      return readNumberTable(r);
-    case ValueType::kSection:
-      if (r.spec.begin) r.spec.begin(r.draft);
-      return readSection(r.node, r.spec.keys, r.path, r.draft);
-    case ValueType::kSectionList:
-      return readSectionList(r);
+void readPresent(const Reading& r) {
+  const Needs& needs = r.spec.needs;
+  if (!needs.section.empty() && !findGiven(r.file.root, needs.section)) {
+    failAt(r.node.at, r.path, needs.problem, "expected " + needs.expectation);
   }
+  if (r.spec.type == ValueType::kSectionList) return readSectionList(r);
+  if (r.spec.type == ValueType::kSection) {
+    return readSection(r.node, r.spec.keys, r.path, r.spec.enter(r.owner), r.file);
+  }
+  std::visit(ValueReader{r}, r.spec.target(r.owner));
 }
 
-void readAbsent(const KeySpec& spec, const SourcePosition& at, const std::string& path,
-                ConfigDraft& draft) {
+/// Adds a value to the numbers of a file.
+struct NumberAdder {
+  const std::string& path;
+  NamedNumbers& numbers;
+
+  void operator()(Vector3* vector) const {
+    for (int i = 0; i < 3; ++i) numbers.emplace_back(fmt::format("{}[{}]", path, i), (*vector)[i]);
+  }
+  template <class T>
+  void operator()(const T& value) const {
+    using Value = std::remove_pointer_t<T>;
+    if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
+      numbers.emplace_back(path, static_cast<double>(*value));
+    }
+  }
+};
+
+/// A new config has its defaults already; they belong to the file's numbers.
+void readAbsent(const KeySpec& spec, const SourcePosition& at, const std::string& path, void* owner,
+                File& file) {
   if (spec.presence == Presence::kRequired) {
     failAt(at, path, "is missing", "expected " + describeExpectation(spec));
   }
   if (spec.presence == Presence::kOptional) return;
-  YamlNode empty_section{Kind::kMap, at};
-  readValue({spec.type == ValueType::kSection ? empty_section
-                                              : parseYaml({"the default", spec.default_value}),
-             spec, path, draft});
+  const YamlNode empty_section{Kind::kMap, at};
+  if (spec.enter) return readSection(empty_section, spec.keys, path, spec.enter(owner), file);
+  std::visit(NumberAdder{path, file.numbers}, spec.target(owner));
+}
+
+/// {x_m: 0,7} is x_m: 0 and a key 7 without a value.
+void refuseDecimalComma(const YamlNode& node, const YamlEntry& entry, const std::string& prefix) {
+  if (!areDigits(entry.key) || &entry == &node.entries.front()) return;
+  const YamlEntry& before = *(&entry - 1);
+  if (entry.value.kind != Kind::kEmpty || !areDigits(before.value.text)) return;
+  const std::string digits = before.value.text + "," + entry.key;
+  failAt(before.value.at, prefix + before.key, inQuotes(digits) + " has a decimal comma",
+         "expected a decimal point: " + before.value.text + "." + entry.key);
 }
 
 void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
@@ -204,6 +240,7 @@ void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
   for (const KeySpec& spec : keys) known.push_back(spec.key);
   for (const YamlEntry& entry : node.entries) {
     if (std::ranges::count(known, entry.key) > 0) continue;
+    refuseDecimalComma(node, entry, prefix);
     const std::string nearest = nearestWord(entry.key, known);
     failAt(entry.key_at, prefix + entry.key, "unknown key",
            known.empty()     ? "expected none here"
@@ -212,54 +249,8 @@ void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
   }
 }
 
-std::string describeRange(const Range& range) {
-  const bool has_lower = std::isfinite(range.lower);
-  const bool has_upper = std::isfinite(range.upper);
-  if (!has_lower && !has_upper) return "";
-  if (!has_upper) return fmt::format(" {} {}", range.lower_open ? ">" : ">=", range.lower);
-  if (range.lower_open) return fmt::format(" > {} and <= {}", range.lower, range.upper);
-  return fmt::format(" from {} to {}", range.lower, range.upper);
-}
-
-std::string describeCount(const Count& count, const char* noun) {
-  if (count.one_a_joint) return fmt::format("one {} a joint", noun);
-  if (count.min == count.max) return fmt::format("{} {}s", count.min, noun);
-  return fmt::format("{} to {} {}s", count.min, count.max, noun);
-}
-
-}  // namespace
-
-std::string describeExpectation(const KeySpec& spec) {
-  const std::string unit = spec.unit.empty() ? "" : " in " + spec.unit;
-  switch (spec.type) {
-    case ValueType::kNumber:
-    case ValueType::kInteger:
-      return fmt::format("{}{}{}", spec.numberNoun(), describeRange(spec.range), unit);
-    case ValueType::kBoolean:
-      return "true or false";
-    case ValueType::kText:
-      return "text";
-    case ValueType::kChoice:
-      return fmt::format("one of {}", fmt::join(spec.choices, ", "));
-    case ValueType::kChoiceList:
-      return fmt::format("a list of {} to {} distinct words of {}", spec.count.min, spec.count.max,
-                         fmt::join(spec.choices, ", "));
-    case ValueType::kNumberList:
-      return fmt::format("a list of {}{}{}", describeCount(spec.count, "number"),
-                         describeRange(spec.range), unit);
-    case ValueType::kNumberTable:
-      return fmt::format("a list of {} lists of {} numbers{}", spec.count.min, spec.columns,
-                         describeRange(spec.range));
-    case ValueType::kSection:
-      return "a section of keys";
-    case ValueType::kSectionList:
-      return fmt::format("a list of {}", describeCount(spec.count, "section"));
-  }
-  return "";
-}
-
 void readSection(const YamlNode& node, const std::vector<KeySpec>& keys, const std::string& path,
-                 ConfigDraft& draft) {
+                 void* owner, File& file) {
   if (node.kind != Kind::kMap) {
     failAt(node.at, path.empty() ? "-" : path, describe(node),
            "expected a section of keys ({} for none)");
@@ -269,11 +260,29 @@ void readSection(const YamlNode& node, const std::vector<KeySpec>& keys, const s
   for (const KeySpec& spec : keys) {
     const YamlNode* value = node.find(spec.key);
     if (value && value->kind != Kind::kNull) {
-      readValue({*value, spec, prefix + spec.key, draft});
+      readPresent({*value, spec, prefix + spec.key, owner, file});
     } else {
-      readAbsent(spec, value ? value->at : node.at, prefix + spec.key, draft);
+      readAbsent(spec, value ? value->at : node.at, prefix + spec.key, owner, file);
     }
   }
+}
+
+template <class Config>
+Config readConfig(const YamlNode& root, const std::vector<KeySpec>& keys, NamedNumbers& numbers) {
+  Config config;
+  File file{root, numbers};
+  readSection(root, keys, "", &config, file);
+  return config;
+}
+
+}  // namespace
+
+SceneConfig readSceneConfig(const YamlNode& root, NamedNumbers& numbers) {
+  return readConfig<SceneConfig>(root, sceneKeys(), numbers);
+}
+
+RobotConfig readRobotConfig(const YamlNode& root, NamedNumbers& numbers) {
+  return readConfig<RobotConfig>(root, robotKeys(), numbers);
 }
 
 }  // namespace tactus

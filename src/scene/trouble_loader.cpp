@@ -5,7 +5,7 @@
 #include <array>
 
 #include "tactus/scene/hardware_checks.h"
-#include "tactus/scene/key_table.h"
+#include "tactus/scene/key_words.h"
 
 namespace tactus {
 namespace {
@@ -16,18 +16,18 @@ using TroubleKind = Trouble::Kind;
 struct Loading {
   const YamlNode& root;
   const HardwareConfig& hardware;
-  const TroubleDraft& draft;
+  const TroubleSection& given;
   std::string path;
-
-  bool isGiven(const char* key) const { return findGiven(root, path + "." + key); }
 
   [[noreturn]] void fail(const char* key, const std::string& problem,
                          const std::string& expectation) const {
     const std::string full = path + "." + key;
     failAt(locate(root, full), full, problem, "expected " + expectation);
   }
-  void refuse(const char* key) const {
-    if (isGiven(key)) fail(key, "says nothing with " + draft.kind, "no such key");
+  template <class T>
+  void refuse(const std::optional<T>& value, const char* key) const {
+    if (!value) return;
+    fail(key, "says nothing with " + wordOf(kTroubleWords, given.trouble.kind), "no such key");
   }
 };
 
@@ -49,10 +49,10 @@ int findBus(const Loading& l) {
   std::vector<std::string> names;
   for (const BusConfig& bus : l.hardware.buses) names.push_back(bus.interface);
   const std::string expectation = fmt::format("one of {}", fmt::join(names, ", "));
-  if (!l.isGiven("interface")) l.fail("interface", "is missing", expectation);
-  const auto name = std::ranges::find(names, l.draft.interface);
+  if (!l.given.interface) l.fail("interface", "is missing", expectation);
+  const auto name = std::ranges::find(names, *l.given.interface);
   if (name == names.end()) {
-    l.fail("interface", inQuotes(l.draft.interface) + " is no bus of this scene", expectation);
+    l.fail("interface", inQuotes(*l.given.interface) + " is no bus of this scene", expectation);
   }
   return static_cast<int>(name - names.begin());
 }
@@ -62,27 +62,26 @@ void checkNodeId(const Loading& l, const Trouble& trouble) {
     return drive.bus == trouble.bus && drive.node_id == static_cast<int>(trouble.id);
   };
   if (trouble.id == 0 || std::ranges::any_of(l.hardware.drives, is_it)) return;
-  l.fail("id", fmt::format("{} is no drive of {}", trouble.id, inQuotes(l.draft.interface)),
+  l.fail("id", fmt::format("{} is no drive of {}", trouble.id, inQuotes(*l.given.interface)),
          "the node id of a drive, or 0 for all");
 }
 
 Trouble loadTrouble(const Loading& l) {
-  Trouble trouble = l.draft.trouble;
-  trouble.kind = static_cast<TroubleKind>(std::ranges::find(troubleNames(), l.draft.kind) -
-                                          troubleNames().begin());
-  trouble.id = static_cast<std::uint32_t>(l.draft.id);
+  Trouble trouble = l.given.trouble;
+  trouble.id = l.given.id.value_or(trouble.id);
+  trouble.delay_s = l.given.delay_s.value_or(trouble.delay_s);
   if (trouble.until_s <= trouble.from_s) {
     l.fail("until_s", fmt::format("{} s is too early", trouble.until_s),
            fmt::format("more than from_s = {}", trouble.from_s));
   }
-  if (!hasId(trouble.kind)) l.refuse("id");
+  if (!hasId(trouble.kind)) l.refuse(l.given.id, "id");
   if (trouble.kind != TroubleKind::kDelay) {
-    l.refuse("delay_s");
-  } else if (!l.isGiven("delay_s")) {
+    l.refuse(l.given.delay_s, "delay_s");
+  } else if (!l.given.delay_s) {
     l.fail("delay_s", "is missing", "a number > 0 in s with delay");
   }
   if (trouble.kind == TroubleKind::kEmergencyStop) {
-    l.refuse("interface");
+    l.refuse(l.given.interface, "interface");
     if (!l.hardware.gpio || !l.hardware.gpio->e_stop) {
       l.fail("kind", "the robot has no gpio.e_stop", "another trouble, or such a robot");
     }
@@ -95,17 +94,16 @@ Trouble loadTrouble(const Loading& l) {
 
 }  // namespace
 
-std::vector<Trouble> loadTroubles(const YamlNode& root, const ConfigDraft& draft,
+std::vector<Trouble> loadTroubles(const YamlNode& root, const std::vector<TroubleSection>& given,
                                   const std::optional<HardwareConfig>& hardware) {
   const std::string section = "simulation.troubles";
-  if (!draft.troubles.empty() && !hardware) {
+  if (!given.empty() && !hardware) {
     failAt(locate(root, section), section, "the robot has no can section",
            "expected no troubles, or such a robot");
   }
   std::vector<Trouble> troubles;
-  for (std::size_t i = 0; i < draft.troubles.size(); ++i) {
-    troubles.push_back(
-        loadTrouble({root, *hardware, draft.troubles[i], fmt::format("{}[{}]", section, i)}));
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    troubles.push_back(loadTrouble({root, *hardware, given[i], fmt::format("{}[{}]", section, i)}));
   }
   return troubles;
 }

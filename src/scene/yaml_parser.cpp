@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tactus/scene/yaml_brackets.h"
 #include "tactus/scene/yaml_tree.h"
 
 namespace tactus {
@@ -211,6 +212,11 @@ void refuseMissingColon(std::string_view line, SourcePosition at) {
          "expected key: value, as in valid YAML");
 }
 
+bool isOneOfFlow(const std::string& problem) {
+  return problem == YAML::ErrorMsg::FLOW_END || problem == YAML::ErrorMsg::END_OF_SEQ_FLOW ||
+         problem == YAML::ErrorMsg::END_OF_MAP_FLOW;
+}
+
 bool isBlank(std::string_view line) {
   const std::size_t start = line.find_first_not_of(" \t\r");
   return start == std::string_view::npos || line[start] == '#';
@@ -233,6 +239,7 @@ const char* syntaxExpectation(const std::string& problem) {
   std::vector<std::string_view> lines = firstLines(text, at.line);
   const auto here = [&] { return SourcePosition{at.file, static_cast<int>(lines.size()), 1}; };
   if (!lines.empty()) refuseTab(lines.back(), here());
+  if (isOneOfFlow(problem)) refuseUnpairedBracket(text, at);
   if (!lines.empty() && problem == YAML::ErrorMsg::MAP_VALUE) {  // met at the colon of the next key
     do lines.pop_back();
     while (!lines.empty() && isBlank(lines.back()));

@@ -39,7 +39,7 @@ ModeConfig modeConfig(const JointLimits& limits, const HardwareConfig& hardware,
   config.boot_cycles = cyclesCovering(boot_s, period_s);
   config.enabling_cycles = cyclesCovering(kSwitchingTime_s, period_s) + config.brake_cycles;
   // Drives that do not switch off are cut off before this time is over.
-  const double stopping_s = rampTime_s(limits) + brakeDeadline_s(hardware);
+  const double stopping_s = rampTime_s(limits) + hardware.canopen.stop_deadline_s;
   config.stopping_cycles = config.enabling_cycles + cyclesCovering(stopping_s, period_s);
   return config;
 }
@@ -47,7 +47,7 @@ ModeConfig modeConfig(const JointLimits& limits, const HardwareConfig& hardware,
 BrakeConfig brakeConfig(const HardwareConfig& hardware, double period_s) {
   BrakeConfig config;
   config.rest_cycles = cyclesCovering(std::max(kRestTime_s, brakeTime_s(hardware)), period_s);
-  config.deadline_cycles = cyclesLasting(brakeDeadline_s(hardware), period_s);
+  config.deadline_cycles = cyclesLasting(hardware.canopen.stop_deadline_s, period_s);
   return config;
 }
 

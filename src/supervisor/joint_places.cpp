@@ -19,7 +19,7 @@ JointPlaces::JointPlaces(const JointVector& q_start, const HardwareConfig& hardw
       q_released_(q_start),
       max_following_error_(maxFollowingErrors(hardware)),
       stop_way_(JointVector::Zero(q_start.size())),
-      stop_deadline_s_(brakeDeadline_s(hardware)),
+      stop_deadline_s_(hardware.canopen.stop_deadline_s),
       tolerance_(hardware.start_tolerance) {}
 
 void JointPlaces::command(const JointVector& q, const JointVector& velocity) noexcept {

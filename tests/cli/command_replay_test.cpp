@@ -69,6 +69,16 @@ TEST_F(CommandReplay, ALogOfARunWithSettingsReplaysWithThem) {
   EXPECT_EQ(run({}), kExitFault) << "the settings make no difference: this test is blind";
 }
 
+TEST_F(CommandReplay, ALogOfARunWithAnotherRobotReplaysWithIt) {
+  writeLogOf({{"robot.limits.acceleration[0]", "0.01"}, {"robot.home[4]", "0.4"}});
+  EXPECT_EQ(run({}), kExitDone) << output_;
+  EXPECT_EQ(run({"--set", "robot.tip=link9"}), kExitDone);
+  EXPECT_NE(output_.find("cycles differ"), std::string::npos) << output_;
+  description_.overrides.clear();
+  rewriteLog();
+  EXPECT_EQ(run({}), kExitFault) << "the settings make no difference: this test is blind";
+}
+
 TEST_F(CommandReplay, OneFlippedBitIsAFault) {
   writeLogOf({});
   reinterpret_cast<char*>(&records_[77].dq[4])[0] ^= 1;

@@ -50,7 +50,7 @@ TEST(Export, EveryNumberReadsBackToTheBit) {
   for (std::size_t i = 0; i < e.records.size(); ++i) {
     const auto cells = split(lines[i + 1], ',');
     const auto words = test::loggedWords(e.records[i], e.shape);
-    ASSERT_EQ(cells.size(), words.size());
+    ASSERT_EQ(cells.size(), words.size() + 2);
     for (std::size_t k = 0; k < words.size(); ++k) {
       std::uint64_t word;
       if (columns[k].type == FieldType::kDouble) {
@@ -77,9 +77,28 @@ TEST(Export, HeaderNamesTheColumns) {
   exportCsv(e.log.path(), e.csv.path());
   const auto header = split(split(e.csv.content(), '\n')[0], ',');
   const auto columns = recordColumns(e.shape);
-  ASSERT_EQ(header.size(), columns.size());
+  ASSERT_EQ(header.size(), columns.size() + 2);
   EXPECT_EQ(header.front(), "t_s");
-  EXPECT_EQ(header.back(), "path_time_s");
+  EXPECT_EQ(header[columns.size() - 1], "path_time_s");
+  EXPECT_EQ(header[columns.size()], "fault_name");
+  EXPECT_EQ(header.back(), "mode_name");
+}
+
+TEST(Export, NamesFaultAndMode) {
+  Export e(3);
+  const std::uint64_t numbers[][2] = {{1, 4}, {21, 7}, {22, 0xffffffffffffffff}};
+  for (int i = 0; i < 3; ++i) {
+    e.records[i].fault = numbers[i][0];
+    e.records[i].mode = numbers[i][1];
+  }
+  LogDescription description;
+  description.shape = e.shape;
+  e.log.setContent(test::writeLog(description, e.records));
+  exportCsv(e.log.path(), e.csv.path());
+  const auto lines = split(e.csv.content(), '\n');
+  EXPECT_TRUE(lines[1].ends_with(",tactile_invalid,holding"));
+  EXPECT_TRUE(lines[2].ends_with(",forbidden_system_call,off"));
+  EXPECT_TRUE(lines[3].ends_with(",unknown,unknown"));
 }
 
 TEST(Export, LeavesOutWhatTheLogDoesNotHave) {
@@ -88,7 +107,9 @@ TEST(Export, LeavesOutWhatTheLogDoesNotHave) {
   bytes.replace(bytes.find("missed_cycles"), 13, "something_new");
   e.log.setContent(bytes);
   exportCsv(e.log.path(), e.csv.path());
-  EXPECT_EQ(split(split(e.csv.content(), '\n')[0], ',').back(), "path_time_s");
+  const std::string header = split(e.csv.content(), '\n')[0];
+  EXPECT_EQ(header.find("missed_cycles"), std::string::npos);
+  EXPECT_TRUE(header.ends_with(",path_time_s,fault_name,mode_name"));
 }
 
 TEST(Export, CommandExportsACutLogUpToTheCut) {

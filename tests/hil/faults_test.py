@@ -46,7 +46,7 @@ class Expected:
 QUICK_STOP_LASTS = 130
 # The setpoint is zero at once; drives lag behind it, and the brake takes switching_s, 0.1 s, to hold.
 RAMP_LASTS = 150
-DEADLINE = 500  # gpio.brake.deadline_s
+DEADLINE = 500  # can.stop_deadline_s
 MOVES_ON = 100  # two windows in which a drive has to slow down
 EXPECTED = {
     "e_stop": Expected("fault", "emergency_stop", "quick stop and brake", 2, 2, QUICK_STOP_LASTS, 2),

@@ -2,16 +2,24 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <utility>
 #include <vector>
 
 namespace tactus {
 namespace {
 
-constexpr double kThreshold_N = 1.2;
+constexpr double kThreshold_N = 1.2;  // the defaults
+constexpr double kRelease_N = 0.3;
 
 /// Forces of consecutive cycles of 10 ms, starting at t = 0.
 std::vector<ContactSummary> contactsOf(const std::vector<double>& forces_N, bool force_control) {
-  ContactList list(force_control, forces_N.size());
+  std::optional<ForceControlConfig> config;
+  if (force_control) config.emplace();
+  ContactList list(config, forces_N.size());
   CycleRecord record;
   for (std::size_t i = 0; i < forces_N.size(); ++i) {
     record.t_s = 0.01 * static_cast<double>(i);
@@ -44,15 +52,18 @@ TEST(ContactList, StartsAboveTheThresholdAndLastsBelowItWhileTouching) {
   EXPECT_NEAR(contacts[0].settling_s, 0.05, 1e-12);
 }
 
-TEST(ContactList, WithoutForceControlAnyTouchIsAContact) {
-  const auto contacts = contactsOf(sequence({{10, 0.0}, {20, 0.06}}), false);
+TEST(ContactList, WithoutForceControlAContactBeginsWithItsFirstTouch) {
+  const auto contacts =
+      contactsOf(sequence({{10, 0.0}, {5, 0.2}, {1, 0.05}, {20, 0.06}, {5, 1.3}}), false);
   ASSERT_EQ(contacts.size(), 1u);
-  EXPECT_DOUBLE_EQ(contacts[0].start_s, 0.1);
-  EXPECT_DOUBLE_EQ(contacts[0].settling_s, 0.0);
+  EXPECT_DOUBLE_EQ(contacts[0].start_s, 0.16);
+  EXPECT_DOUBLE_EQ(contacts[0].peak_force_N, 1.3);
+  EXPECT_DOUBLE_EQ(contacts[0].end_s, 0.40);
+  EXPECT_TRUE(contactsOf(sequence({{10, 0.0}, {100, kThreshold_N}}), false).empty());
 }
 
 TEST(ContactList, AShortPauseDoesNotEndAContactALongOneDoes) {
-  const auto one = contactsOf(sequence({{20, 3.0}, {10, 0.0}, {20, 3.0}}), true);
+  const auto one = contactsOf(sequence({{20, 3.0}, {8, 0.0}, {22, 3.0}}), true);
   ASSERT_EQ(one.size(), 1u);
   EXPECT_DOUBLE_EQ(one[0].end_s, 0.49);
   const auto two = contactsOf(sequence({{20, 3.0}, {11, 0.0}, {20, 4.0}}), true);
@@ -68,8 +79,60 @@ TEST(ContactList, SettlingIsJudgedByTheForceBeforeTheRelease) {
   const auto contacts = contactsOf(
       sequence({{10, 8.0}, {10, 5.2}, {30, 5.0}, {2, 3.0}, {2, 1.0}, {1, 0.1}, {30, 0.0}}), true);
   ASSERT_EQ(contacts.size(), 1u);
-  EXPECT_DOUBLE_EQ(contacts[0].end_s, 0.55);
+  EXPECT_DOUBLE_EQ(contacts[0].end_s, 0.54);
   EXPECT_NEAR(contacts[0].settling_s, 0.20, 1e-12);
+}
+
+/// 1 kHz; each component of the force has Gaussian noise.
+std::vector<ContactSummary> noisyContacts(const std::vector<std::pair<int, double>>& stretches,
+                                          bool force_control, double noise_N, int seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, noise_N);
+  std::optional<ForceControlConfig> config;
+  if (force_control) config.emplace();
+  ContactList list(config, 0);
+  CycleRecord record;
+  for (const double force_N : sequence(stretches)) {
+    record.force_sensor_N = std::hypot(force_N + noise(random), noise(random));
+    record.force_contact_N = std::max(0.0, record.force_sensor_N - kThreshold_N);
+    list.add(record);
+    record.t_s += 1e-3;
+  }
+  return list.contacts();
+}
+
+/// 0.1 N in each of four channels a component: most samples of a free arm exceed 0.05 N, a third
+/// F_rel.
+TEST(ContactList, NoiseNeitherKeepsAContactNorMakesOneNorEndsOne) {
+  for (const bool force_control : {true, false}) {
+    for (int seed = 0; seed < 20; ++seed) {
+      const auto contacts = noisyContacts(
+          {{2000, 0.0}, {1000, 5.0}, {3000, 0.7}, {3000, 0.0}, {500, 5.0}, {2000, 0.0}},
+          force_control, 0.2, seed);
+      ASSERT_EQ(contacts.size(), 2u) << force_control << ' ' << seed;
+      EXPECT_NEAR(contacts[0].start_s, 2.0, 0.5);
+      EXPECT_NEAR(contacts[0].end_s, 6.0, 0.1);
+      EXPECT_NEAR(contacts[0].peak_force_N, 5.5, 0.5);
+      EXPECT_NEAR(contacts[1].start_s, 9.0, 0.5);
+      EXPECT_NEAR(contacts[1].end_s, 9.5, 0.1);
+    }
+  }
+}
+
+TEST(ContactList, EndsAtTheForceOfTheScene) {
+  ForceControlConfig config;
+  for (const auto& [release_N, count] : {std::pair{kRelease_N, 1u}, std::pair{0.75, 2u}}) {
+    config.transition.release_force_N = release_N;
+    ContactList list(config, 0);
+    CycleRecord record;
+    for (const double force_N : sequence({{20, 3.0}, {20, 0.7}, {20, 3.0}})) {
+      record.force_sensor_N = force_N;
+      record.force_contact_N = std::max(0.0, force_N - kThreshold_N);
+      list.add(record);
+      record.t_s += 0.01;
+    }
+    EXPECT_EQ(list.contacts().size(), count) << release_N;
+  }
 }
 
 TEST(ContactList, TheBandIsTwoPercentOrFiveHundredthsOfANewton) {

@@ -57,6 +57,23 @@ TEST(RunSummary, FindsPeaksAndFinalValues) {
   EXPECT_NEAR(figures.peak_joint_speed_squared, 0.3 * 0.3 + 0.04, 1e-15);
 }
 
+TEST(RunSummary, HasARotationErrorOnlyOfATaskWithOne) {
+  ControllerConfig c = config();
+  EXPECT_FALSE(RunSummary(c, 0).figures().tcp_rotation_error);
+  c.task.components[2] = 4;
+  RunSummary summary(c, 0);
+  for (const double error_rad : {0.0, 0.4, 0.3}) {
+    CycleRecord record;
+    record.tool_rotation_error_rad = error_rad;
+    summary.add(record);
+  }
+  const RunFigures figures = summary.figures();
+  ASSERT_TRUE(figures.tcp_rotation_error);
+  EXPECT_EQ(figures.tcp_rotation_error->max_rad, 0.4);
+  EXPECT_EQ(figures.tcp_rotation_error->final_rad, 0.3);
+  EXPECT_NEAR(figures.tcp_rotation_error->rms_rad, std::sqrt(0.25 / 3.0), 1e-15);
+}
+
 TEST(RunSummary, CountsCyclesWithAJointOnItsLimitOnce) {
   const ControllerConfig c = config();
   RunSummary summary(c, 4);
@@ -135,6 +152,15 @@ TEST(SummaryJson, HasTheKeysOfTheContractInTheirOrder) {
   EXPECT_EQ(json["real_time_factor"].as<double>(), 512.5);
   EXPECT_EQ(json["outcome"].as<std::string>(), "completed");
   EXPECT_TRUE(json["fault"].IsNull());
+}
+
+TEST(SummaryJson, HoldsTheRotationErrorOfATaskWithOne) {
+  RunFigures figures;
+  figures.tcp_rotation_error = {0.25, 0.125, 0.5};
+  const YAML::Node json = YAML::Load(summaryJson(scene(), figures, 1.0));
+  EXPECT_EQ(json["tcp_rotation_error_max_rad"].as<double>(), 0.25);
+  EXPECT_EQ(json["tcp_rotation_error_rms_rad"].as<double>(), 0.125);
+  EXPECT_EQ(json["tcp_rotation_error_final_rad"].as<double>(), 0.5);
 }
 
 TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {

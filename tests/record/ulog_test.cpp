@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/record/run_error.h"
 #include "tactus/scene/input_error.h"
@@ -34,7 +35,7 @@ TEST(Ulog, KeepsEveryBitOfEveryShape) {
   for (int joints = 2; joints <= kMaxJoints; ++joints) {
     for (int task_size = 1; task_size <= kMaxTaskSize; ++task_size) {
       LogDescription description = smallDescription();
-      description.shape = {joints, task_size};
+      description.shape = {joints, task_size, task_size % 2 == 0};
       const auto records = randomRecords(5, static_cast<unsigned>(joints * 10 + task_size));
       const auto log = readLog(writeLog(description, records));
       EXPECT_EQ(log.description.shape, description.shape);
@@ -86,6 +87,42 @@ TEST(Ulog, HoldsInfosAndParametersByAllowedNames) {
   EXPECT_EQ(read.parameters[0].second, static_cast<double>(0.1f));
   EXPECT_EQ(read.parameters[1].first, "a/b/0/12");
   EXPECT_EQ(read.parameters[1].second, -2.5);
+}
+
+TEST(Ulog, SaysWhatItsNumbersMean) {
+  const LogDescription read = readLog(writeLog(smallDescription(), {})).description;
+  const auto has = [&read](const std::string& name, const std::string& value) {
+    return std::count(read.infos.begin(), read.infos.end(), std::pair{name, value}) == 1;
+  };
+  EXPECT_TRUE(has("fault/0", "none"));
+  EXPECT_TRUE(has("fault/1", "tactile_invalid"));
+  EXPECT_TRUE(has("fault/21", "forbidden_system_call"));
+  EXPECT_TRUE(has("mode/0", "boot"));
+  EXPECT_TRUE(has("mode/7", "off"));
+  EXPECT_TRUE(has("unit/q", "m or rad"));
+}
+
+TEST(Ulog, NamesJointsAndComponentsOfTheScene) {
+  const Scene scene = test::shippedScene("free_motion", {{"task.components", "[x, rz, ry]"}});
+  const LogDescription description = describeLog(scene);
+  EXPECT_EQ(description.shape, (RecordShape{9, 3, true}));
+  const auto has = [&description](const std::string& name, const std::string& value) {
+    return std::count(description.infos.begin(), description.infos.end(), std::pair{name, value}) ==
+           1;
+  };
+  EXPECT_TRUE(has("joint/9", scene.joint_names[8]));
+  EXPECT_TRUE(has("component/1", "x"));
+  EXPECT_TRUE(has("component/2", "rz"));
+  EXPECT_TRUE(has("component/3", "ry"));
+}
+
+TEST(Ulog, HasARotationErrorOnlyOfATaskWithOne) {
+  LogDescription description = smallDescription();
+  const std::string name = "tool_rotation_error_rad";
+  EXPECT_EQ(writeLog(description, {}).find(name), std::string::npos);
+  description.shape.has_rotation = true;
+  EXPECT_NE(writeLog(description, {}).find("double " + name + ";"), std::string::npos);
+  EXPECT_EQ(recordColumns(description.shape).back().name, name);
 }
 
 /// Every byte of a small log, written down from the specification.

@@ -31,6 +31,16 @@ TEST(HardwareLoad, PutsBusesInTheirPlace) {
   EXPECT_EQ(hardware.start_tolerance, 0.03);
 }
 
+TEST(HardwareLoad, DeadlineOfAStopNeedsNoLines) {
+  SceneFiles files = hardwareFiles();
+  EXPECT_EQ(files.load().hardware->canopen.stop_deadline_s, CanopenConfig{}.stop_deadline_s);
+  files.robot = test::replaced(files.robot, "can:\n", "can:\n  stop_deadline_s: 0.7\n");
+  files.robot.resize(files.robot.find("gpio:"));
+  const HardwareConfig hardware = files.load().hardware.value();
+  EXPECT_EQ(hardware.canopen.stop_deadline_s, 0.7);
+  EXPECT_FALSE(hardware.gpio);
+}
+
 TEST(HardwareLoad, PutsDrivesIntoTheOrderOfTheJoints) {
   const HardwareConfig hardware = hardwareFiles().load().hardware.value();
   ASSERT_EQ(hardware.drives.size(), 3u);

@@ -34,8 +34,8 @@ TEST(KeyTable, EveryRowIsComplete) {
     EXPECT_FALSE(spec.doc.empty());
     EXPECT_EQ(spec.doc.find('\n'), std::string::npos);
     EXPECT_FALSE(describeExpectation(spec).empty());
-    EXPECT_EQ(std::holds_alternative<std::monostate>(spec.target), is_section);
-    EXPECT_EQ(spec.type == ValueType::kSectionList && !spec.begin, false);
+    EXPECT_EQ(!spec.target, is_section);
+    EXPECT_EQ(!spec.enter, !is_section);
     EXPECT_EQ(spec.presence == Presence::kDefaulted && !is_section, !spec.default_value.empty());
   });
 }
@@ -69,70 +69,6 @@ TEST(KeyTable, KeysEndInTheirUnit) {
   });
 }
 
-/// The structs are filled by hand in tests: their initialisers and the table must not drift apart.
-TEST(KeyTable, DefaultsEqualThoseOfTheStructs) {
-  test::SceneFiles files;
-  files.scene =
-      "robot: robot.yaml\ntask: {trajectory: {line: {displacement_m: [0, 0.1, 0]}}}\n"
-      "redundancy: {joint_limit_avoidance: {}}\n"
-      "controller: {variant: null_space}\nstiffness: {assumed_N_per_m: 7000, estimate: {}}\n"
-      "simulation: {duration_s: 1}\n";
-  files.robot = test::replaced(files.robot, "  sample_period_s: 0.005\n", "");
-  files.robot = test::replaced(files.robot, "drives: {position_lag_s: 0.01}\n", "");
-  const Scene scene = files.load();
-  const ForceControlConfig& force = *scene.controller.force_control;
-  const ForceControlConfig force_default;
-  EXPECT_EQ(force.order, force_default.order);
-  EXPECT_EQ(force.time_constant_s, force_default.time_constant_s);
-  EXPECT_EQ(force.damping, force_default.damping);
-  EXPECT_EQ(force.contact_threshold_N, force_default.contact_threshold_N);
-  EXPECT_EQ(force.max_null_speed_m_per_s, force_default.max_null_speed_m_per_s);
-  EXPECT_EQ(force.max_null_speed_rad_per_s, force_default.max_null_speed_rad_per_s);
-  EXPECT_EQ(force.transition.max_time_constant_s, force_default.transition.max_time_constant_s);
-  EXPECT_EQ(force.transition.distance_m, force_default.transition.distance_m);
-  EXPECT_EQ(force.transition.engage_force_N, force_default.transition.engage_force_N);
-  EXPECT_EQ(force.transition.release_force_N, force_default.transition.release_force_N);
-  EXPECT_EQ(force.transition.search_speed_m_per_s, force_default.transition.search_speed_m_per_s);
-  EXPECT_EQ(force.min_approach_stiffness_N_per_m, force_default.min_approach_stiffness_N_per_m);
-  EXPECT_EQ(force.pull_gain_per_s, force_default.pull_gain_per_s);
-  const StiffnessEstimatorConfig estimator_default;
-  EXPECT_EQ(force.estimator->min_force_change_N, estimator_default.min_force_change_N);
-  EXPECT_EQ(force.estimator->filter_time_constant_s, estimator_default.filter_time_constant_s);
-  EXPECT_EQ(force.estimator->min_N_per_m, estimator_default.min_N_per_m);
-  EXPECT_EQ(force.estimator->max_N_per_m, estimator_default.max_N_per_m);
-  const JointLimitAvoidanceConfig avoidance_default;
-  EXPECT_EQ(scene.controller.joint_limit_avoidance->gain, avoidance_default.gain);
-  EXPECT_EQ(scene.controller.joint_limit_avoidance->gradient_at_limit,
-            avoidance_default.gradient_at_limit);
-  EXPECT_EQ(scene.controller.joint_limit_avoidance->active_fraction,
-            avoidance_default.active_fraction);
-  const Waypoint& waypoint = scene.controller.task.trajectory.waypoints[0];
-  EXPECT_EQ(waypoint.speed_m_per_s, Waypoint{}.speed_m_per_s);
-  EXPECT_EQ(waypoint.angular_speed_rad_per_s, Waypoint{}.angular_speed_rad_per_s);
-  EXPECT_EQ(waypoint.ramp_s, Waypoint{}.ramp_s);
-  EXPECT_EQ(scene.controller.task.drift_gain_per_s, TaskConfig{}.drift_gain_per_s);
-  const TactileModuleConfig module_default;
-  EXPECT_EQ(scene.controller.tactile_module->max_force_N, module_default.max_force_N);
-  EXPECT_EQ(scene.controller.tactile_module->max_sample_age_s, module_default.max_sample_age_s);
-  EXPECT_EQ(scene.controller.tactile_module->filter_cutoff_hz, module_default.filter_cutoff_hz);
-  EXPECT_EQ(scene.controller.drive_lag_s,
-            ControllerConfig{.chain = scene.controller.chain}.drive_lag_s);
-  const LogConfig log_default;
-  EXPECT_EQ(scene.log.max_bytes, log_default.max_bytes);
-  EXPECT_EQ(scene.log.keep, log_default.keep);
-  EXPECT_EQ(scene.log.min_free_bytes, log_default.min_free_bytes);
-  const PlantConfig plant_default;
-  EXPECT_EQ(scene.plant.drive_lag_s, plant_default.drive_lag_s);
-  EXPECT_EQ(scene.plant.module.filter_cutoff_hz, plant_default.module.filter_cutoff_hz);
-  EXPECT_EQ(scene.plant.module.filter_rate_hz, plant_default.module.filter_rate_hz);
-  EXPECT_EQ(scene.plant.module.sample_period_s, plant_default.module.sample_period_s);
-  EXPECT_EQ(scene.plant.module.counts_per_N, plant_default.module.counts_per_N);
-  EXPECT_EQ(scene.plant.module.quantised, plant_default.module.quantised);
-  EXPECT_EQ(scene.plant.module.noise_N, plant_default.module.noise_N);
-  EXPECT_EQ(scene.plant.module.lost_share, plant_default.module.lost_share);
-  EXPECT_EQ(scene.plant.module.seed, plant_default.module.seed);
-}
-
 /// One number below and one above what a range allows.
 std::vector<double> outside(const Range& range) {
   std::vector<double> values;
@@ -143,41 +79,41 @@ std::vector<double> outside(const Range& range) {
 }
 
 /// Sets a number of a file, given as a tree, to `value` and reads it.
-std::string readError(YamlNode root, const std::vector<KeySpec>& keys, const std::string& path,
-                      double value) {
+template <class Read>
+std::string readError(YamlNode root, const Read& read, const std::string& path, double value) {
   try {
     applyOverride(root, {path, fmt::format("{}", value)});
-    ConfigDraft draft;
-    readSection(root, keys, "", draft);
+    NamedNumbers numbers;
+    read(root, numbers);
   } catch (const InputError& error) {
     return error.what();
   }
   return "";
 }
 
-/// Calls `visit` for every number; of lists, for their first entry.
+/// Calls `visit` for every value; of lists, for their first entry.
 template <class Visit>
-void walkNumbers(const std::vector<KeySpec>& keys, const std::string& prefix, const Visit& visit) {
+void walkValues(const std::vector<KeySpec>& keys, const std::string& prefix, const Visit& visit) {
   for (const KeySpec& spec : keys) {
     const bool is_list = spec.type == ValueType::kSectionList;
-    if (spec.type == ValueType::kNumber || spec.type == ValueType::kInteger) {
-      visit(prefix + spec.key, spec);
-    }
-    walkNumbers(spec.keys, prefix + spec.key + (is_list ? "[0]." : "."), visit);
+    if (spec.target) visit(prefix + spec.key, spec);
+    walkValues(spec.keys, prefix + spec.key + (is_list ? "[0]." : "."), visit);
   }
 }
 
 /// Every number, set to a value just outside its range, is refused under its own key: no row is
 /// forgotten by the reader.
-int countRefused(const std::string& text, const std::vector<KeySpec>& keys) {
+template <class Read>
+int countRefused(const std::string& text, const std::vector<KeySpec>& keys, const Read& read) {
   const YamlNode root = parseYaml({"file.yaml", text});
   int refused = 0;
-  walkNumbers(keys, "", [&](const std::string& path, const KeySpec& spec) {
+  walkValues(keys, "", [&](const std::string& path, const KeySpec& spec) {
+    if (spec.type != ValueType::kNumber && spec.type != ValueType::kInteger) return;
     for (double value : outside(spec.range)) {
       if (spec.type == ValueType::kInteger) {
         value = value < spec.range.lower ? spec.range.lower - 1 : spec.range.upper + 1;
       }
-      const std::string error = readError(root, keys, path, value);
+      const std::string error = readError(root, read, path, value);
       EXPECT_NE(error.find(": " + path + ": "), std::string::npos) << path << " " << error;
       EXPECT_TRUE(error.find("out of range") != std::string::npos ||
                   error.find("is not a whole number") != std::string::npos)
@@ -188,17 +124,70 @@ int countRefused(const std::string& text, const std::vector<KeySpec>& keys) {
   return refused;
 }
 
-TEST(KeyTable, NoNumberOutsideItsRangeIsRead) {
+std::string fullScene() {
   std::string scene = test::kSceneText;
   scene = test::replaced(scene, "{x_m: 0.7, y_m: 0.1, stiffness_N_per_m: 60}",
                          "{x_m: 1, y_m: 1, stiffness_N_per_m: 1, foam: [{stiffness_N_per_m: 1, "
-                         "until_force_N: 1}]}");
+                         "until_force_N: 1}], swing: {frequency_hz: 1}}");
   scene = test::replaced(scene, "redundancy:", "    waypoints: [{}]\nredundancy:");
-  scene += "  troubles: [{kind: drop, from_s: 1, until_s: 2}]\n";
-  EXPECT_GT(countRefused(scene, sceneKeys()), 80);
-  const std::string robot = test::replaced(test::kHardwareRobotText, "  brake: {line: 5}",
-                                           "  enable: {line: 4}\n  brake: {line: 5}");
-  EXPECT_GT(countRefused(robot, robotKeys()), 60);
+  return scene + "  troubles: [{kind: drop, from_s: 1, until_s: 2}]\n";
+}
+
+std::string fullRobot() {
+  return test::replaced(test::kHardwareRobotText, "  brake: {line: 5}",
+                        "  enable: {line: 4}\n  brake: {line: 5}\n  heartbeat: {line: 6}");
+}
+
+TEST(KeyTable, NoNumberOutsideItsRangeIsRead) {
+  EXPECT_GT(countRefused(fullScene(), sceneKeys(), readSceneConfig), 80);
+  EXPECT_GT(countRefused(fullRobot(), robotKeys(), readRobotConfig), 60);
+}
+
+/// A default given as it is shown is the same as none: nothing is lost or rounded when it is shown.
+template <class Read>
+int countDefaults(const std::string& text, const std::vector<KeySpec>& keys, const Read& read) {
+  const YamlNode root = parseYaml({"file.yaml", text});
+  int defaults = 0;
+  walkValues(keys, "", [&](const std::string& path, const KeySpec& spec) {
+    if (spec.presence != Presence::kDefaulted) return;
+    ++defaults;
+    YamlNode given = root, absent = root;
+    applyOverride(given, {path, spec.default_value});
+    applyOverride(absent, {path, "~"});
+    NamedNumbers given_numbers, absent_numbers;
+    read(given, given_numbers);
+    read(absent, absent_numbers);
+    EXPECT_EQ(given_numbers, absent_numbers) << path;
+  });
+  return defaults;
+}
+
+TEST(KeyTable, DefaultsAreShownAsTheyAre) {
+  EXPECT_GT(countDefaults(fullScene(), sceneKeys(), readSceneConfig), 40);
+  EXPECT_GT(countDefaults(fullRobot(), robotKeys(), readRobotConfig), 25);
+}
+
+std::string shownDefault(const std::vector<KeySpec>& keys, const std::string& wanted) {
+  std::string text = "no such key";
+  walkValues(keys, "", [&](const std::string& path, const KeySpec& spec) {
+    if (path == wanted) text = spec.default_value;
+  });
+  return text;
+}
+
+TEST(KeyTable, DefaultsAreThoseOfTheConfigs) {
+  EXPECT_EQ(shownDefault(sceneKeys(), "controller.time_constant_s"), "0.1");
+  EXPECT_EQ(shownDefault(sceneKeys(), "controller.order"), "2");
+  EXPECT_EQ(shownDefault(sceneKeys(), "controller.variant"), "") << "required";
+  EXPECT_EQ(shownDefault(sceneKeys(), "controller.activation_force_N"), "") << "optional";
+  EXPECT_EQ(shownDefault(sceneKeys(), "stiffness.estimate.max_N_per_m"), "1e6");
+  EXPECT_EQ(shownDefault(sceneKeys(), "task.components"), "[x, y, z]");
+  EXPECT_EQ(shownDefault(sceneKeys(), "task.trajectory.line.displacement_m"), "[0, 0, 0]");
+  EXPECT_EQ(shownDefault(sceneKeys(), "simulation.tactile_module.quantised"), "true");
+  EXPECT_EQ(shownDefault(sceneKeys(), "log.min_free_bytes"), "1e8");
+  EXPECT_EQ(shownDefault(robotKeys(), "tactile_module.first_id"), "0x100");
+  EXPECT_EQ(shownDefault(robotKeys(), "tactile_module.counts_per_N"), "100000");
+  EXPECT_EQ(shownDefault(robotKeys(), "real_time.cpu"), "-1");
 }
 
 }  // namespace

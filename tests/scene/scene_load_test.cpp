@@ -4,7 +4,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "support/scene_files.h"
+#include "support/hardware_files.h"
 
 namespace tactus {
 namespace {
@@ -208,6 +208,29 @@ TEST(Override, MakesSectionsAndTheLastOneWins) {
   EXPECT_EQ(scene.controller.joint_limit_avoidance->gain, 2.0);
   EXPECT_EQ(scene.controller.force_control->damping, 0.9);
   EXPECT_EQ(scene.overrides.size(), 3u);
+}
+
+TEST(Override, ReachesTheRobot) {
+  const SceneFiles files = test::hardwareFiles();
+  const Scene scene = files.load({{"robot.tactile_module.counts_per_N", "1e6"},
+                                  {"robot.drives.joints[0].node_id", "3"},
+                                  {"robot.drives.position_lag_s", "0.007"}});
+  EXPECT_EQ(scene.plant.module.counts_per_N, 1e6);
+  EXPECT_EQ(scene.hardware->tactile->counts_per_N, 1e6);
+  EXPECT_EQ(scene.hardware->drives[2].node_id, 3) << "of the joint roll, which comes last";
+  EXPECT_EQ(scene.plant.drive_lag_s, 0.007);
+  EXPECT_FALSE(files.load({{"robot.gpio", "~"}}).hardware->gpio);
+}
+
+TEST(Override, OfTheRobotComesAfterItsPath) {
+  const SceneFiles files;
+  std::vector<SourceFile> sources = files.sources();
+  sources[1].path = "elsewhere/robot.yaml";
+  const Scene scene = loadScene(sources, {{"robot.drives.position_lag_s", "0.007"},
+                                          {"robot", "elsewhere/robot.yaml"},
+                                          {"robot.urdf", "robot.urdf"}});
+  EXPECT_EQ(scene.plant.drive_lag_s, 0.007);
+  EXPECT_EQ(scene.sources.at(2).path, "robot.urdf") << "relative to the scene";
 }
 
 TEST(Override, RemovesWithNull) {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support/hardware_files.h"
-#include "tactus/scene/key_table.h"
+#include "tactus/scene/key_words.h"
 
 namespace tactus {
 namespace {
@@ -51,7 +51,7 @@ TEST(TroubleLoad, SpellsEveryKind) {
   EXPECT_EQ(load("kind: boot_up, id: 2" + bus).kind, Kind::kBootUp);
   EXPECT_EQ(load("kind: heartbeat_only, id: 2" + bus).kind, Kind::kHeartbeatOnly);
   EXPECT_EQ(load("kind: emergency_stop" + time).kind, Kind::kEmergencyStop);
-  EXPECT_EQ(static_cast<std::size_t>(Kind::kEmergencyStop) + 1, troubleNames().size());
+  EXPECT_EQ(static_cast<std::size_t>(Kind::kEmergencyStop) + 1, kTroubleWords.size());
 }
 
 TEST(TroubleLoad, KeepsTheOrder) {

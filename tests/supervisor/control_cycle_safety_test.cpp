@@ -18,7 +18,7 @@ using test::shippedScene;
 using test::VirtualRobotCell;
 
 constexpr int kBrakeCycles = 150;
-constexpr int kDeadlineCycles = 500;  // the default of brake_deadline_s
+constexpr int kDeadlineCycles = 500;  // the default of stop_deadline_s
 
 Scene withBrakeAndEnable() {
   Scene scene = shippedScene("scenario1_null_space");

@@ -9,7 +9,7 @@
 #include "tactus/control/fault.h"
 #include "tactus/supervisor/mode.h"
 
-/// The tables of the README and of tactusd(8) are those of the code.
+/// The tables of docs/safety.md and of tactusd(8) are those of the code.
 namespace tactus {
 namespace {
 
@@ -18,7 +18,7 @@ std::string documentText(const std::string& path) {
   text << std::ifstream(std::string(TACTUS_SOURCE_DIR) + "/" + path).rdbuf();
   return text.str();
 }
-std::string readme() { return documentText("README.md"); }
+std::string safetyPage() { return documentText("docs/safety.md"); }
 
 /// From a heading of a manual page to the next.
 std::string manualSection(const std::string& heading) {
@@ -44,8 +44,8 @@ std::ptrdiff_t rowsBelow(const std::string& text, const std::string& heading) {
   return lines;
 }
 
-TEST(Readme, HasTheFaultTable) {
-  const std::string text = readme();
+TEST(SafetyPage, HasTheFaultTable) {
+  const std::string text = safetyPage();
   std::ptrdiff_t count = 0;
   for (const FaultRow& row : faultTable()) {
     if (row.fault == Fault::kNone) continue;
@@ -54,17 +54,17 @@ TEST(Readme, HasTheFaultTable) {
                              row.within + " | " + reactionName(row.reaction) + " |";
     EXPECT_NE(text.find(line), std::string::npos) << line;
   }
-  EXPECT_EQ(rowsBelow(text, "### Faults"), count);
+  EXPECT_EQ(rowsBelow(text, "## Faults"), count);
 }
 
-TEST(Readme, HasTheModeTable) {
-  const std::string text = readme();
+TEST(SafetyPage, HasTheModeTable) {
+  const std::string text = safetyPage();
   for (const ModeTransition& row : modeTransitions()) {
     const std::string line =
         std::string("| ") + modeName(row.from) + " | " + modeName(row.to) + " | " + row.when + " |";
     EXPECT_NE(text.find(line), std::string::npos) << line;
   }
-  EXPECT_EQ(rowsBelow(text, "### Modes"), kModeTransitionCount);
+  EXPECT_EQ(rowsBelow(text, "## Modes"), kModeTransitionCount);
 }
 
 TEST(ManualOfTheDaemon, HasTheFaultTable) {

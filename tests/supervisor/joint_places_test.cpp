@@ -41,7 +41,7 @@ TEST(JointPlaces, FollowAJointAsLongAsItsDriveHoldsIt) {
 TEST(JointPlaces, EndWhereNoStopLeadsTo) {
   JointPlaces joints(places(0, 0), twoDrives());
   joints.command(places(0, 0), places(0.1, 0.1));
-  const double longest = brakeDeadline_s(twoDrives()) * 0.1 + DriveConfig{}.max_following_error;
+  const double longest = CanopenConfig{}.stop_deadline_s * 0.1 + DriveConfig{}.max_following_error;
   joints.observe(0, 0.99 * longest, true, false);
   joints.observe(1, 1.01 * longest, true, false);
   EXPECT_EQ(joints.outOfPlace(places(0.99 * longest, 0.0)), -1);

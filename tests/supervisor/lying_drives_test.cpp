@@ -14,7 +14,7 @@ namespace {
 using test::VirtualRobotCell;
 using Kind = Trouble::Kind;
 
-constexpr int kDeadline = 500;  // cycles, the default of brake_deadline_s
+constexpr int kDeadline = 500;  // cycles, the default of stop_deadline_s
 constexpr double kAtRest = 1e-6;
 
 Trouble troubleOf(Kind kind, double from_s, double until_s, int bus, std::uint32_t node) {

@@ -12,7 +12,6 @@
 namespace tactus::test {
 
 inline constexpr int kNode = 5;
-inline constexpr double kStopDeadline_s = 0.5;
 
 inline DriveConfig driveConfig() {
   DriveConfig config;
@@ -27,7 +26,7 @@ inline DriveConfig driveConfig() {
 struct DriveRig {
   explicit DriveRig(const DriveConfig& drive_config = driveConfig(),
                     const CanopenConfig& canopen = {})
-      : config(drive_config), drive(drive_config, canopen, kStopDeadline_s, kPeriod_s) {}
+      : config(drive_config), drive(drive_config, canopen, kPeriod_s) {}
 
   /// The frames that the master sends; the drive answers in the next cycle.
   std::vector<CanFrame> cycle(DriveGoal goal, double velocity = 0.0, bool restart = false) {

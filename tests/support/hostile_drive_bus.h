@@ -15,7 +15,7 @@ namespace tactus::test {
 class HostileDriveBus {
  public:
   HostileDriveBus(const DriveConfig& config, const CanopenConfig& canopen, double period_s)
-      : config_(config), drive_(config, canopen, GpioConfig{}.brake_deadline_s, period_s) {}
+      : config_(config), drive_(config, canopen, period_s) {}
 
   void receive(const CanFrame& frame) noexcept {
     drive_.receive(frame);

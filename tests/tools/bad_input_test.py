@@ -73,6 +73,13 @@ class BadInput(unittest.TestCase):
         start = f"{CONFIG}/robots/crops9/robot.yaml:19:7: can.buses[0]: can0 is overloaded: 3 x 115 "
         on_hardware = (["check", free], ["check", "--json", free], ["plant", free])
         self.expect_all_refuse(on_hardware, start, "period_s=0.0009")
+        error = self.run_tactus("check", free, "--set", "period_s=0.0009").stderr
+        shortest = re.search(r"expected at most 80 %: a period_s of at least ([0-9.]+) ", error)[1]
+        self.assertLess(float(shortest), 0.001)
+        accepted = self.run_tactus("check", free, "--set", f"period_s={shortest}")
+        self.assertEqual((accepted.returncode, accepted.stderr), (0, ""))
+        less = self.run_tactus("check", free, "--set", f"period_s={float(shortest) - 1e-5:.5f}")
+        self.assertEqual(less.returncode, 1)
         simulate = ("simulate", free, *SHORT, "--set", "period_s=0.00025", "-o", ".")
         replay = ("replay", f"{free.stem}/run.ulg")
         for command in (simulate, replay):
@@ -173,9 +180,13 @@ class BadInput(unittest.TestCase):
         fast = ("--set", f"{line}.speed_m_per_s=10", "--set", f"{line}.ramp_s=0.05")
         for scene, settings, warnings in ((GOOD, (), 0), (GOOD, fast, 1)):
             report = json.loads(self.run_tactus("check", "--json", scene, *settings).stdout)
-            self.assertEqual(len(report["path_warnings"]), warnings)
+            self.assertEqual(len(report["warnings"]), warnings)
             text = self.run_tactus("check", scene, *settings).stdout
             self.assertEqual(text.count("\nwarning  path not followed: at "), warnings)
+        both = (*fast, "--set", "stiffness.stiffest_N_per_m=25000")
+        report = json.loads(self.run_tactus("check", "--json", GOOD, *both).stdout)
+        self.assertEqual([w.split(" ")[0] for w in report["warnings"]], ["path", "phase"], report)
+        self.assertNotIn("warnings", report["stability"])
 
     def test_setting(self):
         start = "--set controller.damping:1:1: controller.damping: "
@@ -272,6 +283,23 @@ class BadInput(unittest.TestCase):
                 )
             self.assertEqual(result.returncode, 3, result)
             self.assertEqual(result.stderr.count(b"\n"), 1, result)
+
+    def test_names_of_runs(self):
+        base = ["simulate", GOOD, "-o", "out", *SHORT]
+        for name in (".", "..", "a/b", "/a"):
+            self.expect_all_refuse([base + ["--name", name]], f"{name}:1:1: --name: ")
+        self.assertEqual(self.run_tactus(*base, "--name", "").returncode, 1)
+        self.expect_all_refuse([base + [SECOND, "--name", "a"]],
+                               "a:1:1: --name: one folder for 2 scenes, expected one scene")
+
+    def test_named_runs_of_one_scene_stay_side_by_side(self):
+        for name in ((), ("--name", "stiff & slow")):
+            result = self.run_tactus("simulate", GOOD, *SHORT, "-o", "out", *name)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for name in ("scenario1_null_space", "stiff & slow"):
+            summary = json.loads((self.folder / "out" / name / "summary.json").read_text())
+            self.assertEqual(summary["scene"], "scenario1_null_space")
+            self.assertTrue((self.folder / "out" / name / "run.ulg").exists())
 
     def test_same_name_twice(self):
         result = self.run_tactus("simulate", GOOD, self.copy_of_good(), "-o", "out")

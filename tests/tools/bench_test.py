@@ -4,13 +4,17 @@
 usage: bench_test.py TACTUS
 """
 import csv
+import html
 import json
+import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 TACTUS = pathlib.Path(sys.argv.pop(1)).resolve()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -23,9 +27,9 @@ class Bench(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def bench(self, *arguments, program=TACTUS):
+    def bench(self, *arguments, program=TACTUS, environment=None):
         return subprocess.run([program, "bench", *arguments], cwd=self.folder, capture_output=True,
-                              text=True, timeout=300)
+                              text=True, timeout=300, env=environment)
 
     def read(self, name):
         with open(self.folder / "out" / name, newline="", encoding="utf-8") as file:
@@ -37,8 +41,8 @@ class Bench(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn(str(self.folder / "out/report.html"), result.stdout)
         files = {path.name for path in (self.folder / "out").iterdir()}
-        self.assertEqual(files, {"goals.csv", "report.html", "pseudoinverse.csv", "closed_loop.csv",
-                                 "closed_loop_stability.csv"})
+        self.assertEqual(files, {"goals.csv", "report.html", "report.json", "pseudoinverse.csv",
+                                 "closed_loop.csv", "closed_loop_stability.csv"})
         for row in self.read("pseudoinverse.csv"):
             self.assertGreater(float(row["time_ns"]), 0.0)
             self.assertGreater(float(row["error_max"]), 0.0)
@@ -46,10 +50,39 @@ class Bench(unittest.TestCase):
         self.assertEqual([row["period_ms"] for row in runs], ["0.25", "1", "4"])
         self.assertEqual({row["outcome"] for row in runs}, {"stable"})
         page = (self.folder / "out/report.html").read_text(encoding="utf-8")
-        self.assertEqual(page.count("<svg"), page.count("</svg>"))
-        self.assertGreaterEqual(page.count("<svg"), 8)
-        for word in ("http", "<script", "nan", "inf\""):
+        self.expect_figures(page)
+        for name in files - {"goals.csv", "report.html", "report.json"}:
+            self.assertIn(f"<summary>{name}</summary>", page)
+        page = re.sub(r'\bxmlns(:\w+)?="[^"]*"', "", page)
+        for word in ("http", "<script", ">nan<", "inf\""):
             self.assertNotIn(word, page)
+
+    def expect_figures(self, page):
+        """Those that report.json asks for, with every series by its name."""
+        plan = json.loads((self.folder / "out/report.json").read_text(encoding="utf-8"))
+        plots = [plot for section in plan["sections"] for plot in section["plots"]]
+        figures = re.findall(r"<figure.*?</figure>", page, re.DOTALL)
+        self.assertEqual(len(figures), len(plots))
+        self.assertGreaterEqual(len(plots), 8)
+        for figure, plot in zip(figures, plots):
+            xml.etree.ElementTree.fromstring(re.search(r"<svg.*</svg>", figure, re.DOTALL)[0])
+            texts = re.findall(r">([^<>\n]+)<", figure)
+            for text in [plot["title"], plot["x_label"], plot["y_label"],
+                         *(series["label"] for series in plot["series"])]:
+                self.assertIn(html.escape(text), texts)
+
+    def test_leaves_its_tables_without_matplotlib(self):
+        (self.folder / "matplotlib.py").write_text(
+            "raise ModuleNotFoundError(\"No module named 'matplotlib'\")")
+        result = self.bench("--quick", "--study", "pseudoinverse", "-o", "out",
+                            environment={**os.environ, "PYTHONPATH": str(self.folder)})
+        self.assertEqual(result.returncode, 0, result.stderr)
+        last = result.stderr.splitlines()[-1]
+        self.assertRegex(last, r"^no report\.html: No module named 'matplotlib'; .*apt-get install.*; "
+                               r"the tables are in /.*/out, `tactus-report /.*/out` draws them$")
+        self.assertNotIn("report.html", result.stdout)
+        self.assertEqual({path.name for path in (self.folder / "out").iterdir()},
+                         {"goals.csv", "report.json", "pseudoinverse.csv"})
 
     def test_json_is_all_that_is_printed(self):
         result = self.bench("--quick", "--json", "--study", "pseudoinverse")
@@ -93,13 +126,20 @@ class Bench(unittest.TestCase):
         for name in ("robots", "scenes/base"):
             shutil.copytree(ROOT / "config" / name, data / name)
         shutil.copy(SCENE, data / "scenes")
-        result = self.bench("--study", "closed_loop", "--quick", "--json",
+        result = self.bench("--study", "closed_loop", "--quick", "--json", "-o", "out",
                             program=programs / "tactus")
         self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(f"no report.html: {programs / 'tactus-report'}: cannot be run", result.stderr)
+        (data / "tools").mkdir()
+        shutil.copy(ROOT / "tools/report", data / "tools")
+        shutil.copytree(ROOT / "tools/tactus_report", data / "tools/tactus_report")
+        (programs / "tactus-report").symlink_to("../share/tactus/tools/report")
         rows = json.loads(result.stdout)["closed_loop"]
         self.assertEqual({row["scene"] for row in rows}, {"free_motion"})
-        result = self.bench("--stability", "--quick", "--json", program=programs / "tactus")
+        result = self.bench("--stability", "--quick", "--json", "-o", "out",
+                            program=programs / "tactus")
         self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue((self.folder / "out/report.html").exists())
 
     def test_refuses_a_broken_scene(self):
         result = self.bench("--study", "closed_loop", "--quick", "gone.yaml")

@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 sys.dont_write_bytecode = True
 
-from tactus_report import comparison, figures, page, runs  # noqa: E402
+from tactus_report import bench_page, comparison, figures, page, runs, series_figure  # noqa: E402
 
 FAKE_TACTUS = ROOT / "tests/tools/fake_tactus"
 
@@ -245,6 +245,51 @@ class Incomplete(Report):
         self.assertNotIn("Missing: scenario2", output.read_text(encoding="utf-8"))
 
 
+class OneScene(Report):
+    """Several runs of it."""
+
+    def test_are_overlaid_by_the_names_of_their_folders(self):
+        for name in ("soft & slow", "stiff"):
+            write_run(self.runs, name, scene="mine")
+        self.assertEqual(self.report().returncode, 0)
+        section = self.page().split("<h2>Runs of one scene</h2>")[1].split("<h2>")[0]
+        self.assertIn("<h3>mine</h3>", section)
+        self.assertEqual(section.count("<svg"), 2)
+        for name in ("soft &amp; slow", "stiff"):
+            self.assertIn(f"{name}, peak 8.00 N", section)
+            self.assertIn(f"{name}, peak 3.00 mm", section)
+        self.assertNotIn("<h3>", self.page().split("<h2>Runs</h2>")[1])
+
+    def test_of_two_folders_have_their_folders_names(self):
+        folders = [self.scratch / name for name in ("before", "after")]
+        for folder in folders:
+            write_run(folder, "mine")
+            write_run(folder, "only_" + folder.name)
+        output = self.scratch / "page.html"
+        self.assertEqual(self.report(*folders, "-o", output).returncode, 0)
+        text = output.read_text(encoding="utf-8")
+        rows = re.findall(r'scope="row">([^<]+)<', text)
+        self.assertEqual(rows, ["after/mine", "before/mine", "only_after", "only_before"])
+        self.assertIn("before/mine, peak 8.00 N", text)
+
+    def test_leave_the_papers_figures_to_the_run_with_the_scenes_name(self):
+        for name, force in (("a_variation", "9.5"), ("scenario2_estimated", "8.0")):
+            text = table_text(lambda lines: [line.replace(",8.0,", f",{force},") for line in lines])
+            write_run(self.runs, name, text, scene="scenario2_estimated")
+        self.assertEqual(self.report().returncode, 0)
+        figure = self.page().split("Figure 5. ")[0]
+        self.assertIn("estimated, peak 8.00 N", figure)
+        self.assertNotIn("peak 9.50 N", figure)
+        self.assertIn("a_variation, peak 9.50 N", self.page())
+
+    def test_may_be_more_than_colours(self):
+        for number in range(20):
+            write_run(self.runs, f"run {number}", scene="mine")
+        self.assertEqual(self.report().returncode, 0)
+        for number in range(20):
+            self.assertIn(f"run {number}, peak 8.00 N", self.page())
+
+
 class Malformed(Report):
     def refuse_to_load(self, expected):
         """What refuse() prints; without a program for each of many cases."""
@@ -307,15 +352,83 @@ class Malformed(Report):
         (write_run(self.runs, "scenario1_none") / "run.ulg").unlink()
         self.refuse("run.ulg: missing")
 
-    def test_one_scene_twice(self):
+    def test_one_folder_twice(self):
         write_run(self.runs, "scenario1_none")
-        write_run(self.runs, "copy", scene="scenario1_none")
-        self.refuse("there twice")
+        result = self.report(self.runs, self.runs / ".")
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertIn("scenario1_none: is there twice, expected once", result.stderr)
 
     def test_program_that_is_not_there_or_fails(self):
         write_run(self.runs, "scenario1_none")
         self.refuse("cannot be run", tactus=self.scratch / "none")
         self.refuse("tactus export failed", tactus="/bin/false")
+
+
+class Bench(Report):
+    """Pages of what `tactus bench -o` wrote."""
+
+    PLOT = {"title": "a < b", "note": "$\\frac$", "table": "t", "x": "x", "y": "y", "x_label": "x in m",
+            "y_label": "y in N", "x_scale": "linear", "y_scale": "log", "has_lines": True,
+            "series": [{"label": "of $a$", "where": {"name": "a"}},
+                       {"label": "of 2", "where": {"x": 2.0}}, {"label": "none", "where": {"x": 9}}]}
+
+    def write(self, *plots):
+        self.runs.mkdir(exist_ok=True)
+        (self.runs / "goals.csv").write_text("goal,limit,measured,met\ng & h,1,0.123456,yes\n")
+        (self.runs / "t.csv").write_text("name,x,y\na,1,0.1\n\"b, c\",2,\na,10,1e-17\na,20,0\n,,5\n")
+        sections = [{"title": "<T>", "text": "x", "tables": ["t"], "plots": plots}]
+        (self.runs / "report.json").write_text(json.dumps({"sections": sections}))
+
+    def test_draws_what_is_asked_for(self):
+        none = [{"label": "none", "where": {"name": "none"}}]
+        self.write(self.PLOT, {**self.PLOT, "series": []}, {**self.PLOT, "x_scale": "log"},
+                   {**self.PLOT, "x_scale": "log", "series": none})
+        result = self.report()
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        text = self.page()
+        for part in ("<h2>&lt;T&gt;</h2>", "a &lt; b", "of $a$", "g &amp; h", "<td>0.1235</td>",
+                     "t.csv", ">b, c<", "<td>1e-17</td>"):
+            self.assertIn(part, text)
+        svgs = re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)
+        self.assertEqual(len(svgs), 4)
+        for svg in svgs:
+            xml.etree.ElementTree.fromstring(svg)
+        ids = re.findall(r'\bid="([^"]*)"', text)
+        self.assertEqual(len(ids), len(set(ids)))
+
+    def test_leaves_out_what_was_not_measured_or_has_no_place(self):
+        rows = bench_page.read_table(self.written() / "t.csv")
+        x, y = bench_page.points(rows, self.PLOT, {"name": "a"})
+        self.assertEqual((x, y), ([1.0, 10.0, 20.0], [0.1, 1e-17, 0.0]))
+        self.assertFalse(series_figure.fits(0.0, "log"))
+        self.assertTrue(series_figure.fits(0.0, "linear"))
+        self.assertFalse(series_figure.fits(float("nan"), "linear"))
+        x, y = bench_page.points(rows, self.PLOT, {"x": 2})
+        self.assertEqual(str((x, y)), "([2.0], [nan])")
+
+    def written(self):
+        self.write(self.PLOT)
+        return self.runs
+
+    def test_refuses_what_is_damaged(self):
+        for change in ({"table": "none"}, {"x": "none"}, {"series": [{}]}, {"series": 3},
+                       {"y": "name"}, {"x_scale": "none"}):
+            with self.subTest(change):
+                self.write({**self.PLOT, **change})
+                with self.assertRaisesRegex(runs.InputError, "not what `tactus bench -o` wrote: "):
+                    bench_page.build_page(self.runs)
+        (self.runs / "report.json").write_text("[")
+        self.refuse("not what `tactus bench -o` wrote: JSONDecodeError")
+        self.written()
+        (self.runs / "t.csv").unlink()
+        self.refuse("t.csv")
+
+    def test_stands_alone(self):
+        write_run(self.scratch / "others", "free")
+        self.written()
+        result = self.report(self.runs, self.scratch / "others")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("others: a second folder beside one of `tactus bench`, expected one", result.stderr)
 
 
 class Comparison(unittest.TestCase):

@@ -293,8 +293,9 @@ class Keys(Case):
     def test_one_key(self):
         text = output("keys", "controller.damping")
         self.assertEqual(text, "scene, see tactus-scene(5)\n  controller.damping\n"
-                         "      a number > 0 and <= 10; default 0.5\n"
-                         "      d of (4), second order only\n")
+                         "      a number > 0 and <= 10; default 0.5; symbol d\n"
+                         "      how little the force overshoots: damping of the target dynamics (4), second "
+                         "order only\n")
         self.assertEqual(output("keys", "damping"), text)
 
     def test_key_as_an_error_shows_it(self):
@@ -310,6 +311,29 @@ class Keys(Case):
     def test_files_of_both_kinds(self):
         rows = json.loads(output("keys", "--json", "real_time"))
         self.assertEqual({row["file"] for row in rows}, {"scene", "robot"})
+
+    def test_several_keys_each_once(self):
+        rows = json.loads(output("keys", "--json", "damping", "first_id", "controller.damping"))
+        self.assertEqual([row["key"] for row in rows],
+                         ["controller.damping", "tactile_module.first_id"])
+        result = tactus("keys", "damping", "xyzzy")
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertTrue(result.stderr.startswith("KEY:1:1: xyzzy: no such key"), result.stderr)
+
+    def test_symbols_of_the_paper(self):
+        for symbol, keys in (("T", ["controller.time_constant_s"]), ("d", ["controller.damping"]),
+                             ("F_act", ["controller.activation_force_N"]),
+                             ("beta", ["task.drift_gain_per_s", "controller.pull_gain_per_s"]),
+                             ("c_0", ["stiffness.assumed_N_per_m"]),
+                             ("T_t,max", ["controller.transition.max_time_constant_s"])):
+            rows = json.loads(output("keys", "--json", symbol))
+            self.assertEqual([row["key"] for row in rows], keys)
+            self.assertEqual({row["symbol"] for row in rows}, {symbol})
+            self.assertIn(f"; symbol {symbol}\n", output("keys", symbol))
+
+    def test_no_meaning_begins_with_a_symbol_or_an_equation(self):
+        for row in KEYS:
+            self.assertNotRegex(row["meaning"], r"^(\(\d|(alpha|beta|dH/dq|Algorithm|[TdWcF]|[a-zA-Z]_\S+)(:| of))")
 
     def test_unknown_key(self):
         for path, hint in (("controller.dampign", "expected perhaps 'damping'"),

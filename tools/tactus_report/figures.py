@@ -1,6 +1,7 @@
 """Line figures as SVG text that takes its colours from the page, light or dark."""
 
 import dataclasses
+import html
 import io
 import logging
 import re
@@ -13,10 +14,15 @@ from matplotlib.ticker import LogLocator, NullLocator
 logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no remarks about caches and HOME
 
 # Matplotlib wants colours as numbers; these stand for the page's and are replaced in the SVG.
-INK, GRID, RED, GREEN, BLUE, ORANGE = (f"#0000{number:02x}" for number in range(1, 7))
+INK, GRID, RED, GREEN, BLUE, ORANGE, PURPLE, TEAL, PINK, OLIVE = (
+    f"#0000{number:02x}" for number in range(1, 11))
 PAGE_COLOURS = {INK: "currentColor", GRID: "var(--grid,#ccc)", RED: "var(--red,#c8352b)",
                 GREEN: "var(--green,#157f43)", BLUE: "var(--blue,#2563c9)",
-                ORANGE: "var(--orange,#c96a00)"}
+                ORANGE: "var(--orange,#c96a00)", PURPLE: "var(--purple,#7d3fc0)",
+                TEAL: "var(--teal,#0f7f8c)", PINK: "var(--pink,#b0307e)",
+                OLIVE: "var(--olive,#6b6b1e)"}
+# For series that have no colour of their own.
+COLOURS = (BLUE, RED, GREEN, ORANGE, PURPLE, TEAL, PINK, OLIVE)
 
 STYLE = {
     "svg.fonttype": "none", "font.family": "sans-serif", "font.size": 10,
@@ -43,7 +49,7 @@ class Curve:
 def line_figure(name, curves, y_label, unit, log_axis=False, label_peak=False):
     """Curves over time, each labelled at its end with its last or its largest value."""
     with matplotlib.rc_context():
-        figure, axes = new_figure()
+        figure, axes = new_figure(max(PLOT_HEIGHT_IN, LABEL_GAP_IN * len(curves)))
         for curve in curves:
             axes.plot(*thinned(curve.time_s, curve.value), color=curve.colour, linewidth=1.6,
                       linestyle=curve.line)
@@ -162,3 +168,11 @@ def as_svg(figure, name):
     for colour, page_colour in PAGE_COLOURS.items():
         svg = svg.replace(colour, page_colour)
     return svg
+
+
+def as_figure(name, drawing, title, what_to_see):
+    drawing = drawing.replace(
+        "<svg", f'<svg role="img" aria-labelledby="{name}-title {name}-text"', 1)
+    return (f'<figure id="{name}">\n{drawing}\n<figcaption><b id="{name}-title">'
+            f'{html.escape(title)}</b> <span id="{name}-text">{html.escape(what_to_see)}</span>'
+            "</figcaption>\n</figure>")

@@ -4,43 +4,52 @@ import html
 import pathlib
 import re
 
-from . import comparison, paper_figures
-from .figures import scatter_figure
+from . import comparison, paper_figures, run_figures, runs
+from .figures import as_figure, scatter_figure
 
 CSS = pathlib.Path(__file__).with_name("page.css")
 PAPER_SCENES = {scene for figure in paper_figures.FIGURES for scene, *_ in figure.curves}
 OWN_SCENES = {scene for figure in paper_figures.BEYOND_FIGURES for scene, *_ in figure.curves}
 
 
-def build_page(runs):
-    of_paper = {scene: run for scene, run in runs.items() if scene in PAPER_SCENES}
-    further = {scene: run for scene, run in runs.items() if scene not in PAPER_SCENES}
+def build_page(loaded):
+    by_scene = runs.by_scene(loaded)
+    of_paper = {scene: run for scene, run in by_scene.items() if scene in PAPER_SCENES}
+    further = {scene: run for scene, run in by_scene.items() if scene not in PAPER_SCENES}
+    groups = runs.of_one_scene(loaded)
     title = "Tactile feedback control"
     if of_paper:
         title += ": the paper&#8217;s experiments, simulated"
     body = [f"<h1>{title}</h1>",
-            f"<p>{len(runs)} {'run' if len(runs) == 1 else 'runs'} of the controller.</p>",
-            *comparison_with_paper(runs),
+            f"<p>{len(loaded)} {'run' if len(loaded) == 1 else 'runs'} of the controller.</p>",
+            *comparison_with_paper(by_scene),
             *paper_section(of_paper),
-            *beyond_the_paper(runs),
+            *beyond_the_paper(by_scene),
+            *overlays(groups),
             "<h2>Error against run time</h2>",
-            error_figure(runs)]
+            error_figure(loaded)]
     if of_paper:
-        body.append(runs_table(of_paper))
-    body += faults_section(runs)
+        body.append(runs_table([run for run in loaded if run.scene in PAPER_SCENES]))
+    body += faults_section(loaded)
     if further:
         body += ["<h2>Further runs, not of the paper</h2>" if of_paper else "<h2>Runs</h2>",
-                 runs_table(further), *further_figures(further)]
+                 runs_table([run for run in loaded if run.scene not in PAPER_SCENES]),
+                 *further_figures(further, {group[0].scene for group in groups})]
+    return html_page("Tactus report", body)
+
+
+def html_page(title, body):
+    """One page that needs nothing else. `title` is text, `body` a list of elements."""
     return ('<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
             '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-            "<title>Tactus report</title>\n"
+            f"<title>{html.escape(title)}</title>\n"
             f"<style>\n{CSS.read_text(encoding='utf-8')}</style>\n</head>\n<body>\n<main>\n"
             + "\n".join(body) + "\n</main>\n</body>\n</html>\n")
 
 
-def comparison_with_paper(runs):
+def comparison_with_paper(by_scene):
     """Nothing where none of the scenes that it compares was run."""
-    rows = comparison.compare(runs)
+    rows = comparison.compare(by_scene)
     if not rows:
         return []
     sources = comparison.read_data()["sources"]
@@ -61,24 +70,37 @@ def paper_section(of_paper):
               if figure.shows_any_of(of_paper))]
 
 
-def beyond_the_paper(runs):
+def beyond_the_paper(by_scene):
     """The figures that have a subject."""
-    own = {scene: run for scene, run in runs.items() if scene in OWN_SCENES - PAPER_SCENES}
+    own = {scene: run for scene, run in by_scene.items() if scene in OWN_SCENES - PAPER_SCENES}
     figures = [figure for figure in paper_figures.BEYOND_FIGURES if figure.shows_any_of(own)]
     if not figures:
         return []
     return ["<h2>Beyond the paper</h2>",
             "<p>The approach-speed limit (variant null_limit) beside the paper&#8217;s multi-space "
             "law.</p>",
-            *(paper_figures.render(figure, runs) for figure in figures)]
+            *(paper_figures.render(figure, by_scene) for figure in figures)]
 
 
-def further_figures(further):
+def overlays(groups):
+    """Runs of one scene, each list in the same figures."""
+    if not groups:
+        return []
+    body = ["<h2>Runs of one scene</h2>",
+            "<p>Each curve has the name of its run&#8217;s folder.</p>"]
+    for number, group in enumerate(groups):
+        body += [f"<h3>{html.escape(group[0].scene)}</h3>",
+                 *run_figures.render_runs(f"overlay-{number}", group)]
+    return body
+
+
+def further_figures(further, shown):
     """Of scenes that no figure above shows."""
-    own = [run for scene, run in sorted(further.items()) if scene not in OWN_SCENES]
+    own = [run for scene, run in sorted(further.items()) if scene not in OWN_SCENES | shown]
     body = []
     for number, run in enumerate(own):
-        body += [f"<h3>{html.escape(run.scene)}</h3>", *paper_figures.render_run(number, run)]
+        body += [f"<h3>{html.escape(run.scene)}</h3>",
+                 *run_figures.render_runs(f"run-{number}", [run])]
     return body
 
 
@@ -87,28 +109,28 @@ def comparison_table(rows):
     return table(["Quantity", "Paper", "Reference", "Ours", "Ours to reference"], cells, "compare")
 
 
-def error_figure(runs):
+def error_figure(loaded):
     points = []
-    for scene, run in sorted(runs.items()):
+    for run in sorted(loaded, key=lambda run: run.name):
         time_ns, error_m = run.summary["step_time_ns"]["median"], run.summary["tcp_error_rms_m"]
         if time_ns is not None and error_m:
-            points.append((time_ns / 1e3, 1e3 * error_m, scene))
+            points.append((time_ns / 1e3, 1e3 * error_m, run.name))
     drawing = scatter_figure("figure-error", points, "median time of one control step in µs",
                              "TCP error, rms, in mm")
-    return paper_figures.as_figure(
+    return as_figure(
         "figure-error", drawing, "Error against run time.",
         "Each point is a run. The error is the price of a small force, not of a fast step: "
         "it depends on the control variant, the run time on the stages that the scene names. Runs "
         "below half a millimetre keep to their path; what is left is the lag of the drives.")
 
 
-def runs_table(runs):
-    heads = ["Scene", "Outcome", "Peak force, N", "Final force, N", "TCP error rms, mm",
+def runs_table(loaded):
+    heads = ["Run", "Outcome", "Peak force, N", "Final force, N", "TCP error rms, mm",
              "TCP error max, mm", "Step median, ns", "Step p99, ns", "Times real time"]
     rows = []
-    for scene, run in sorted(runs.items()):
+    for run in sorted(loaded, key=lambda run: run.name):
         summary, times = run.summary, run.summary["step_time_ns"]
-        rows.append([scene, summary["outcome"], number(summary["peak_force_N"], 2),
+        rows.append([run.name, summary["outcome"], number(summary["peak_force_N"], 2),
                      number(summary["final_force_N"], 2),
                      number(summary["tcp_error_rms_m"], 3, 1e3),
                      number(summary["tcp_error_max_m"], 3, 1e3), number(times["median"], 0),
@@ -119,13 +141,13 @@ def runs_table(runs):
 def faults_section(runs):
     """Of the runs that a fault has ended."""
     rows = []
-    for scene, run in sorted(runs.items()):
+    for run in runs:
         if fault := run.summary.get("fault"):
             unit = fault["unit"] or ""
-            rows.append([scene, fault["name"], number(fault["time_s"], 3),
+            rows.append([run.name, fault["name"], number(fault["time_s"], 3),
                          fault["joint"] or fault["bus"] or "", with_unit(fault["value"], unit),
                          with_unit(fault["limit"], unit), fault["description"]])
-    heads = ["Scene", "Fault", "At, s", "Joint or bus", "Value", "Limit", "In words"]
+    heads = ["Run", "Fault", "At, s", "Joint or bus", "Value", "Limit", "In words"]
     return ["<h2>Faults</h2>", table(heads, rows, "faults")] if rows else []
 
 

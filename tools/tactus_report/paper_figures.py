@@ -1,10 +1,9 @@
-"""The paper's figures 2 to 8, and ours beyond it: which runs, what of them, and what to see; and those
-of any other run."""
+"""The paper's figures 2 to 8, and ours beyond it: which runs, what of them, and what to see."""
 
 import dataclasses
 import html
 
-from .figures import BLUE, GREEN, ORANGE, RED, Curve, line_figure
+from .figures import BLUE, GREEN, ORANGE, RED, Curve, as_figure, line_figure
 
 DASHED, DOTTED, SOLID, DASH_DOT = (0, (5, 2)), (0, (1.2, 1.6)), "solid", (0, (6, 2, 1.2, 2))
 
@@ -110,28 +109,3 @@ def render(spec, runs):
     note = f'<p class="missing">Missing: {html.escape(", ".join(missing))}</p>' if missing else ""
     return as_figure(name, drawing + note, f"Figure {spec.number}. {spec.title}.",
                      spec.what_to_see)
-
-
-def render_run(number, run):
-    """<figure> elements of a run by itself: force where there was any, and what it cost the task."""
-    quantities = [("force", run.force_N, "N", "sensor force", "Contact force"),
-                  ("error", 1e3 * run.tool_error_m, "mm", "TCP error",
-                   "Deviation of the tool from its path")]
-    if not run.force_N.any():
-        del quantities[0]
-    figures = []
-    for quantity, values, unit, label, title in quantities:
-        name = f"run-{number}-{quantity}"
-        drawing = line_figure(name, [Curve(label, BLUE, SOLID, run.time_s, values)],
-                              f"{label} in {unit}", unit, label_peak=True)
-        figures.append(as_figure(name, drawing, f"{title}.",
-                                 f"Outcome of {run.scene}: {run.summary['outcome']}."))
-    return figures
-
-
-def as_figure(name, drawing, title, what_to_see):
-    drawing = drawing.replace(
-        "<svg", f'<svg role="img" aria-labelledby="{name}-title {name}-text"', 1)
-    return (f'<figure id="{name}">\n{drawing}\n<figcaption><b id="{name}-title">'
-            f'{html.escape(title)}</b> <span id="{name}-text">{html.escape(what_to_see)}</span>'
-            "</figcaption>\n</figure>")

@@ -1,5 +1,7 @@
-"""Run folders: DIR/<scene>/{run.ulg,summary.json}, as `tactus simulate -o DIR` writes them."""
+"""Run folders: DIR/<run>/{run.ulg,summary.json}, as `tactus simulate -o DIR` writes them; a run has the
+name of its scene or the one that --name gave it."""
 
+import collections
 import dataclasses
 import json
 import pathlib
@@ -22,6 +24,7 @@ STEP_TIMES = ("median", "p99")
 
 @dataclasses.dataclass
 class Run:
+    name: str  # its folder's, and as much of the path before as tells it from others
     scene: str
     summary: dict  # checked: every name above is there, a finite number or None
     time_s: np.ndarray
@@ -32,23 +35,52 @@ class Run:
 
 
 def load_runs(folders, tactus):
-    """All runs in the folders, by scene name. Raises InputError."""
-    runs = {}
+    """All runs in the folders, in their order. Raises InputError."""
+    paths = []
     for folder in folders:
         if not pathlib.Path(folder).is_dir():
             raise InputError(f"{folder}: no such folder, expected what `tactus simulate -o` wrote")
-        for summary_path in sorted(pathlib.Path(folder).glob("*/summary.json")):
-            run = load_run(summary_path.parent, tactus)
-            if run.scene in runs:
-                raise InputError(f"{summary_path}: scene {run.scene} is there twice, expected once")
-            runs[run.scene] = run
-    if not runs:
+        paths += [path.parent for path in sorted(pathlib.Path(folder).glob("*/summary.json"))]
+    if not paths:
         raise InputError(f"{', '.join(map(str, folders))}: no run found, expected "
                          "<scene>/summary.json as `tactus simulate -o` writes it")
-    return runs
+    return [load_run(path, name, tactus) for path, name in zip(paths, run_names(paths))]
 
 
-def load_run(folder, tactus):
+def run_names(paths):
+    """The last parts of each path, as few as make all names different."""
+    paths = [path.resolve() for path in paths]
+    for path, count in collections.Counter(paths).items():
+        if count > 1:
+            raise InputError(f"{path}: is there twice, expected once")
+    names = [path.name for path in paths]
+    length = 1
+    while len(set(names)) < len(names):
+        length += 1
+        counts = collections.Counter(names)
+        names = ["/".join(path.parts[-length:]) if counts[name] > 1 else name
+                 for path, name in zip(paths, names)]
+    return names
+
+
+def by_scene(runs):
+    """One run a scene: the one with the scene's name, or else the first."""
+    chosen = {}
+    for run in runs:
+        if run.scene not in chosen or run.name == run.scene:
+            chosen[run.scene] = run
+    return chosen
+
+
+def of_one_scene(runs):
+    """Lists of several runs of one scene."""
+    groups = collections.defaultdict(list)
+    for run in runs:
+        groups[run.scene].append(run)
+    return [group for _, group in sorted(groups.items()) if len(group) > 1]
+
+
+def load_run(folder, name, tactus):
     summary = read_summary(folder / "summary.json")
     log = folder / "run.ulg"
     if not log.is_file():
@@ -60,7 +92,7 @@ def load_run(folder, tactus):
     column = dict(zip(names, values.T))
     velocities = [values for name, values in column.items() if name.startswith("dq_")]
     errors = [column[f"tool_error_{axis}_m"] for axis in "xyz"]
-    return Run(summary["scene"], summary, column["t_s"], column["force_sensor_N"],
+    return Run(name, summary["scene"], summary, column["t_s"], column["force_sensor_N"],
                column["stiffness_N_per_m"], np.sum(np.square(velocities), axis=0),
                np.sqrt(np.sum(np.square(errors), axis=0)))
 

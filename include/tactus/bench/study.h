@@ -46,9 +46,6 @@ const std::vector<Study>& studies();
 /// All goals of all results as one table.
 Table goalTable(const std::vector<StudyResult>& results);
 
-/// The page: one HTML text that needs nothing else.
-std::string reportPage(const std::vector<StudyResult>& results);
-
 StudyResult studyPseudoinverse(const BenchOptions& options);
 StudyResult studyStep(const BenchOptions& options);
 StudyResult studyClosedLoop(const BenchOptions& options);

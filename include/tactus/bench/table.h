@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -34,6 +35,10 @@ bool matches(const Table& table, std::size_t row, const Filter& filter);
 
 /// The number of the first row that matches; throws std::out_of_range if none does.
 double findNumber(const Table& table, std::string_view column_name, const Filter& filter);
+
+/// Two columns of the rows that match, in their order.
+std::vector<std::array<double, 2>> findPoints(const Table& table, std::string_view x_column,
+                                              std::string_view y_column, const Filter& filter);
 
 /// RFC 4180; numbers are the shortest decimals that read back bit for bit.
 std::string csvText(const Table& table);

@@ -68,10 +68,8 @@ class Drive {
   /// In which NMT stop is sent before the bus falls silent.
   static constexpr int kCuttingOffCycles = 20;
 
-  /// stop_deadline_s: for a quick stop. Throws std::invalid_argument with one line for settings
-  /// that no drive can be given.
-  Drive(const DriveConfig& config, const CanopenConfig& canopen, double stop_deadline_s,
-        double period_s);
+  /// Throws std::invalid_argument with one line for settings that no drive can be given.
+  Drive(const DriveConfig& config, const CanopenConfig& canopen, double period_s);
 
   /// A data frame of this drive's bus; ids that are not its own are ignored. Frames of wrong size
   /// are counted and ignored.

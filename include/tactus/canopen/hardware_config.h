@@ -42,6 +42,9 @@ struct CanopenConfig {
   double heartbeat_timeout_s = 0.06;  ///< after which the other side is taken for dead
   double sdo_timeout_s = 0.1;
   double boot_timeout_s = 5.0;  ///< for all drives to be configured, after which booting fails
+  /// From a fault on, until brakes are closed, and drives that are not seen off are cut off; longer
+  /// than any quick stop.
+  double stop_deadline_s = 0.5;
 };
 
 /// The tactile module on the bus: frames first_id + k, k = 0..3, of two channels each.
@@ -71,7 +74,6 @@ struct GpioConfig {
   std::optional<GpioLineConfig> enable;     ///< in: active: may move
   std::optional<GpioLineConfig> brake;      ///< out: active: brakes released
   double brake_switching_s = 0.1;           ///< that the brakes take to open or to close
-  double brake_deadline_s = 0.5;            ///< after a fault, longer than any quick stop
   std::optional<GpioLineConfig> heartbeat;  ///< out: toggles each cycle while the loop runs
 };
 
@@ -91,11 +93,5 @@ struct HardwareConfig {
   RealTimeConfig real_time;
   double start_tolerance = 0.02;  ///< m or rad: how far the arm may be from the scene's start
 };
-
-/// From a fault on, until brakes are closed, and drives that are not seen off are cut off. A robot
-/// without lines has a deadline, too.
-inline double brakeDeadline_s(const HardwareConfig& hardware) {
-  return hardware.gpio ? hardware.gpio->brake_deadline_s : GpioConfig{}.brake_deadline_s;
-}
 
 }  // namespace tactus

@@ -49,7 +49,7 @@ struct FaultDetail {
   int joint = -1;                                           ///< whose value; -1: nobody's
 };
 
-/// One row of the fault table, which README and manual print.
+/// One row of the fault table, which docs/safety.md and the manual print.
 struct FaultRow {
   Fault fault;
   const char* name;       ///< as in the log and in summary.json

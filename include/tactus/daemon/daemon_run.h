@@ -8,7 +8,8 @@
 namespace tactus {
 
 struct DaemonOptions {
-  std::string folder;       ///< for <scene>/run.ulg and <scene>/summary.json; empty: no files
+  std::string folder;       ///< for <name>/run.ulg and <name>/summary.json; empty: no files
+  std::string name;         ///< of the run's folder
   double duration_s = 0.0;  ///< of motion, after which the run ends; 0: until a signal
 };
 

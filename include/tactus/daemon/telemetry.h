@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tactus/daemon/record_sink.h"
+#include "tactus/record/tool_error.h"
 #include "tactus/scene/scene.h"
 
 namespace tactus {
@@ -25,6 +26,7 @@ class Telemetry {
  private:
   const Scene& scene_;
   LoopLink& link_;
+  ToolRotationError rotation_error_;
   std::vector<std::unique_ptr<RecordSink>> sinks_;
 };
 

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
+#include <optional>
 #include <vector>
 
+#include "tactus/control/controller_config.h"
 #include "tactus/supervisor/cycle_record.h"
 
 namespace tactus {
@@ -19,15 +22,18 @@ struct ContactSummary {
   double settling_s = 0.0;
 };
 
-/// Finds the contacts of a run. A contact starts when F_sen exceeds the contact threshold (F_p > 0;
-/// without force control when F_sen > 0.05 N). It ends when F_sen has been at most 0.05 N for 0.1
-/// s, and then end_s is the beginning of that pause; or with the last cycle. The threshold works
-/// one way only: an arm that comes to rest just below it is still touching. Memory is bounded: in
-/// a contact of more than 17 minutes at 1 kHz settling_s is known to 2e-6 of its length.
+/// Finds the contacts of a run. A contact starts when F_sen exceeds the contact threshold F_th;
+/// without force control, where nothing else says what a touch is, it started when F_sen last rose
+/// above 0.05 N. It ends when the mean of F_sen over 0.1 s is at most F_rel, which is above offset
+/// and noise of the sensor, and then end_s is the first cycle of these 0.1 s with at most F_rel; or
+/// with the last cycle. The threshold works one way only: an arm that comes to rest just below it
+/// is still touching. Memory is bounded: in a contact of more than 17 minutes at 1 kHz settling_s
+/// is known to 2e-6 of its length.
 class ContactList {
  public:
-  /// `expected_cycles` is only used to allocate in advance.
-  ContactList(bool has_force_control, std::size_t expected_cycles);
+  /// Without force control F_th and F_rel have their defaults. `expected_cycles` is only used to
+  /// allocate in advance.
+  ContactList(const std::optional<ForceControlConfig>& force_control, std::size_t expected_cycles);
 
   void add(const CycleRecord& record);
 
@@ -44,17 +50,22 @@ class ContactList {
     std::vector<Sample> samples;  ///< every stride-th
     long long cycles = 0;
     long long stride = 1;
-    Sample newest{};
-    bool is_touching = true;
-    double released_s = 0.0;  ///< when the touch ended, if it has
+    long long confirmed_cycles = 0;  ///< since F_sen exceeded F_th
+    std::deque<Sample> newest;       ///< of these the last 0.1 s
+    double newest_sum_N = 0.0;
     double peak_force_N = 0.0;
   };
 
-  bool starts(const CycleRecord& record) const noexcept;
+  bool isTouch(const CycleRecord& record) const noexcept;
   void keep(const Sample& sample);
+  void keepNewest(const Sample& sample);
+  bool isReleased() const noexcept;
+  double releaseTime_s() const noexcept;
   ContactSummary summarise(bool is_released) const;
+  void clear();
 
   bool has_force_control_;
+  double threshold_N_, release_N_;
   std::vector<ContactSummary> finished_;
   Present present_;
 };

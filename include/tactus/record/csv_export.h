@@ -4,9 +4,9 @@
 
 namespace tactus {
 
-/// Writes every cycle of a log as a line of CSV with the fields that the log has; `csv_path` "-" is
-/// standard output. Throws InputError if the log is damaged (see checkLog()), RunError if writing
-/// fails.
+/// Writes every cycle of a log as a line of CSV with the fields that the log has, and at its end
+/// the names of fault and mode; `csv_path` "-" is standard output. Throws InputError if the log is
+/// damaged (see checkLog()), RunError if writing fails.
 void exportCsv(const std::string& log_path, const std::string& csv_path);
 
 }  // namespace tactus

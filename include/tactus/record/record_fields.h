@@ -13,7 +13,12 @@
 /// comparison of a replay are all derived from it.
 namespace tactus {
 
-enum class FieldShape : std::uint8_t { kScalar, kPerJoint, kPerTaskComponent };
+enum class FieldShape : std::uint8_t {
+  kScalar,
+  kPerJoint,
+  kPerTaskComponent,
+  kOfRotation,  ///< a scalar that only tasks with a rotation have
+};
 enum class FieldType : std::uint8_t { kDouble, kInt64, kUint64 };
 
 /// What a field is to the controller; only outputs must come out of a replay again.
@@ -32,10 +37,13 @@ struct RecordField {
 /// All fields, in the order of the CSV's columns and of CycleRecord's members.
 std::span<const RecordField> recordFields() noexcept;
 
+bool isArray(FieldShape shape) noexcept;
+
 /// How many entries the arrays of a record have.
 struct RecordShape {
   int joints = 0;
   int task_size = 0;
+  bool has_rotation = false;  ///< of the task
 
   std::size_t entries(const RecordField& field) const noexcept;
   bool operator==(const RecordShape&) const = default;

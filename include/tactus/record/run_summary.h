@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,11 @@
 
 namespace tactus {
 
+/// Of tasks with a rotation.
+struct RotationError {
+  double max_rad = 0.0, rms_rad = 0.0, final_rad = 0.0;
+};
+
 /// The figures of a run that its summary.json holds. Forces are the sensor's, F_sen; the tool's
 /// error is that of the measured arm.
 struct RunFigures {
@@ -24,6 +30,7 @@ struct RunFigures {
   double tcp_error_max_m = 0.0;
   double tcp_error_rms_m = 0.0;
   double tcp_error_final_m = 0.0;
+  std::optional<RotationError> tcp_rotation_error;
   double peak_joint_speed_squared = 0.0;  ///< largest sum of squares of the command; m/s, rad/s
   /// Cycles with a desired joint within 0.1 mm or 0.1 mrad of a position limit, or beyond it.
   long long joints_at_limit_cycles = 0;
@@ -45,16 +52,17 @@ class RunSummary {
   void addFigures(const CycleRecord& record) noexcept;
 
   RunFigures figures() const;
-  /// At any time, at no cost: without contacts, times and tcp_error_rms_m.
+  /// At any time, at no cost: without contacts, times and what is a root mean square.
   const RunFigures& soFar() const noexcept { return figures_; }
 
  private:
+  void addToolError(const CycleRecord& record) noexcept;
   void addJoints(const CycleRecord& record) noexcept;
 
   JointLimits limits_;
   RunFigures figures_;
   ContactList contacts_;
-  double squared_error_sum_m2_ = 0.0;
+  double squared_error_sum_m2_ = 0.0, squared_rotation_sum_rad2_ = 0.0;
   Histogram step_times_;
 };
 

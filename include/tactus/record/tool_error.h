@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "tactus/control/controller_config.h"
 #include "tactus/supervisor/cycle_record.h"
 
@@ -8,7 +10,25 @@ namespace tactus {
 /// Desired minus actual tool position, base frame, m, in the directions that belong to the task.
 Vector3 toolError(const TaskConfig& task, const TaskVector& w_d, const Vector3& p_BaseTool);
 
+bool hasRotation(const TaskConfig& task) noexcept;
+
 /// Fills in tool_error_m of a record by its own q_measured; left to the telemetry, which has time.
 void fillToolError(const ControllerConfig& config, CycleRecord& record);
+
+/// How far the tool is turned from its reference.
+class ToolRotationError {
+ public:
+  explicit ToolRotationError(const ControllerConfig& config);
+
+  /// Fills in tool_rotation_error_rad of a record by its own q_measured and path_time_s: the length
+  /// of what belongs to the task of the rotation vector of R_d R^T, base frame. Leaves it where the
+  /// task has no rotation.
+  void fill(CycleRecord& record) const;
+
+ private:
+  SerialChain chain_;
+  TaskConfig task_;
+  std::optional<Trajectory> trajectory_;  ///< of a task with a rotation
+};
 
 }  // namespace tactus

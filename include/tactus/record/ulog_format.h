@@ -12,7 +12,9 @@
 /// payload, char type, payload; all little-endian. The files a run was made of are stored as pairs
 /// of multi-informations kSourcePathKey, kSourceTextKey, in the order of Scene::sources; values
 /// given by --set as kOverrideKeyKey, kOverrideValueKey. The logs of one run of the daemon have the
-/// same information kRunKey, and kPartKey counts them from 0.
+/// same information kRunKey, and kPartKey counts them from 0. Informations fault/<number> and
+/// mode/<number> name what the fields fault and mode hold, unit/<field> the units, joint/<i> and
+/// component/<i>, from 1, what the entries of arrays are of.
 namespace tactus {
 
 static_assert(std::endian::native == std::endian::little, "the log is written as memory lies");

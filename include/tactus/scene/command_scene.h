@@ -10,7 +10,8 @@ namespace tactus {
 
 /// Of the option --set, wherever it is.
 inline constexpr const char* kSetHelp =
-    "Replace a value, as in --set controller.damping=0.7; may be given several times";
+    "Replace a value, as in --set controller.damping=0.7 or, of the robot, --set "
+    "robot.drives.position_lag_s=0.01; may be given several times";
 
 /// Of all --set KEY=VALUE. Throws InputError.
 std::vector<Override> parseOverrides(const std::vector<std::string>& settings);

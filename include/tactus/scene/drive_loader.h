@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tactus/scene/config_draft.h"
+#include "tactus/scene/robot_config.h"
 #include "tactus/scene/urdf_loader.h"
 #include "tactus/scene/yaml_tree.h"
 
@@ -12,10 +12,9 @@ namespace tactus {
 /// A robot.yaml that has been read, while its values are checked against each other and the URDF.
 struct LoadingRobot {
   const YamlNode& root;
-  const ConfigDraft& draft;
+  const RobotConfig& config;
+  const CanSection& can;
   const UrdfChain& chain;
-
-  bool isGiven(const std::string& path) const { return findGiven(root, path); }
 
   /// Throws InputError at the value of a dotted path.
   [[noreturn]] void fail(const std::string& path, const std::string& problem,

@@ -5,19 +5,21 @@
 
 #include "tactus/canopen/hardware_config.h"
 #include "tactus/plant/trouble.h"
-#include "tactus/scene/config_draft.h"
+#include "tactus/scene/robot_config.h"
+#include "tactus/scene/scene_config.h"
 #include "tactus/scene/yaml_tree.h"
 
 namespace tactus {
 
-/// Checks a robot's hardware against the scene's cycle, and the cycle against what drives can be
-/// told. `scene` and `robot` are the roots of the files. Throws InputError.
-void checkHardware(const YamlNode& scene, const YamlNode& robot, const ConfigDraft& draft,
-                   const HardwareConfig& hardware);
+/// Checks the hardware that a scene needs of a robot with a can section against the scene's cycle,
+/// and the cycle against what drives can be told. `scene` and `robot` are the roots of the files.
+/// Throws InputError.
+void checkHardware(const YamlNode& scene, const YamlNode& robot, double period_s,
+                   const RobotConfig& config, const HardwareConfig& hardware);
 
 /// The scene's troubles, checked against the hardware that they happen to. `root` is the scene's.
 /// Throws InputError.
-std::vector<Trouble> loadTroubles(const YamlNode& root, const ConfigDraft& draft,
+std::vector<Trouble> loadTroubles(const YamlNode& root, const std::vector<TroubleSection>& troubles,
                                   const std::optional<HardwareConfig>& hardware);
 
 }  // namespace tactus

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "tactus/canopen/hardware_config.h"
-#include "tactus/scene/config_draft.h"
+#include "tactus/scene/robot_config.h"
 #include "tactus/scene/urdf_loader.h"
 #include "tactus/scene/yaml_tree.h"
 
@@ -11,7 +11,7 @@ namespace tactus {
 
 /// Buses, drives, module and lines of a robot.yaml that has been read, checked against each other
 /// and against the URDF; nothing without a `can` section. Throws InputError.
-std::optional<HardwareConfig> loadHardware(const YamlNode& root, const ConfigDraft& draft,
+std::optional<HardwareConfig> loadHardware(const YamlNode& root, const RobotConfig& config,
                                            const UrdfChain& chain);
 
 /// The same without the tactile module, and without buses that nothing else is on.

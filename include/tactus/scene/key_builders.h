@@ -1,6 +1,12 @@
 #pragma once
 
-#include "tactus/scene/key_table.h"
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tactus/scene/key_row.h"
+#include "tactus/scene/key_words.h"
 
 /// Short spellings for the rows of the key tables.
 namespace tactus::keys {
@@ -11,85 +17,126 @@ inline constexpr double kMaxStiffness_N_per_m = 1e9;
 inline Range above(double lower, double upper) { return {lower, upper, true}; }
 inline Range within(double lower, double upper) { return {lower, upper, false}; }
 
-inline KeySpec required(KeySpec spec) {
-  spec.presence = Presence::kRequired;
-  return spec;
-}
-inline KeySpec optional(KeySpec spec) {
-  spec.presence = Presence::kOptional;
-  return spec;
-}
-inline KeySpec defaulted(std::string value, KeySpec spec) {
-  spec.presence = Presence::kDefaulted;
-  spec.default_value = std::move(value);
-  return spec;
-}
-
-inline KeySpec value(ValueType type, std::string key, std::string unit, std::string doc,
-                     Target target) {
-  KeySpec spec;
-  spec.key = std::move(key);
-  spec.type = type;
-  spec.unit = std::move(unit);
-  spec.doc = std::move(doc);
-  spec.target = target;
-  return spec;
+/// A value of a std::optional may be absent; any other has its initialiser as default.
+template <class S, class T>
+Row<S> value(ValueType type, std::string key, std::string unit, std::string doc, T S::*member) {
+  Row<S> row;
+  row.spec.key = std::move(key);
+  row.spec.type = type;
+  row.spec.unit = std::move(unit);
+  row.spec.doc = std::move(doc);
+  row.spec.presence = Content<T>::kIsOptional ? Presence::kOptional : Presence::kDefaulted;
+  row.spec.target = [member](void* owner) -> Target {
+    return &make(static_cast<S*>(owner)->*member);
+  };
+  return row;
 }
 
-inline KeySpec number(std::string key, std::string unit, Range range, std::string doc,
-                      double& (*target)(ConfigDraft&)) {
-  KeySpec spec = value(ValueType::kNumber, std::move(key), std::move(unit), std::move(doc), target);
-  spec.range = range;
-  return spec;
+template <class S, class T>
+Row<S> number(std::string key, std::string unit, Range range, std::string doc, T S::*member) {
+  Row<S> row = value(ValueType::kNumber, std::move(key), std::move(unit), std::move(doc), member);
+  row.spec.range = range;
+  return row;
 }
 
-inline KeySpec integer(std::string key, Range range, std::string doc, Target target) {
-  KeySpec spec = value(ValueType::kInteger, std::move(key), "", std::move(doc), target);
-  spec.range = range;
-  return spec;
+template <class S, class T>
+Row<S> integer(std::string key, Range range, std::string doc, T S::*member) {
+  Row<S> row = value(ValueType::kInteger, std::move(key), "", std::move(doc), member);
+  row.spec.range = range;
+  return row;
 }
 
-inline KeySpec boolean(std::string key, std::string doc, bool& (*target)(ConfigDraft&)) {
-  return value(ValueType::kBoolean, std::move(key), "", std::move(doc), target);
+template <class S>
+Row<S> boolean(std::string key, std::string doc, bool S::*member) {
+  return value(ValueType::kBoolean, std::move(key), "", std::move(doc), member);
 }
 
-inline KeySpec text(std::string key, std::string doc, std::string& (*target)(ConfigDraft&)) {
-  return value(ValueType::kText, std::move(key), "", std::move(doc), target);
+/// Required, unless it is a std::optional.
+template <class S, class T>
+Row<S> text(std::string key, std::string doc, T S::*member) {
+  Row<S> row = value(ValueType::kText, std::move(key), "", std::move(doc), member);
+  return Content<T>::kIsOptional ? row : required(row);
 }
 
-inline KeySpec vector3(std::string key, std::string unit, Range range, std::string doc,
-                       Vector3& (*target)(ConfigDraft&)) {
-  KeySpec spec =
-      value(ValueType::kNumberList, std::move(key), std::move(unit), std::move(doc), target);
-  spec.range = range;
-  spec.count = {3, 3};
-  return spec;
+/// One of `words`, which last for ever.
+template <class S, class E, std::size_t kSize>
+Row<S> choice(std::string key, std::string doc, E S::*member,
+              const std::array<Word<E>, kSize>& words) {
+  Row<S> row;
+  row.spec.key = std::move(key);
+  row.spec.type = ValueType::kChoice;
+  row.spec.doc = std::move(doc);
+  for (const Word<E>& word : words) row.spec.choices.push_back(word.text);
+  row.spec.target = [member, &words](void* owner) -> Target {
+    E& place = static_cast<S*>(owner)->*member;
+    return WordsTarget{[&place, &words](const std::vector<std::string>& chosen) {
+                         place = valueOf(words, chosen.front());
+                       },
+                       [&place, &words] { return std::vector<std::string>{wordOf(words, place)}; }};
+  };
+  return row;
 }
 
-inline KeySpec oneAJoint(std::string key, std::string unit, Range range, std::string doc,
-                         std::vector<double>& (*target)(ConfigDraft&)) {
-  KeySpec spec =
-      value(ValueType::kNumberList, std::move(key), std::move(unit), std::move(doc), target);
-  spec.range = range;
-  spec.count = {2, kMaxJoints, true};
-  return spec;
+template <class S>
+Row<S> vector3(std::string key, std::string unit, Range range, std::string doc,
+               Vector3 S::*member) {
+  Row<S> row =
+      value(ValueType::kNumberList, std::move(key), std::move(unit), std::move(doc), member);
+  row.spec.range = range;
+  row.spec.count = {3, 3};
+  return row;
 }
 
-inline KeySpec section(std::string key, std::string doc, std::vector<KeySpec> rows,
-                       void (*begin)(ConfigDraft&) = nullptr) {
-  KeySpec spec = value(ValueType::kSection, std::move(key), "", std::move(doc), {});
-  spec.keys = std::move(rows);
-  spec.begin = begin;
-  return spec;
+/// Required, unless it is a std::optional.
+template <class S, class T>
+Row<S> oneAJoint(std::string key, std::string unit, Range range, std::string doc, T S::*member) {
+  Row<S> row =
+      value(ValueType::kNumberList, std::move(key), std::move(unit), std::move(doc), member);
+  row.spec.range = range;
+  row.spec.count = {2, kMaxJoints, true};
+  return Content<T>::kIsOptional ? row : required(row);
 }
 
-/// `begin` appends an entry, which the rows then fill.
-inline KeySpec sectionList(std::string key, Count count, std::string doc, std::vector<KeySpec> rows,
-                           void (*begin)(ConfigDraft&)) {
-  KeySpec spec = section(std::move(key), std::move(doc), std::move(rows), begin);
-  spec.type = ValueType::kSectionList;
-  spec.count = count;
-  return spec;
+/// Keys of the same struct S under a name of their own. `begin` is called if they are present.
+template <class S>
+Row<S> group(std::string key, std::string doc, Table<S> rows, void (*begin)(S&) = nullptr) {
+  Row<S> row;
+  row.spec.key = std::move(key);
+  row.spec.type = ValueType::kSection;
+  row.spec.doc = std::move(doc);
+  row.spec.presence = Presence::kDefaulted;
+  row.spec.keys = specsOf(std::move(rows));
+  row.spec.enter = [begin](void* owner) {
+    if (begin) begin(*static_cast<S*>(owner));
+    return owner;
+  };
+  return row;
+}
+
+/// A struct inside S. That of a std::optional may be absent; any other is the same as empty then.
+template <class S, class T>
+Row<S> section(std::string key, std::string doc, T S::*member, Table<ContentOf<T>> rows) {
+  Row<S> row = group<S>(std::move(key), std::move(doc), {});
+  row.spec.presence = Content<T>::kIsOptional ? Presence::kOptional : Presence::kDefaulted;
+  row.spec.keys = specsOf(std::move(rows));
+  row.spec.enter = [member](void* owner) -> void* {
+    return &make(static_cast<S*>(owner)->*member);
+  };
+  return row;
+}
+
+/// An entry a section; absent, the list is empty.
+template <class S, class T>
+Row<S> sectionList(std::string key, Count count, std::string doc, std::vector<T> S::*member,
+                   Table<T> rows) {
+  Row<S> row = optional(group<S>(std::move(key), std::move(doc), {}));
+  row.spec.type = ValueType::kSectionList;
+  row.spec.count = count;
+  row.spec.keys = specsOf(std::move(rows));
+  row.spec.enter = [member](void* owner) -> void* {
+    return &(static_cast<S*>(owner)->*member).emplace_back();
+  };
+  return row;
 }
 
 }  // namespace tactus::keys

@@ -28,10 +28,12 @@ struct KeyRow {
 /// All rows, depth first.
 std::vector<KeyRow> keyRows(const std::vector<KeySpec>& keys);
 
-/// What a row allows and what its absence means: "a number > 0 in s; default 0.1".
+/// What a row allows, what its absence means and its symbol: "a number > 0 in s; default 0.1;
+/// symbol T".
 std::string keyFacts(const KeySpec& spec);
 
-/// The rows whose path is `path` or ends with it, and all below them; an index counts as any.
+/// The rows whose path is `path` or ends with it, and all below them, and those whose symbol it is;
+/// an index counts as any.
 std::vector<KeyRow> findKeyRows(const std::vector<KeySpec>& keys, std::string_view path);
 
 /// The page tactus-<name>(5) as roff.

@@ -1,15 +1,17 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "tactus/scene/config_draft.h"
+#include "tactus/math/types.h"
 
-/// What may stand in a scene and in a robot.yaml, as plain data. The one source of truth: the
-/// readers, the defaults and every description of the format follow from these tables.
+/// What may stand in a scene and in a robot.yaml, bound to the configs that it fills. The one
+/// source of truth: the reader and every description of the format follow from these tables, and
+/// the defaults are those of the configs.
 namespace tactus {
 
 enum class ValueType {
@@ -46,13 +48,25 @@ enum class Presence {
   kDefaulted,  ///< the same as `default_value`, or as an empty section
 };
 
-/// Where a value goes.
-using Target = std::variant<
-    std::monostate, double& (*)(ConfigDraft&), int& (*)(ConfigDraft&),
-    std::uint64_t& (*)(ConfigDraft&), bool& (*)(ConfigDraft&), std::string& (*)(ConfigDraft&),
-    Vector3& (*)(ConfigDraft&), std::vector<double>& (*)(ConfigDraft&),
-    std::vector<std::string>& (*)(ConfigDraft&), Eigen::Matrix<double, 4, 8>& (*)(ConfigDraft&)>;
+/// A section of the top level without which a key says nothing.
+struct Needs {
+  std::string section;  ///< empty: none
+  std::string problem, expectation;
+};
 
+/// Words that stand for something else: enumerators, numbers of axes.
+struct WordsTarget {
+  std::function<void(const std::vector<std::string>&)> set;
+  std::function<std::vector<std::string>()> get;
+};
+
+/// Where a value goes. CAN identifiers alone are std::uint32_t.
+using Target =
+    std::variant<double*, int*, std::uint32_t*, std::uint64_t*, bool*, std::string*, Vector3*,
+                 std::vector<double>*, Eigen::Matrix<double, 4, 8>*, WordsTarget>;
+
+/// A row of the table of a config struct. `owner` points to an object of that struct; Row<S> of
+/// key_builders.h keeps the types right.
 struct KeySpec {
   std::string key;
   ValueType type = ValueType::kNumber;
@@ -62,35 +76,23 @@ struct KeySpec {
   int columns = 0;
   std::vector<std::string> choices;
   Presence presence = Presence::kRequired;
-  std::string default_value;  ///< in YAML
+  std::string default_value;  ///< in YAML, as a new config has it
+  std::string symbol;         ///< of the paper, as T_t,max; empty without one
   std::string doc;            ///< one line
-  Target target;
-  std::vector<KeySpec> keys;              ///< of a section
-  void (*begin)(ConfigDraft&) = nullptr;  ///< called before a section that is present is read
+  Needs needs;
+  std::function<Target(void* owner)> target;  ///< of a value; makes it if it is optional
+  std::function<void*(void* owner)> enter;    ///< of a section: makes it or a new entry of its list
+  std::vector<KeySpec> keys;                  ///< of a section: rows of what `enter` returns
 
   const char* numberNoun() const {
     return type == ValueType::kInteger ? "a whole number" : "a number";
   }
 };
 
-/// The keys of a scene file and of a robot.yaml, top level first, in the order they are documented.
+/// The keys of a scene file (rows of SceneConfig) and of a robot.yaml (rows of RobotConfig), top
+/// level first, in the order they are documented.
 const std::vector<KeySpec>& sceneKeys();
 const std::vector<KeySpec>& robotKeys();
-
-/// Spellings of `controller.variant`, of `task.components` in the order of TaskConfig, and of the
-/// kinds of troubles in the order of Trouble::Kind.
-const std::vector<std::string>& variantNames();
-const std::vector<std::string>& componentNames();
-const std::vector<std::string>& troubleNames();
-
-KeySpec simulationSection();  ///< of a scene
-
-/// Rows of robot.yaml that make up HardwareConfig.
-KeySpec canSection();
-KeySpec drivesSection();
-std::vector<KeySpec> moduleOnBusKeys();
-KeySpec gpioSection();
-KeySpec realTimeSection();
 
 /// "a number > 0 in s", "a list of 3 numbers in m": what an error says it expected.
 std::string describeExpectation(const KeySpec& spec);

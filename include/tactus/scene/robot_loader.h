@@ -1,21 +1,44 @@
 #pragma once
 
-#include "tactus/scene/config_draft.h"
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tactus/scene/robot_config.h"
 #include "tactus/scene/source_reader.h"
+#include "tactus/scene/table_reader.h"
 #include "tactus/scene/urdf_loader.h"
 #include "tactus/scene/yaml_tree.h"
 
 namespace tactus {
 
-/// A robot.yaml with its URDF; its other values are in the draft.
+/// A robot.yaml with its URDF.
 struct LoadedRobot {
   YamlNode root;  ///< for the places of values
+  RobotConfig config;
   UrdfChain chain;
   std::optional<HardwareConfig> hardware;  ///< absent without `can`
 };
 
-/// Reads the URDF of a robot.yaml and checks their values against each other. Throws InputError.
-LoadedRobot loadRobot(const SourceFile& file, SourceReader& reader, ConfigDraft& draft);
+/// Settings of the command line that change the robot have keys that begin like this.
+inline constexpr std::string_view kRobotPrefix = "robot.";
+
+/// Settings, and what paths in them are relative to.
+struct SceneSettings {
+  std::string scene_path;
+  const std::vector<Override>& overrides;
+
+  /// The file that `reference` means: relative to the one that names it, on the command line to the
+  /// scene. key: as on the command line.
+  std::string resolve(const std::string& named_in, std::string_view key,
+                      const std::string& reference) const;
+};
+
+/// Lays the settings over a robot.yaml, reads it and its URDF and checks their values against each
+/// other; adds its numbers to `numbers`. Throws InputError.
+LoadedRobot loadRobot(const SourceFile& file, const SceneSettings& settings, SourceReader& reader,
+                      NamedNumbers& numbers);
 
 /// One value a moving joint as a vector. Throws InputError if the count is wrong.
 JointVector toJointVector(const std::vector<double>& values, const YamlNode& root,

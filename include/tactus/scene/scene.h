@@ -29,12 +29,14 @@ struct Override {
   std::string value;
 };
 
+inline constexpr double kDefaultPeriod_s = 0.001;
+
 /// One run: a robot, a task, a controller and, for simulation, a world.
 struct Scene {
   std::string name;  ///< file name without .yaml
   ControllerConfig controller;
   std::string variant;  ///< as the scene spells it; "none" without force control
-  double period_s = 0.001;
+  double period_s = kDefaultPeriod_s;
   double duration_s = 0.0;
   double stiffest_N_per_m = 0.0;  ///< contact that the gains are made for; 0: as assumed
   PlantConfig plant;

@@ -1,13 +1,17 @@
 #pragma once
 
-#include "tactus/scene/config_draft.h"
 #include "tactus/scene/robot_loader.h"
+#include "tactus/scene/scene_config.h"
 #include "tactus/scene/yaml_tree.h"
 
 namespace tactus {
 
+/// Does the simulated module filter a whole number of times a cycle, or once in a whole number of
+/// them?
+bool fitsModule(double period_s, double filter_rate_hz);
+
 /// Checks the values of a scene against each other and against the robot. Throws InputError.
-void checkScene(const YamlNode& root, const ConfigDraft& draft, const LoadedRobot& robot,
+void checkScene(const YamlNode& root, const SceneConfig& scene, const LoadedRobot& robot,
                 const JointVector& q_start);
 
 }  // namespace tactus

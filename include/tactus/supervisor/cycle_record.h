@@ -43,15 +43,16 @@ struct CycleRecord {
   std::int64_t write_ns = 0;  ///< from the set-points to the last frame handed over; hardware only
   std::uint64_t missed_cycles = 0;  ///< skipped by the loop just before this one
   double path_time_s = 0.0;         ///< the reference's clock: task_time_s less the time it waited
+  double tool_rotation_error_rad = 0.0;  ///< as tool_error_m; only for tasks with a rotation
 };
 
 static_assert(std::is_trivially_copyable_v<CycleRecord> && std::is_standard_layout_v<CycleRecord>);
 static_assert(sizeof(CycleRecord) ==
-              8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 5 + 1));
+              8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 5 + 2));
 
 /// Copies one cycle into a record; wake_latency_ns and step_ns are left to the caller, who alone
-/// knows a clock. tool_error_m: see CycleRecord. Entries of arrays beyond the robot's joints and
-/// the task's components keep what they held.
+/// knows a clock, and tool_rotation_error_rad. tool_error_m: see CycleRecord. Entries of arrays
+/// beyond the robot's joints and the task's components keep what they held.
 void fillRecord(double t_s, const RobotInput& input, const ControllerOutput& output,
                 const Vector3& tool_error_m, CycleRecord& record) noexcept;
 

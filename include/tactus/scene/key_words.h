@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "tactus/control/controller_config.h"
+#include "tactus/plant/trouble.h"
+
+/// How files spell the values of enumerations.
+namespace tactus {
+
+template <class T>
+struct Word {
+  const char* text;
+  T value;
+};
+
+inline constexpr std::array kVariantWords = {
+    Word<Variant>{"none", Variant::kNone},
+    Word<Variant>{"null_space", Variant::kNullSpace},
+    Word<Variant>{"joint_space", Variant::kJointSpace},
+    Word<Variant>{"task_space", Variant::kTaskSpace},
+    Word<Variant>{"null_task", Variant::kNullTask},
+    Word<Variant>{"null_joint", Variant::kNullJoint},
+    Word<Variant>{"null_limit", Variant::kNullLimit},
+};
+
+/// Of TaskConfig::components.
+inline constexpr std::array kComponentWords = {
+    Word<int>{"x", 0},  Word<int>{"y", 1},  Word<int>{"z", 2},
+    Word<int>{"rx", 3}, Word<int>{"ry", 4}, Word<int>{"rz", 5},
+};
+
+inline constexpr std::array kTroubleWords = {
+    Word<Trouble::Kind>{"drop", Trouble::Kind::kDrop},
+    Word<Trouble::Kind>{"delay", Trouble::Kind::kDelay},
+    Word<Trouble::Kind>{"reorder", Trouble::Kind::kReorder},
+    Word<Trouble::Kind>{"corrupt", Trouble::Kind::kCorrupt},
+    Word<Trouble::Kind>{"duplicate", Trouble::Kind::kDuplicate},
+    Word<Trouble::Kind>{"bus_off", Trouble::Kind::kBusOff},
+    Word<Trouble::Kind>{"power_cut", Trouble::Kind::kPowerCut},
+    Word<Trouble::Kind>{"drive_fault", Trouble::Kind::kDriveFault},
+    Word<Trouble::Kind>{"ignore_commands", Trouble::Kind::kIgnoreCommands},
+    Word<Trouble::Kind>{"freeze_feedback", Trouble::Kind::kFreezeFeedback},
+    Word<Trouble::Kind>{"nonsense_status", Trouble::Kind::kNonsenseStatus},
+    Word<Trouble::Kind>{"boot_up", Trouble::Kind::kBootUp},
+    Word<Trouble::Kind>{"heartbeat_only", Trouble::Kind::kHeartbeatOnly},
+    Word<Trouble::Kind>{"emergency_stop", Trouble::Kind::kEmergencyStop},
+};
+
+/// The word of a value; empty if it has none.
+template <class Words, class T>
+std::string wordOf(const Words& words, const T& value) {
+  for (const auto& word : words) {
+    if (word.value == value) return word.text;
+  }
+  return "";
+}
+
+/// The value of a word, which is one of `words`.
+template <class Words>
+auto valueOf(const Words& words, const std::string& text) {
+  for (const auto& word : words) {
+    if (text == word.text) return word.value;
+  }
+  return words.front().value;
+}
+
+}  // namespace tactus

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tactus/canopen/hardware_config.h"
+#include "tactus/control/controller_config.h"
+#include "tactus/sim/plant_config.h"
+
+namespace tactus {
+
+struct CanSection {
+  std::vector<BusConfig> buses;
+  CanopenConfig canopen;
+};
+
+/// What a drive's entry says in m or in rad. Which of the two may stand there is known only with
+/// the joint.
+struct DriveUnits {
+  std::optional<double> counts_per_unit, offset, max_following_error;
+};
+
+struct DriveSection {
+  std::string joint;      ///< name in the URDF
+  std::string interface;  ///< of its bus
+  DriveConfig config;     ///< without joint, bus and what depends on the unit
+  DriveUnits metres, radians;
+};
+
+struct DrivesSection {
+  double position_lag_s = PlantConfig{}.drive_lag_s;
+  double start_tolerance = HardwareConfig{}.start_tolerance;
+  std::vector<DriveSection> joints;
+};
+
+struct TactileModuleSection {
+  std::string link;                   ///< name in the URDF
+  TactileModuleConfig config;         ///< without link
+  SimulatedModuleConfig electronics;  ///< without filter cut-off and imperfections
+  double cover_radius_m = 0.0;
+  std::optional<std::string> interface;  ///< of its bus
+  CanTactileConfig on_bus;               ///< id and tare alone
+  bool filter_in_daemon = false;
+};
+
+/// What a robot.yaml says: each value checked for itself, not yet against the others and the URDF.
+struct RobotConfig {
+  std::string urdf;  ///< path as written
+  std::string tip;
+  std::vector<double> home;
+  std::optional<std::vector<double>> max_acceleration;  ///< absent: no limit
+  double stiffness_N_per_m = PlantConfig{}.robot_stiffness_N_per_m;
+  std::optional<CanSection> can;
+  DrivesSection drives;
+  std::optional<TactileModuleSection> tactile_module;
+  std::optional<GpioConfig> gpio;
+  RealTimeConfig real_time;
+};
+
+/// Those of its module; of a robot without one what they are by default.
+inline SimulatedModuleConfig electronicsOf(const RobotConfig& robot) {
+  return robot.tactile_module ? robot.tactile_module->electronics : SimulatedModuleConfig{};
+}
+
+}  // namespace tactus

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tactus/canopen/hardware_config.h"
+#include "tactus/control/controller_config.h"
+#include "tactus/plant/trouble.h"
+#include "tactus/scene/log_config.h"
+#include "tactus/scene/scene.h"
+#include "tactus/sim/plant_config.h"
+
+namespace tactus {
+
+struct HoldSection {};
+
+/// Exactly one of line, waypoints and hold is given.
+struct TrajectorySection {
+  double start_s = TrajectoryConfig{}.start_s;
+  std::optional<Waypoint> line;
+  std::vector<Waypoint> waypoints;
+  std::optional<HoldSection> hold;
+};
+
+struct ControllerSection {
+  ForceControlConfig force;                  ///< without what `stiffness` says
+  std::optional<double> activation_force_N;  ///< some variants need it
+};
+
+struct StiffnessSection {
+  double assumed_N_per_m = 0.0;
+  std::optional<double> stiffest_N_per_m;
+  std::optional<StiffnessEstimatorConfig> estimate;
+};
+
+struct TroubleSection {
+  Trouble trouble;  ///< without bus, id and delay, which not all kinds have
+  std::optional<std::string> interface;
+  std::optional<std::uint32_t> id;
+  std::optional<double> delay_s;
+};
+
+struct SimulationSection {
+  double duration_s = 0.0;
+  std::optional<double> drive_lag_s;       ///< another one than robot.yaml says
+  std::optional<double> filter_cutoff_hz;  ///< of the tactile module: another one, too
+  SimulatedModuleConfig module;            ///< its imperfections alone
+  std::vector<ObstacleConfig> obstacles;
+  std::vector<TroubleSection> troubles;
+};
+
+/// The position of the tool; with a rotation only if a scene says so.
+inline TaskConfig positionTask() {
+  TaskConfig task;
+  task.components = {0, 1, 2};
+  task.size = 3;
+  return task;
+}
+
+/// What a scene file says, with all that it extends: each value checked for itself, not yet against
+/// the others and the robot.
+struct SceneConfig {
+  std::optional<std::string> extends;
+  std::string robot;  ///< path as written
+  double period_s = kDefaultPeriod_s;
+  std::optional<std::vector<double>> start;  ///< absent: the robot's home
+  TaskConfig task = positionTask();          ///< without trajectory
+  TrajectorySection trajectory;
+  std::optional<std::vector<double>> weights;  ///< absent: all 1
+  std::optional<JointLimitAvoidanceConfig> joint_limit_avoidance;
+  std::optional<ControllerSection> controller;
+  std::optional<StiffnessSection> stiffness;
+  SimulationSection simulation;
+  bool requires_real_time = RealTimeConfig{}.required;
+  LogConfig log;
+};
+
+}  // namespace tactus

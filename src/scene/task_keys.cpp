@@ -1,0 +1,102 @@
+#include "tactus/scene/task_keys.h"
+
+namespace tactus {
+namespace {
+
+using namespace keys;
+
+Row<TaskConfig> componentsRow() {
+  Row<TaskConfig> row;
+  row.spec.key = "components";
+  row.spec.type = ValueType::kChoiceList;
+  row.spec.presence = Presence::kDefaulted;
+  row.spec.doc = "what the task controls of the tool, base frame";
+  row.spec.count = {1, kMaxTaskSize};
+  for (const Word<int>& word : kComponentWords) row.spec.choices.push_back(word.text);
+  row.spec.target = [](void* owner) -> Target {
+    TaskConfig& task = *static_cast<TaskConfig*>(owner);
+    return WordsTarget{[&task](const std::vector<std::string>& words) {
+                         task.size = static_cast<int>(words.size());
+                         for (int i = 0; i < task.size; ++i) {
+                           task.components[i] = valueOf(kComponentWords, words[i]);
+                         }
+                       },
+                       [&task] {
+                         std::vector<std::string> words;
+                         for (int i = 0; i < task.size; ++i) {
+                           words.push_back(wordOf(kComponentWords, task.components[i]));
+                         }
+                         return words;
+                       }};
+  };
+  return row;
+}
+
+Table<TaskConfig> correctionKeys() {
+  using Config = TaskConfig;
+  return {
+      componentsRow(),
+      withSymbol("beta", number("drift_gain_per_s", "1/s", within(0, 1e4),
+                                "how fast the tool is pulled back to its reference: its error "
+                                "times this is a speed, as in (2)",
+                                &Config::drift_gain_per_s)),
+      number("max_return_speed_m_per_s", "m/s", above(0, 10),
+             "largest speed at which drift_gain_per_s pulls the position back, as after a contact; "
+             "absent: as much as the gain makes of the error",
+             &Config::max_return_speed_m_per_s),
+      number("max_return_speed_rad_per_s", "rad/s", above(0, 10),
+             "largest speed at which drift_gain_per_s pulls the orientation back; absent: as much "
+             "as the gain makes of the error",
+             &Config::max_return_speed_rad_per_s),
+      number("wait_beyond_m", "m", above(0, 10),
+             "lag of the tool's position beyond which the reference goes on slower; beyond twice "
+             "that it stands still until the tool has caught up; absent: it never waits",
+             &Config::wait_beyond_m),
+  };
+}
+
+Table<Waypoint> lineKeys() {
+  return {
+      vector3("displacement_m", "m", within(-100, 100),
+              "target position relative to the start, base frame", &Waypoint::displacement_m),
+      vector3("rotation_vector_rad", "rad", within(-4, 4),
+              "target orientation relative to the start: axis times angle, base frame",
+              &Waypoint::rotation_vector_rad),
+      number("speed_m_per_s", "m/s", above(0, 10), "cruise speed of the position",
+             &Waypoint::speed_m_per_s),
+      number("angular_speed_rad_per_s", "rad/s", above(0, 10), "largest speed of the orientation",
+             &Waypoint::angular_speed_rad_per_s),
+      number("ramp_s", "s", above(0, 1000), "length of the sin^2 speed ramps at both ends",
+             &Waypoint::ramp_s),
+  };
+}
+
+Table<Waypoint> waypointKeys() {
+  return join(lineKeys(), Table<Waypoint>{number("pause_s", "s", within(0, kMaxTime_s),
+                                                 "rest after arrival", &Waypoint::pause_s)});
+}
+
+Table<TrajectorySection> trajectoryKeys() {
+  using Config = TrajectorySection;
+  return {
+      number("start_s", "s", within(0, kMaxTime_s), "rest before the first motion",
+             &Config::start_s),
+      section("line", "one straight motion", &Config::line, lineKeys()),
+      sectionList("waypoints", {1, 1000}, "straight motions with a stop at every corner",
+                  &Config::waypoints, waypointKeys()),
+      section("hold", "stay at the start pose", &Config::hold, {}),
+  };
+}
+
+}  // namespace
+
+Row<SceneConfig> taskSection() {
+  const Table<SceneConfig> trajectory = {withSymbol(
+      "w_d", required(section("trajectory",
+                              "where the tool shall be when; exactly one of line, waypoints, hold",
+                              &SceneConfig::trajectory, trajectoryKeys())))};
+  return required(group("task", "what the tool shall do",
+                        join(inside(&SceneConfig::task, correctionKeys()), trajectory)));
+}
+
+}  // namespace tactus
