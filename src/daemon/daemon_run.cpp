@@ -174,7 +174,8 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   });
   refusals.insert(refusals.end(), thread.refusals().begin(), thread.refusals().end());
   judgeRefusals(refusals, real_time.required);
-  Telemetry telemetry(scene, runFolder(options));  // a run that is refused leaves no files
+  // A run that is refused leaves no files.
+  Telemetry telemetry(scene, runFolder(options), link);
 
   // While stop signals are blocked, so that its thread never gets one.
   const ServiceWatchdog watchdog(link.pulse, real_time.max_late_cycles);
@@ -183,14 +184,14 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   const StopRequests stop_requests(link.stop_requested);
   while (!has_ended.load(std::memory_order_acquire)) {
     std::this_thread::sleep_for(kDrainPeriod);
-    telemetry.drain(link);
+    telemetry.drain();
   }
   thread.join();
-  telemetry.drain(link);
+  telemetry.drain();
   nameForbiddenCall(filter);
-  const FaultReport& end = loop->report();
-  telemetry.finish(end,
-                   loopFigures(scene, *loop, link, thread, processTime_ns() - process_start_ns));
+  const ModeReport& end = loop->report();
+  telemetry.finish(
+      {end, loopFigures(scene, *loop, link, thread, processTime_ns() - process_start_ns)});
   return end.fault;
 }
 

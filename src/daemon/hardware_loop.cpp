@@ -89,13 +89,15 @@ void HardwareLoop::writeAll() noexcept {
 
 void HardwareLoop::publish(const Wake& wake, std::int64_t read_ns, std::int64_t control_ns,
                            std::int64_t write_ns) noexcept {
-  record_.cycle = cycle_.record();
-  record_.cycle.wake_latency_ns = wake.latency_ns;
-  record_.cycle.read_ns = read_ns;
-  record_.cycle.step_ns = control_ns;
-  record_.cycle.write_ns = write_ns;
-  record_.is_in_motion = cycle_.isRecorded();
-  link_.records.push(record_);
+  if (LoopRecord* const record = link_.records.reserve()) {
+    record->is_in_motion = cycle_.isRecorded();
+    if (record->is_in_motion) cycle_.fill(record->cycle);
+    record->cycle.wake_latency_ns = wake.latency_ns;
+    record->cycle.read_ns = read_ns;
+    record->cycle.step_ns = control_ns;
+    record->cycle.write_ns = write_ns;
+    link_.records.commit();
+  }
   link_.pulse.late_in_a_row.store(wake.late_in_a_row, std::memory_order_relaxed);
   link_.pulse.missed_cycles.store(missed_cycles_, std::memory_order_relaxed);
   link_.pulse.cycles.store(cycles_, std::memory_order_relaxed);

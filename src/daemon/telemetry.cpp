@@ -1,74 +1,47 @@
 #include "tactus/daemon/telemetry.h"
 
-#include <fmt/format.h>
+#include <utility>
 
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
-
+#include "tactus/daemon/journal_sink.h"
+#include "tactus/daemon/log_sink.h"
+#include "tactus/daemon/status_sink.h"
+#include "tactus/daemon/summary_sink.h"
 #include "tactus/record/fault_text.h"
-#include "tactus/record/run_error.h"
 
 namespace tactus {
 
-Telemetry::Telemetry(const Scene& scene, const std::string& folder)
-    : scene_(scene),
-      folder_(folder),
-      summary_(scene.controller, 0),
-      rotation_error_(scene.controller) {
-  if (!folder_.empty()) log_.emplace(scene, folder_);
+/// In an order that counts: the summary tells of the closed log, and the status is there before the
+/// service manager hears of it, and people look.
+Telemetry::Telemetry(const Scene& scene, const std::string& folder, LoopLink& link)
+    : scene_(scene), link_(link), rotation_error_(scene.controller) {
+  const LogState* log_state = nullptr;
+  if (!folder.empty()) {
+    auto log = std::make_unique<LogSink>(scene, folder);
+    log_state = &log->state();
+    sinks_.push_back(std::move(log));
+    sinks_.push_back(std::make_unique<SummarySink>(scene, folder, *log_state));
+  }
+  sinks_.push_back(std::make_unique<StatusSink>(scene, link, log_state));
+  sinks_.push_back(std::make_unique<JournalSink>());
 }
 
-void Telemetry::drain(LoopLink& link) {
-  while (link.records.pop(record_)) {
-    CycleRecord& cycle = record_.cycle;
-    loop_.wake_latency.add(cycle.wake_latency_ns);
-    loop_.read.add(cycle.read_ns);
-    loop_.control.add(cycle.step_ns);
-    loop_.write.add(cycle.write_ns);
-    if (!record_.is_in_motion || !(log_ || status_file_.isWanted())) continue;
-    fillToolError(scene_.controller, cycle);
-    rotation_error_.fill(cycle);
-    if (log_) log_->write(cycle);
-    log_ ? summary_.add(cycle) : summary_.addFigures(cycle);
+void Telemetry::drain() {
+  while (LoopRecord* const record = link_.records.front()) {
+    if (record->is_in_motion) fillToolError(scene_.controller, record->cycle);
+    if (record->is_in_motion) rotation_error_.fill(record->cycle);
+    for (const auto& sink : sinks_) sink->add(*record);
+    link_.records.release();
   }
-  if (log_) log_->flush();
-  while (link.reports.pop(report_)) {
-    description_ = describeMode(report_, scene_);
-    showStatus(link);  // before the service manager hears of it, and people look
-    service_.onMode(report_.mode, description_);
-    std::fputs(fmt::format("tactusd: {}\n", description_).c_str(), stderr);
+  for (const auto& sink : sinks_) sink->flush();
+  ModeReport report;
+  while (link_.reports.pop(report)) {
+    const std::string description = describeMode(report, scene_);
+    for (const auto& sink : sinks_) sink->onMode(report, description);
   }
-  if (status_file_.isDue()) showStatus(link);
 }
 
-void Telemetry::showStatus(const LoopLink& link) {
-  loop_.cycles = link.pulse.cycles.load(std::memory_order_relaxed);
-  loop_.missed_cycles = link.pulse.missed_cycles.load(std::memory_order_relaxed);
-  loop_.dropped_records = static_cast<long long>(link.records.dropped());
-  const RunFigures& figures = summary_.soFar();
-  status_file_.write({scene_, report_.mode, report_.fault, description_, loop_,
-                      figures.cycles > 0 ? &figures : nullptr, log_ ? &log_->state() : nullptr});
-}
-
-void Telemetry::finish(const FaultReport& end, LoopFigures loop) {
-  if (!log_) return;
-  log_->close();
-  loop.wake_latency = loop_.wake_latency;
-  loop.read = loop_.read;
-  loop.control = loop_.control;
-  loop.write = loop_.write;
-  RunFigures figures = summary_.figures();
-  figures.end = end;
-  const std::string path = folder_ + "/summary.json";
-  try {
-    const Json loop_json = loopJson(loop);
-    const HardwareFigures hardware{log_->state(), loop_json};
-    writeSummary(path, scene_, figures, 1.0, &hardware);
-  } catch (const std::runtime_error& error) {
-    std::remove(path.c_str());     // half of one
-    throw RunError(error.what());  // of input, too: the arm has moved
-  }
+void Telemetry::finish(const RunEnd& end) {
+  for (const auto& sink : sinks_) sink->finish(end);
 }
 
 }  // namespace tactus

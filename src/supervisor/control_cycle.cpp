@@ -93,7 +93,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   report_.mode = mode_.mode;
   report_.fault = mode_.fault;
   control(input, before);
-  if (is_new_fault && mode_.fault != Fault::kNone && is_started_) report_.time_s = record_.t_s;
+  if (is_new_fault && mode_.fault != Fault::kNone && is_started_) report_.time_s = time_s();
   updateBrakes();
   rememberPlaces();
   const bool is_boot_new = mode_.mode == Mode::kBoot && mode_.cycles_in_mode == 0;
@@ -114,97 +114,9 @@ void ControlCycle::prepare() noexcept {
   controller_.prepare(gains_, static_cast<double>(next) * period_s_, state_, prepared_);
 }
 
-void ControlCycle::noteCulprit() noexcept {
-  report_ = {};
-  report_.detail = judged_.detail;
-  report_.joint = judged_.joint;
-  report_.bus = judged_.bus;
-  if (judged_.joint < 0) return;
-  report_.drive = robot_.drive(judged_.joint);
-  report_.q_measured = input_.q_measured[judged_.joint];
-  report_.q_expected = places_.commanded()[judged_.joint];
-}
-
-Fault ControlCycle::judge(const CycleInput& input) noexcept {
-  judged_ = {};
-  const auto found = [this](Fault fault) { return (judged_.fault = fault) != Fault::kNone; };
-  if (input.lines.emergency_stop && found(Fault::kEmergencyStop)) return judged_.fault;
-  if (input.are_lines_lost && found(Fault::kGpioLost)) return judged_.fault;
-  if (found(judgeBuses(input)) || found(judgeDrives())) return judged_.fault;
-  if (input.has_forbidden_call && found(Fault::kForbiddenSystemCall)) return judged_.fault;
-  if (mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_) {
-    judged_.detail = {static_cast<double>(input.late_in_a_row),
-                      static_cast<double>(max_late_cycles_), "cycles"};
-    return judged_.fault = Fault::kOverrun;
-  }
-  if (found(judgeTactile()) || found(judgeController())) return judged_.fault;
-  return Fault::kNone;
-}
-
-/// Of the last cycle. At rest nothing starts on a reading that would stop it.
-Fault ControlCycle::judgeController() noexcept {
-  if (mode_.mode == Mode::kBoot) return Fault::kNone;
-  const bool is_moving = mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding;
-  const Fault fault = is_moving ? output_.fault : state_.sample_fault;
-  if (fault == Fault::kNone) return fault;
-  judged_.detail = is_moving ? output_.fault_detail : state_.sample_detail;
-  judged_.joint = judged_.detail.joint;
-  return fault;
-}
-
-Fault ControlCycle::judgeBuses(const CycleInput& input) noexcept {
-  const auto fault = std::find_if(input.bus_faults.begin(), input.bus_faults.end(),
-                                  [](Fault candidate) { return candidate != Fault::kNone; });
-  if (fault == input.bus_faults.end()) return Fault::kNone;
-  judged_.bus = static_cast<int>(fault - input.bus_faults.begin());
-  return *fault;
-}
-
-/// A drive's fault stays until its set-up begins anew, so it says nothing about the present once
-/// it has been answered.
-Fault ControlCycle::judgeDrives() noexcept {
-  if (mode_.mode == Mode::kFault) return Fault::kNone;
-  const DrivesReport drives = robot_.drives();
-  judged_.joint = drives.joint;
-  const bool is_about_to_move = mode_.mode == Mode::kReady || mode_.mode == Mode::kEnabling ||
-                                (mode_.mode == Mode::kBoot && areConfigured());
-  if (drives.fault != Fault::kNone) judged_.detail = robot_.drive(drives.joint).detail;
-  if (drives.fault == Fault::kFollowingError) judged_.detail.unit = joint_units_[drives.joint];
-  if (drives.fault != Fault::kNone || !is_about_to_move) return drives.fault;
-  const int joint = judged_.joint = places_.outOfPlace(input_.q_measured);
-  if (joint < 0) return Fault::kNone;
-  judged_.detail = {std::abs(input_.q_measured[joint] - places_.commanded()[joint]),
-                    places_.tolerance(), joint_units_[joint]};
-  return Fault::kNotAtStart;
-}
-
-Fault ControlCycle::judgeTactile() noexcept {
-  TactileReceiver* const tactile = robot_.tactile();
-  if (!tactile) return Fault::kNone;
-  const bool is_boot = mode_.mode == Mode::kBoot;
-  if (!is_boot && hasFreshSample()) return tactile->fault();
-  if (is_boot && tactile->tareState() == TareState::kRefused) {
-    judged_.detail = tactile->tareRefusal();
-    return Fault::kTareRefused;
-  }
-  const bool is_late = mode_.cycles_in_mode >= mode_config_.boot_cycles;
-  if (is_boot && !(is_late && robot_.drives().are_configured)) return Fault::kNone;
-  judged_.detail = sampleAge();
-  return Fault::kTactileStale;
-}
-
-FaultDetail ControlCycle::sampleAge() const noexcept {
-  return {controller_.sampleAge_s(input_, period_s_, state_), max_sample_age_s_, "s"};
-}
-
 /// The drives kept the last command, and the sensor's sample grew older.
 void ControlCycle::coast(int missed_cycles) noexcept {
   if (missed_cycles > 0) controller_.coast(missed_cycles, period_s_, state_);
-}
-
-bool ControlCycle::hasFreshSample() const noexcept {
-  return input_.tactile.sequence > 0 &&
-         controller_.sampleAge_s(input_, period_s_, state_) <= max_sample_age_s_;
 }
 
 bool ControlCycle::areConfigured() const noexcept {
@@ -260,19 +172,20 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
     return;
   }
   if (!is_started_) state_ = controller_.initialState();  // as a replay begins
-  const int missed = is_started_ ? input.missed_cycles : 0;
-  cycles_ += is_started_ ? 1 + missed : 0;
-  task_cycles_ += is_started_ && before == Mode::kRunning ? 1 + missed : 0;
+  missed_cycles_ = is_started_ ? input.missed_cycles : 0;
+  cycles_ += is_started_ ? 1 + missed_cycles_ : 0;
+  task_cycles_ += is_started_ && before == Mode::kRunning ? 1 + missed_cycles_ : 0;
   is_started_ = true;
   applyMode(controller_, mode_.mode, before, input_, state_);
-  const double task_time_s = static_cast<double>(task_cycles_) * period_s_;
-  controller_.update(input_, gains_, task_time_s, period_s_, prepared_, state_, output_);
-  fillRecord(static_cast<double>(cycles_) * period_s_, input_, gains_, output_, Vector3::Zero(),
-             record_);
-  record_.task_time_s = task_time_s;
-  record_.mode = static_cast<std::uint64_t>(mode_.mode);
-  record_.missed_cycles = static_cast<std::uint64_t>(missed);
-  if (mode_.fault != Fault::kNone) record_.fault = static_cast<std::uint64_t>(mode_.fault);
+  controller_.update(input_, gains_, taskTime_s(), period_s_, prepared_, state_, output_);
+}
+
+void ControlCycle::fill(CycleRecord& record) const noexcept {
+  fillRecord(time_s(), input_, gains_, output_, Vector3::Zero(), record);
+  record.task_time_s = taskTime_s();
+  record.mode = static_cast<std::uint64_t>(mode_.mode);
+  record.missed_cycles = static_cast<std::uint64_t>(missed_cycles_);
+  if (mode_.fault != Fault::kNone) record.fault = static_cast<std::uint64_t>(mode_.fault);
 }
 
 DriveGoal ControlCycle::driveGoal() const noexcept {

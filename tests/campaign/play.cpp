@@ -124,7 +124,7 @@ void Play::observe() {
   now_.has_cause = input.lines.emergency_stop || input.are_lines_lost || has_bus_fault || is_late ||
                    input.has_forbidden_call;
   now_.is_brake_open = cell_.cycle.lines().release_brake;
-  const CycleRecord& record = cell_.cycle.record();
+  const CycleRecord record = cell_.record();
   const int joints = stage_.scene.controller.chain.size();
   now_.command = Eigen::Map<const Eigen::VectorXd>(record.dq, joints);
   now_.force_error_N = std::abs(record.force_sensor_N - cell_.plant.world().trueForce_N());

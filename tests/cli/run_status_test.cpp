@@ -72,12 +72,12 @@ class RunStatusFile : public ::testing::Test {
 
 TEST_F(RunStatusFile, ShowsTheRunningDaemonUntilItEnds) {
   {
-    Telemetry telemetry(scene_, "");
+    Telemetry telemetry(scene_, "", *link_);
     reportMode(Mode::kRunning, Fault::kNone);
     cycle(true, 6.0);
     cycle(true, 4.5);
     link_->pulse.missed_cycles = 3;
-    telemetry.drain(*link_);
+    telemetry.drain();
     EXPECT_EQ(run(), kExitDone);
     for (const char* expected :
          {"scenario1_multi_space (null_task)", "\nrunning\n", "force    4.50 N, at most 6.00 N",
@@ -95,10 +95,10 @@ TEST_F(RunStatusFile, ShowsTheRunningDaemonUntilItEnds) {
 }
 
 TEST_F(RunStatusFile, NamesAFaultAndEndsSo) {
-  Telemetry telemetry(scene_, "");
+  Telemetry telemetry(scene_, "", *link_);
   reportMode(Mode::kFault, Fault::kEmergencyStop);
   cycle(false, 0.0);
-  telemetry.drain(*link_);
+  telemetry.drain();
   EXPECT_EQ(run(), kExitFault);
   EXPECT_NE(output_.find("fault: emergency_stop"), std::string::npos) << output_;
   EXPECT_EQ(output_.find("force"), std::string::npos) << "it has not moved:\n" << output_;
@@ -134,9 +134,9 @@ TEST_F(RunStatusFile, OtherFilesAreRefused) {
 }
 
 TEST_F(RunStatusFile, ANumberThatIsNoneIsShownAsSuch) {
-  Telemetry telemetry(scene_, "");
+  Telemetry telemetry(scene_, "", *link_);
   cycle(true, std::nan(""));
-  telemetry.drain(*link_);
+  telemetry.drain();
   EXPECT_EQ(run(), kExitDone);
   EXPECT_NE(output_.find("force    nan N"), std::string::npos) << output_;
 }
@@ -163,9 +163,9 @@ TEST_F(RunStatusFile, AFolderThatCannotBeWrittenEndsNothing) {
 TEST_F(RunStatusFile, TellsALogThatHasStoppedFromOneThatIsWritten) {
   Scene scene = test::shippedScene("scenario1_multi_space");
   const auto show = [&](const std::string& log_folder) {
-    Telemetry telemetry(scene, log_folder);
+    Telemetry telemetry(scene, log_folder, *link_);
     cycle(true, 1.0);
-    telemetry.drain(*link_);
+    telemetry.drain();
     EXPECT_EQ(run({"--json"}), kExitDone);
     const YAML::Node log = YAML::Load(output_)["log"];
     EXPECT_EQ(run(), kExitDone) << "the arm goes on";

@@ -11,6 +11,7 @@
 #include "support/child_process.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
+#include "tactus/daemon/run_status.h"
 #include "tactus/record/run_error.h"
 
 namespace tactus {
@@ -56,9 +57,9 @@ TEST_F(TelemetryLog, WhatWasDrainedSurvivesAKill) {
   const pid_t child = fork();
   if (child == 0)
     [&]() noexcept {
-      Telemetry telemetry(scene_, folder_);
+      Telemetry telemetry(scene_, folder_, *link_);
       cycle(7);
-      telemetry.drain(*link_);
+      telemetry.drain();
       raise(SIGKILL);
     }();
   int status = 0;
@@ -73,16 +74,16 @@ TEST_F(TelemetryLog, AFullDiskStopsTheLogAndNothingElse) {
     if (!std::freopen(path("stderr").c_str(), "w", stderr)) return false;
     std::setvbuf(stderr, nullptr, _IONBF, 0);
     signal(SIGXFSZ, SIG_IGN);
-    Telemetry telemetry(scene_, folder_);
+    Telemetry telemetry(scene_, folder_, *link_);
     test::setLimit(RLIMIT_FSIZE, 1 << 20);
     for (int i = 0; i < kRounds; ++i) {
       cycle(kCyclesARound);
-      telemetry.drain(*link_);
+      telemetry.drain();
     }
     link_->reports.push({});  // which is shown at once
-    telemetry.drain(*link_);
+    telemetry.drain();
     std::filesystem::rename(path(kStatusName), path("last_status"));
-    telemetry.finish({}, {});
+    telemetry.finish({});
     return true;
   });
   EXPECT_TRUE(has_ended);
@@ -106,12 +107,12 @@ TEST_F(TelemetryLog, AFullDiskStopsTheLogAndNothingElse) {
 }
 
 TEST_F(TelemetryLog, ASummaryThatCannotBeWrittenIsSaidWithTheLogComplete) {
-  Telemetry telemetry(scene_, folder_);
+  Telemetry telemetry(scene_, folder_, *link_);
   cycle(3);
-  telemetry.drain(*link_);
+  telemetry.drain();
   std::filesystem::create_directories(path("summary.json/in_the_way"));
   try {
-    telemetry.finish({}, {});
+    telemetry.finish({});
     ADD_FAILURE();
   } catch (const RunError& error) {
     EXPECT_NE(std::string(error.what()).find(path("summary.json")), std::string::npos);
@@ -122,10 +123,10 @@ TEST_F(TelemetryLog, ASummaryThatCannotBeWrittenIsSaidWithTheLogComplete) {
 TEST_F(TelemetryLog, HalfASummaryIsNone) {
   const bool has_failed = test::holdsInChild([this] {
     signal(SIGXFSZ, SIG_IGN);
-    Telemetry telemetry(scene_, folder_);
+    Telemetry telemetry(scene_, folder_, *link_);
     test::setLimit(RLIMIT_FSIZE, 100);
     try {
-      telemetry.finish({}, {});
+      telemetry.finish({});
     } catch (const RunError&) {
       return true;
     }
@@ -136,10 +137,10 @@ TEST_F(TelemetryLog, HalfASummaryIsNone) {
 }
 
 TEST_F(TelemetryLog, OneThatWasWrittenToTheEndIsComplete) {
-  Telemetry telemetry(scene_, folder_);
+  Telemetry telemetry(scene_, folder_, *link_);
   cycle(3);
-  telemetry.drain(*link_);
-  telemetry.finish({}, {});
+  telemetry.drain();
+  telemetry.finish({});
   const YAML::Node log = YAML::Load(content("summary.json"))["log"];
   EXPECT_EQ(log["state"].as<std::string>(), "complete");
   EXPECT_EQ(log["files"].as<int>(), 1);

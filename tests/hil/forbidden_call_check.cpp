@@ -49,7 +49,7 @@ bool endsAtRest(const char* path) {
   SystemCallFilter filter(kLoopSystemCalls);
   LoopLink link;
   HardwareLoop loop(scene, 0, filter, link);
-  Telemetry telemetry(scene, "");
+  Telemetry telemetry(scene, "", link);
   lockMemory(kHeapBytes);
   Offender offender;
   std::atomic<bool> has_ended{false};
@@ -65,10 +65,10 @@ bool endsAtRest(const char* path) {
   thread.start();
   while (!has_ended) {
     usleep(10'000);
-    telemetry.drain(link);
+    telemetry.drain();
   }
   thread.join();
-  telemetry.drain(link);
+  telemetry.drain();
   const ForbiddenCalls calls = filter.forbiddenCalls();
   const timespec time = offender.time();
   std::printf("(%lld.%09ld) %u forbidden calls, first: %s\n", static_cast<long long>(time.tv_sec),

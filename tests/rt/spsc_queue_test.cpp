@@ -69,6 +69,31 @@ TEST(SpscQueue, behavesAsABoundedDequeUnderAnyOrderOfCalls) {
   }
 }
 
+TEST(SpscQueue, showsNothingBeforeItIsCommitted) {
+  SpscQueue<int> queue(2);
+  int* const place = queue.reserve();
+  ASSERT_NE(place, nullptr);
+  *place = 7;
+  EXPECT_EQ(queue.front(), nullptr);
+  EXPECT_EQ(queue.reserve(), place) << "until then it is the same place";
+  queue.commit();
+  ASSERT_EQ(queue.front(), place) << "no copy was made";
+  EXPECT_EQ(*queue.front(), 7);
+}
+
+TEST(SpscQueue, keepsAnElementUntilItIsReleased) {
+  SpscQueue<int> queue(2);
+  queue.push(1);
+  queue.push(2);
+  EXPECT_EQ(*queue.front(), 1);
+  EXPECT_EQ(*queue.front(), 1);
+  EXPECT_EQ(queue.reserve(), nullptr) << "its place is not free yet";
+  EXPECT_EQ(queue.dropped(), 1u);
+  queue.release();
+  EXPECT_EQ(*queue.front(), 2);
+  EXPECT_NE(queue.reserve(), nullptr);
+}
+
 /// Large enough to be seen torn.
 struct Record {
   std::array<std::uint64_t, 13> words;
@@ -99,6 +124,29 @@ TEST(SpscQueue, keepsOrderAndWholeRecordsBetweenTwoThreads) {
     EXPECT_EQ(wrong, 0u) << "capacity " << capacity;
     EXPECT_FALSE(queue.pop(record));
   }
+}
+
+TEST(SpscQueue, handsOverWholeRecordsThatWereFilledInPlace) {
+  constexpr std::uint64_t kSent = 200'000;
+  SpscQueue<Record> queue(4);
+  std::thread producer([&] {
+    for (std::uint64_t number = 0; number < kSent; ++number) {
+      Record* place = nullptr;
+      while (!(place = queue.reserve())) std::this_thread::yield();
+      for (std::size_t i = 0; i < place->words.size(); ++i) place->words[i] = number * 31 + i;
+      queue.commit();
+    }
+  });
+  std::uint64_t wrong = 0;
+  for (std::uint64_t number = 0; number < kSent; ++number) {
+    const Record* record = nullptr;
+    while (!(record = queue.front())) std::this_thread::yield();
+    wrong += record->words != recordOf(number).words;
+    queue.release();
+  }
+  producer.join();
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_EQ(queue.front(), nullptr);
 }
 
 TEST(SpscQueue, losesExactlyWhatItCountedAsDropped) {

@@ -145,9 +145,9 @@ TEST(ControlCycleHold, KeepsTheTasksClockAndGoesOnWhereItWas) {
   for (int i = 0; i < 3000; ++i) cell.step();
   cell.input.lines.enable = false;
   for (int i = 0; i < 20; ++i) cell.step();
-  const CycleRecord held = cell.cycle.record();
+  const CycleRecord held = cell.record();
   for (int i = 0; i < 2000; ++i) cell.step();
-  const CycleRecord later = cell.cycle.record();
+  const CycleRecord later = cell.record();
   EXPECT_EQ(later.task_time_s, held.task_time_s);
   EXPECT_NEAR(later.t_s - held.t_s, 2.0, 1e-9);
   for (int i = 0; i < 9; ++i) {
@@ -158,7 +158,7 @@ TEST(ControlCycleHold, KeepsTheTasksClockAndGoesOnWhereItWas) {
   double fastest = 0.0;
   for (int i = 0; i < 3000; ++i) {
     cell.step();
-    for (int k = 0; k < 9; ++k) fastest = std::max(fastest, std::abs(cell.cycle.record().dq[k]));
+    for (int k = 0; k < 9; ++k) fastest = std::max(fastest, std::abs(cell.record().dq[k]));
   }
   EXPECT_EQ(cell.cycle.report().mode, Mode::kRunning);
   EXPECT_LT(fastest, 0.5) << "no jump to make up for the time at rest";
@@ -173,7 +173,7 @@ std::vector<CycleRecord> eventfulRun(const Scene& scene) {
     cell.input.missed_cycles = i == 4000 || i == 6000 ? 3 : 0;
     cell.input.stop_requested = i > 8000;
     cell.step();
-    if (cell.cycle.isRecorded()) records.push_back(cell.cycle.record());
+    if (cell.cycle.isRecorded()) records.push_back(cell.record());
   }
   EXPECT_TRUE(cell.cycle.isFinished());
   return records;
@@ -201,7 +201,7 @@ std::vector<CycleRecord> restartedRun(const Scene& scene) {
     cell.input.lines.emergency_stop = i >= 4000 && i < 4100;
     cell.input.lines.enable = i < 4000 || i > 4500;
     cell.step();
-    if (cell.cycle.isRecorded()) records.push_back(cell.cycle.record());
+    if (cell.cycle.isRecorded()) records.push_back(cell.record());
   }
   EXPECT_EQ(cell.cycle.report().mode, Mode::kRunning);
   return records;
@@ -266,7 +266,7 @@ TEST(ControlCycleMissed, TheDrivesAreWhereTheControllerThinksTheyAre) {
     cell.input.missed_cycles = 0;
     ASSERT_EQ(cell.cycle.report().mode, Mode::kRunning) << faultName(cell.cycle.report().fault);
   }
-  const CycleRecord& record = cell.cycle.record();
+  const CycleRecord record = cell.record();
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(record.q[i], record.q_measured[i], 0.002) << i;
 }
 
@@ -316,7 +316,7 @@ TEST(ControlCycleHostile, RandomFramesNeverLeadBeyondTheLimits) {
       }
       cell.step();
       const JointVector& limit = scene.controller.limits.max_velocity;
-      for (int k = 0; k < 9; ++k) ASSERT_LE(std::abs(cell.cycle.record().dq[k]), limit[k]);
+      for (int k = 0; k < 9; ++k) ASSERT_LE(std::abs(cell.record().dq[k]), limit[k]);
       for (int bus = 0; bus < 3; ++bus) {
         for (const CanFrame& frame : cell.cycle.outbox(bus)) {
           if (frame.id <= 0x200 || frame.id >= 0x280) continue;

@@ -21,7 +21,7 @@ VirtualRobotCell runningArm() {
 ModeReport firstFault(VirtualRobotCell& cell) {
   for (int i = 0; i < 100 && cell.cycle.report().fault == Fault::kNone; ++i) cell.step();
   const ModeReport report = cell.cycle.report();
-  EXPECT_EQ(report.time_s, cell.cycle.record().t_s);
+  EXPECT_EQ(report.time_s, cell.record().t_s);
   for (int i = 0; i < 50; ++i) cell.step();
   EXPECT_EQ(cell.cycle.report().time_s, report.time_s) << "it stays that of the fault";
   EXPECT_EQ(cell.cycle.report().detail.value, report.detail.value);

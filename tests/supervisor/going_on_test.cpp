@@ -46,7 +46,7 @@ double peakOnGoingOn(VirtualRobotCell& cell) {
   double fastest = 0.0;
   for (int i = 0; i < 3000; ++i) {
     cell.step();
-    for (int k = 0; k < 9; ++k) fastest = std::max(fastest, std::abs(cell.cycle.record().dq[k]));
+    for (int k = 0; k < 9; ++k) fastest = std::max(fastest, std::abs(cell.record().dq[k]));
   }
   EXPECT_EQ(cell.cycle.report().mode, Mode::kRunning);
   return fastest;

@@ -28,7 +28,7 @@ RunFigures runOnBuses(Scene scene, int phase, int cycles) {
   RunSummary summary(scene.controller, 0);
   EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000)) << faultName(cell.cycle.report().fault);
   for (int i = 0; i < cycles; ++i) {
-    CycleRecord record = cell.cycle.record();
+    CycleRecord record = cell.record();
     fillToolError(scene.controller, record);
     summary.add(record);
     EXPECT_EQ(cell.cycle.report().mode, Mode::kRunning)

@@ -57,6 +57,13 @@ class VirtualRobotCell {
     return cycle.report().mode == mode;
   }
 
+  /// Of the last cycle.
+  CycleRecord record() const {
+    CycleRecord record;
+    cycle.fill(record);
+    return record;
+  }
+
   /// Largest velocity that the daemon sends to any drive in this cycle, counts/s.
   int largestSetpoint() const {
     int largest = 0;

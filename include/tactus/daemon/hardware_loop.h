@@ -58,7 +58,6 @@ class HardwareLoop {
   ControlCycle cycle_;
   CycleInput input_;
   bool are_lines_written_ = true;
-  LoopRecord record_;
   ModeReport reported_;
   long long cycles_ = 0;
   long long missed_cycles_ = 0;

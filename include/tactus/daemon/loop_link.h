@@ -11,7 +11,7 @@ namespace tactus {
 
 /// A cycle as the loop hands it on.
 struct LoopRecord {
-  CycleRecord cycle;
+  CycleRecord cycle;          ///< tool_error_m is the telemetry's to fill in
   bool is_in_motion = false;  ///< false: before the arm first moved; only the times count
 };
 

@@ -22,30 +22,51 @@ class SpscQueue {
   explicit SpscQueue(std::size_t capacity)
       : elements_(std::make_unique<T[]>(checked(capacity))), mask_(capacity - 1) {}
 
-  /// By the producer. False: full, and the element is dropped.
-  bool push(const T& element) noexcept {
+  /// By the producer: the place of the next element, to be filled and handed over by commit(); it
+  /// holds an older one. nullptr: full, and the element is dropped.
+  T* reserve() noexcept {
     const std::size_t tail = producer_.own.load(std::memory_order_relaxed);
     if (tail - producer_.seen > mask_) {
       producer_.seen = consumer_.own.load(std::memory_order_acquire);
       if (tail - producer_.seen > mask_) {
         dropped_.store(dropped_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-        return false;
+        return nullptr;
       }
     }
-    elements_[tail & mask_] = element;
-    producer_.own.store(tail + 1, std::memory_order_release);
+    return &elements_[tail & mask_];
+  }
+  void commit() noexcept {
+    producer_.own.store(producer_.own.load(std::memory_order_relaxed) + 1,
+                        std::memory_order_release);
+  }
+  /// Both at once, of a copy. False: dropped.
+  bool push(const T& element) noexcept {
+    T* const place = reserve();
+    if (!place) return false;
+    *place = element;
+    commit();
     return true;
   }
 
-  /// By the consumer. False: empty, and the element is left as it was.
-  bool pop(T& element) noexcept {
+  /// By the consumer: the oldest element, its own until release(). nullptr: empty.
+  T* front() noexcept {
     const std::size_t head = consumer_.own.load(std::memory_order_relaxed);
     if (head == consumer_.seen) {
       consumer_.seen = producer_.own.load(std::memory_order_acquire);
-      if (head == consumer_.seen) return false;
+      if (head == consumer_.seen) return nullptr;
     }
-    element = elements_[head & mask_];
-    consumer_.own.store(head + 1, std::memory_order_release);
+    return &elements_[head & mask_];
+  }
+  void release() noexcept {
+    consumer_.own.store(consumer_.own.load(std::memory_order_relaxed) + 1,
+                        std::memory_order_release);
+  }
+  /// Both at once, into a copy. False: empty, and the element is left as it was.
+  bool pop(T& element) noexcept {
+    const T* const place = front();
+    if (!place) return false;
+    element = *place;
+    release();
     return true;
   }
 

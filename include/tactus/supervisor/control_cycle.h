@@ -49,8 +49,8 @@ class ControlCycle {
   bool isFinished() const noexcept { return mode_.mode == Mode::kOff; }
   /// From the first cycle of motion on, every cycle is recorded.
   bool isRecorded() const noexcept { return is_started_; }
-  /// Of this cycle; the times of its phases are the caller's to fill in.
-  const CycleRecord& record() const noexcept { return record_; }
+  /// With all of this cycle but the times of its phases, which are the caller's to know.
+  void fill(CycleRecord& record) const noexcept;
   /// Cycles in which the task went on.
   long long taskCycles() const noexcept { return task_cycles_; }
 
@@ -70,6 +70,8 @@ class ControlCycle {
   void repeatRefusedTare() noexcept;
   void noteCulprit() noexcept;
   void control(const CycleInput& input, Mode before) noexcept;
+  double time_s() const noexcept { return static_cast<double>(cycles_) * period_s_; }
+  double taskTime_s() const noexcept { return static_cast<double>(task_cycles_) * period_s_; }
   DriveGoal driveGoal() const noexcept;
   void updateBrakes() noexcept;
 
@@ -100,9 +102,9 @@ class ControlCycle {
   PreparedCycle prepared_;
   RobotInput input_;
   ControllerOutput output_;
-  CycleRecord record_;
   bool is_started_ = false;  ///< the controller has a state
   bool is_first_ = true;
+  int missed_cycles_ = 0;  ///< skipped just before this one
   bool heartbeat_ = false;
   long long cycles_ = 0;       ///< since the first cycle of motion, missed ones included
   long long task_cycles_ = 0;  ///< of these, those in which the task's clock ran

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "tactus/daemon/record_sink.h"
+#include "tactus/daemon/service_notify.h"
+
+namespace tactus {
+
+/// A line on standard error, which is the journal's, and a word to the service manager for each
+/// change of mode or fault.
+class JournalSink final : public RecordSink {
+ public:
+  void onMode(const ModeReport& report, const std::string& description) override;
+
+ private:
+  ServiceNotify service_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,14 @@
+#include "tactus/daemon/journal_sink.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace tactus {
+
+void JournalSink::onMode(const ModeReport& report, const std::string& description) {
+  service_.onMode(report.mode, description);
+  std::fputs(fmt::format("tactusd: {}\n", description).c_str(), stderr);
+}
+
+}  // namespace tactus

@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/supervisor/control_cycle.h"
+
+/// What the cycle finds amiss in its own input, of whom that speaks, and by which value.
+namespace tactus {
+
+void ControlCycle::noteCulprit() noexcept {
+  report_ = {};
+  report_.detail = judged_.detail;
+  report_.joint = judged_.joint;
+  report_.bus = judged_.bus;
+  if (judged_.joint < 0) return;
+  report_.drive = robot_.drive(judged_.joint);
+  report_.q_measured = input_.q_measured[judged_.joint];
+  report_.q_expected = places_.commanded()[judged_.joint];
+}
+
+Fault ControlCycle::judge(const CycleInput& input) noexcept {
+  judged_ = {};
+  const auto found = [this](Fault fault) { return (judged_.fault = fault) != Fault::kNone; };
+  if (input.lines.emergency_stop && found(Fault::kEmergencyStop)) return judged_.fault;
+  if (input.are_lines_lost && found(Fault::kGpioLost)) return judged_.fault;
+  if (found(judgeBuses(input)) || found(judgeDrives())) return judged_.fault;
+  if (input.has_forbidden_call && found(Fault::kForbiddenSystemCall)) return judged_.fault;
+  if (mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_) {
+    judged_.detail = {static_cast<double>(input.late_in_a_row),
+                      static_cast<double>(max_late_cycles_), "cycles"};
+    return judged_.fault = Fault::kOverrun;
+  }
+  if (found(judgeTactile()) || found(judgeController())) return judged_.fault;
+  return Fault::kNone;
+}
+
+/// Of the last cycle. At rest nothing starts on a reading that would stop it.
+Fault ControlCycle::judgeController() noexcept {
+  if (mode_.mode == Mode::kBoot) return Fault::kNone;
+  const bool is_moving = mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding;
+  const Fault fault = is_moving ? output_.fault : state_.sample_fault;
+  if (fault == Fault::kNone) return fault;
+  judged_.detail = is_moving ? output_.fault_detail : state_.sample_detail;
+  judged_.joint = judged_.detail.joint;
+  return fault;
+}
+
+Fault ControlCycle::judgeBuses(const CycleInput& input) noexcept {
+  const auto fault = std::find_if(input.bus_faults.begin(), input.bus_faults.end(),
+                                  [](Fault candidate) { return candidate != Fault::kNone; });
+  if (fault == input.bus_faults.end()) return Fault::kNone;
+  judged_.bus = static_cast<int>(fault - input.bus_faults.begin());
+  return *fault;
+}
+
+/// A drive's fault stays until its set-up begins anew, so it says nothing about the present once
+/// it has been answered.
+Fault ControlCycle::judgeDrives() noexcept {
+  if (mode_.mode == Mode::kFault) return Fault::kNone;
+  const DrivesReport drives = robot_.drives();
+  judged_.joint = drives.joint;
+  const bool is_about_to_move = mode_.mode == Mode::kReady || mode_.mode == Mode::kEnabling ||
+                                (mode_.mode == Mode::kBoot && areConfigured());
+  if (drives.fault != Fault::kNone) judged_.detail = robot_.drive(drives.joint).detail;
+  if (drives.fault == Fault::kFollowingError) judged_.detail.unit = joint_units_[drives.joint];
+  if (drives.fault != Fault::kNone || !is_about_to_move) return drives.fault;
+  const int joint = judged_.joint = places_.outOfPlace(input_.q_measured);
+  if (joint < 0) return Fault::kNone;
+  judged_.detail = {std::abs(input_.q_measured[joint] - places_.commanded()[joint]),
+                    places_.tolerance(), joint_units_[joint]};
+  return Fault::kNotAtStart;
+}
+
+Fault ControlCycle::judgeTactile() noexcept {
+  TactileReceiver* const tactile = robot_.tactile();
+  if (!tactile) return Fault::kNone;
+  const bool is_boot = mode_.mode == Mode::kBoot;
+  if (!is_boot && hasFreshSample()) return tactile->fault();
+  if (is_boot && tactile->tareState() == TareState::kRefused) {
+    judged_.detail = tactile->tareRefusal();
+    return Fault::kTareRefused;
+  }
+  const bool is_late = mode_.cycles_in_mode >= mode_config_.boot_cycles;
+  if (is_boot && !(is_late && robot_.drives().are_configured)) return Fault::kNone;
+  judged_.detail = sampleAge();
+  return Fault::kTactileStale;
+}
+
+FaultDetail ControlCycle::sampleAge() const noexcept {
+  return {controller_.sampleAge_s(input_, period_s_, state_), max_sample_age_s_, "s"};
+}
+
+bool ControlCycle::hasFreshSample() const noexcept {
+  return input_.tactile.sequence > 0 &&
+         controller_.sampleAge_s(input_, period_s_, state_) <= max_sample_age_s_;
+}
+
+}  // namespace tactus

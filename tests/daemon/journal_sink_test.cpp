@@ -1,0 +1,27 @@
+#include "tactus/daemon/journal_sink.h"
+
+#include <gtest/gtest.h>
+
+#include "support/notify_socket.h"
+
+namespace tactus {
+namespace {
+
+TEST(JournalSink, SaysEachChangeOfModeInALineAndToTheManager) {
+  test::NotifySocket manager;
+  JournalSink sink;
+  ::testing::internal::CaptureStderr();
+  sink.add({});
+  sink.flush();
+  sink.onMode({}, "holding: tactile_invalid, at 3.214 s, 102.5 N, at most 100 N");
+  sink.onMode({}, "off");
+  sink.finish({});
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "tactusd: holding: tactile_invalid, at 3.214 s, 102.5 N, at most 100 N\n"
+            "tactusd: off\n");
+  EXPECT_EQ(manager.receive(),
+            "STATUS=holding: tactile_invalid, at 3.214 s, 102.5 N, at most 100 N");
+}
+
+}  // namespace
+}  // namespace tactus
