@@ -217,7 +217,7 @@ void ContactController::passJointSpaceTransition(const TaskKinematics& kinematic
 }
 
 TaskVector ContactController::pull(const TaskVector& error) const noexcept {
-  TaskVector pull = config_.pull_gain_per_s * error;
+  const TaskVector pull = config_.pull_gain_per_s * error;
   if (!hasReturnSpeed(task_)) return pull;
   TaskVector correction = task_.drift_gain_per_s * error;
   TaskVector both = correction + pull;

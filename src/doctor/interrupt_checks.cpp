@@ -40,13 +40,13 @@ std::set<int> interruptsOf(const fs::path& device) {
 /// Drivers that call their interrupt by another name are found by the device, or by the next one
 /// on the way to the processor that has any: a USB adapter by its host controller.
 std::set<int> interruptsOf(const MachineRoot& root, const std::string& interface) {
-  std::set<int> named = interruptsNamed(root, interface);
+  const std::set<int> named = interruptsNamed(root, interface);
   if (!named.empty()) return named;
   std::error_code none;
   const fs::path top = fs::canonical(root / "sys", none);
   fs::path device = fs::canonical(root / "sys/class/net" / interface / "device", none);
   for (; device.has_relative_path() && device != top; device = device.parent_path()) {
-    std::set<int> interrupts = interruptsOf(device);
+    const std::set<int> interrupts = interruptsOf(device);
     if (!interrupts.empty()) return interrupts;
   }
   return {};
@@ -122,7 +122,6 @@ std::vector<Finding> checkInterrupts(const MachineRoot& root, const std::string&
              fmt::format("{}: interrupt {} has no thread, it goes before all threads", interface,
                          listOf(interrupts))}};
   std::vector<Finding> findings;
-  findings.reserve(threads.size());
   for (const InterruptThread& thread : threads)
     findings.push_back(judge(interface, thread, loop_priority));
   return findings;
