@@ -28,8 +28,8 @@ CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
     : outboxes_(hardware.buses.size()),
       has_drives_(hardware.buses.size(), false),
       heartbeat_(heartbeatFrame(hardware.canopen.master_node_id, NmtState::kOperational)),
-      cycles_a_heartbeat_(
-          std::max(1, static_cast<int>(hardware.canopen.heartbeat_period_s / period_s + 0.5))),
+      cycles_a_heartbeat_(std::max(
+          1, static_cast<int>(std::lround(hardware.canopen.heartbeat_period_s / period_s)))),
       q_commanded_(JointVector::Zero(static_cast<int>(hardware.drives.size()))) {
   drives_.reserve(hardware.drives.size());
   for (const DriveConfig& drive : hardware.drives) {

@@ -158,13 +158,11 @@ bool CanSocket::take(std::size_t message, CanFrame& frame) noexcept {
   const mmsghdr& header = messages_->headers[message];
   const bool is_whole = header.msg_len == CAN_MTU && (header.msg_hdr.msg_flags & MSG_TRUNC) == 0;
   frame = fromKernel(messages_->frames[message]);
-  if (!is_whole) {
-    monitor_.onForeignFrame();
-  } else if ((header.msg_hdr.msg_flags & MSG_CONFIRM) != 0) {
+  if (is_whole && (header.msg_hdr.msg_flags & MSG_CONFIRM) != 0) {
     monitor_.onConfirmed(1);
-  } else if (frame.kind == FrameKind::kError) {
+  } else if (is_whole && frame.kind == FrameKind::kError) {
     monitor_.onErrorFrame(frame);
-  } else if (isExpected(frame)) {
+  } else if (is_whole && isExpected(frame)) {
     return true;
   } else {
     monitor_.onForeignFrame();
