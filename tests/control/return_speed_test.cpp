@@ -152,6 +152,7 @@ TEST(ReturnSpeed, RisesGentlyBesideThePath) {
   arm.config.task.trajectory = {};
   const Controller controller(arm.config);
   ControllerState state = controller.initialState();
+  controller.restart(state);
   controller.place(arm.config.q_start + arm.push, state);
   ControllerOutput output;
   PreparedCycle prepared;
