@@ -153,7 +153,6 @@ std::string logDefinitions(const LogDescription& description) {
   append(bytes, std::uint64_t{0});  // start time: virtual time begins at zero
   appendMessage(bytes, 'B', std::string(kFlagBitsSize, '\0'));
   appendFormat(bytes, description.shape);
-  appendGainsFormat(bytes);
   appendInfo(bytes, "sys_name", "tactus");
   for (const auto& [name, value] : description.infos) appendInfo(bytes, name, value);
   for (const RecordField& field : recordFields()) {
@@ -170,6 +169,7 @@ std::string logDefinitions(const LogDescription& description) {
     appendMultiInfo(bytes, kOverrideKeyKey, override_.key);
     appendMultiInfo(bytes, kOverrideValueKey, override_.value);
   }
+  appendGainsFormat(bytes);
   appendSubscription(bytes, kGainsId, kGainsTopic);
   appendSubscription(bytes, kCycleId, kCycleTopic);
   return bytes;

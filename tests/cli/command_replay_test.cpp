@@ -143,7 +143,7 @@ TEST_F(CommandReplay, RecordedGainsOutOfRangeAreRefusedInOneLine) {
   rewriteLog();
   EXPECT_EQ(refusal(), log_.path() +
                            ":1:1: controller.time_constant_s: -0.1 is out of range, in the gains "
-                           "recorded at 0.2 s, expected a number >= 0.001 and <= 100 in s");
+                           "recorded at 0.2 s, expected a number from 0.001 to 100 in s");
   records_[200].gains.force.time_constant_s = std::nan("");
   rewriteLog();
   EXPECT_NE(refusal().find("controller.time_constant_s: nan is out of range"), std::string::npos);

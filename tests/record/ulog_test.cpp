@@ -158,7 +158,7 @@ TEST(Ulog, WritesTheBytesOfTheSpecification) {
                        "char[6] sys_nametactus"s));
   const std::size_t data_size = 2 + 8 + 8 * (17 + 2 + 2 + 3 + 3 + 2 + 5 + 3 + 5 + 1);
   const std::size_t data_start = bytes.size() - data_size - 3;
-  EXPECT_TRUE(startsAt(data_start - 11, "\x08\0A\0\0\0cycle"s));
+  EXPECT_TRUE(startsAt(data_start - logBytesOfGains() - 11, "\x08\0A\0\0\0cycle"s));
   const std::string timestamp_250000_us = "\x90\xd0\x03\0\0\0\0\0"s;
   const std::string quarter_as_double = "\0\0\0\0\0\0\xd0\x3f"s;
   EXPECT_TRUE(startsAt(data_start,
@@ -192,8 +192,9 @@ TEST(Ulog, CutAnywhereItReadsUpToTheCut) {
   const auto records = randomRecords(3, 7);
   const RecordShape shape = smallDescription().shape;
   const std::string bytes = writeLog(smallDescription(), records);
-  const std::size_t message_size = (bytes.size() - writeLog(smallDescription(), {}).size()) / 3;
-  const std::size_t definitions_size = bytes.size() - 3 * message_size;
+  const std::size_t message_size = logBytesACycle(shape);
+  const std::size_t definitions_size = writeLog(smallDescription(), {}).size();
+  const std::size_t first = bytes.size() - 3 * message_size;  // before it come the gains
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const std::string cut = bytes.substr(0, size);
     if (size < definitions_size) {
@@ -201,15 +202,17 @@ TEST(Ulog, CutAnywhereItReadsUpToTheCut) {
       continue;
     }
     const auto log = readLog(cut);
-    EXPECT_EQ(log.records.size(), (size - definitions_size) / message_size) << size;
-    EXPECT_EQ(log.cut_off, (size - definitions_size) % message_size != 0) << size;
+    const bool is_whole =
+        size == definitions_size || (size >= first && (size - first) % message_size == 0);
+    EXPECT_EQ(log.records.size(), size < first ? 0 : (size - first) / message_size) << size;
+    EXPECT_EQ(log.cut_off, !is_whole) << size;
     expectPrefix(log.records, records, shape);
   }
 }
 
 TEST(Ulog, DoesNotTakeDamageForACut) {
   const std::string bytes = writeLog(smallDescription(), randomRecords(3, 8));
-  const std::size_t message_size = (bytes.size() - writeLog(smallDescription(), {}).size()) / 3;
+  const std::size_t message_size = logBytesACycle(smallDescription().shape);
   const std::size_t second = bytes.size() - 2 * message_size;
   for (const std::size_t at : {second, second + 1, second + 2}) {
     for (int value = 0; value < 256; ++value) {
