@@ -15,7 +15,7 @@ TEST(TunedCycle, ReplaysToTheBitFromItsLog) {
   const Scene scene = test::shippedScene("scenario1_multi_space");
   test::VirtualRobotCell cell(scene);
   ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
-  std::vector<CycleRecord> records{cell.cycle.record()};
+  std::vector<CycleRecord> records{cell.record()};
   Gains gains = scene.controller.gains;
   for (int i = 0; i < 8000; ++i) {
     if (i % 1000 == 500) {
@@ -26,7 +26,7 @@ TEST(TunedCycle, ReplaysToTheBitFromItsLog) {
     cell.cycle.tune(gains);
     cell.step();
     cell.cycle.prepare();
-    records.push_back(cell.cycle.record());
+    records.push_back(cell.record());
   }
   const auto log = test::readLog(test::writeLog(describeLog(scene), records));
   const Controller controller(scene.controller);
