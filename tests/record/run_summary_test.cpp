@@ -157,7 +157,7 @@ TEST(SummaryJson, HasTheKeysOfTheContractInTheirOrder) {
 TEST(SummaryJson, HoldsTheRotationErrorOfATaskWithOne) {
   RunFigures figures;
   figures.tcp_rotation_error = {0.25, 0.125, 0.5};
-  const YAML::Node json = YAML::Load(summaryJson(scene(), figures, 1.0));
+  const YAML::Node json = YAML::Load(jsonText(summaryJson(scene(), figures, 1.0)));
   EXPECT_EQ(json["tcp_rotation_error_max_rad"].as<double>(), 0.25);
   EXPECT_EQ(json["tcp_rotation_error_rms_rad"].as<double>(), 0.125);
   EXPECT_EQ(json["tcp_rotation_error_final_rad"].as<double>(), 0.5);
