@@ -106,8 +106,7 @@ Json stabilityJson(const StabilityReport& stability) {
   return {{"stiffest_N_per_m", stability.stiffest_N_per_m},
           {"stiffness_N_per_m", stability.stiffness_N_per_m},
           {"stiffness_ratio", stability.ratio()},
-          {"loops", loops},
-          {"warnings", stability.warnings}};
+          {"loops", loops}};
 }
 
 /// The scene first, then what it extends, the robot, the URDF.

@@ -126,6 +126,7 @@ Json rowJson(const FileFormat& format, const KeyRow& row) {
           {"choices", spec.choices},
           {"presence", presenceName(spec.presence)},
           {"default", textOrNull(spec.default_value)},
+          {"symbol", textOrNull(spec.symbol)},
           {"meaning", spec.doc}};
 }
 
