@@ -32,6 +32,13 @@ double retreat(const JointVector& a, const JointVector& velocity) noexcept {
   return sum;
 }
 
+bool isEqual(const JointVector& a, const JointVector& b) noexcept {
+  const auto joints = static_cast<int>(a.size());
+  for (int i = 0; i < joints; ++i)
+    if (a.data()[i] != b.data()[i]) return false;
+  return true;
+}
+
 bool usesOrientation(const TaskConfig& task) {
   return std::any_of(task.components.begin(), task.components.begin() + task.size,
                      [](int component) { return component >= 3; });
@@ -193,13 +200,13 @@ void Controller::coast(int missed_cycles, double period_s, ControllerState& stat
 void Controller::limit(const Motion& motion, double period_s, ControllerState& state,
                        ControllerOutput& output) const noexcept {
   if (!mayMove(state)) output.velocity.setZero();
-  const double wanted_m_per_s = contact_controller_ ? retreat(motion.a, output.velocity) : 0.0;
+  const JointVector wanted = output.velocity;
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
-  if (contact_controller_) {
-    const double cut_m_per_s = wanted_m_per_s - retreat(motion.a, output.velocity);
-    state.contact.cut_m_per_s = mayMove(state) && cut_m_per_s > 0.0 ? cut_m_per_s : 0.0;
-  }
+  state.contact.cut_m_per_s = 0.0;
+  if (contact_controller_ && mayMove(state) && !isEqual(wanted, output.velocity))
+    state.contact.cut_m_per_s =
+        std::max(0.0, retreat(motion.a, wanted) - retreat(motion.a, output.velocity));
   if (!finite) {
     state.fault = Fault::kCommandNotFinite;
     output.fault_detail = notFinite(motion);

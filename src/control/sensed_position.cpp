@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "tactus/math/filter.h"
-
 namespace tactus {
 namespace {
 
@@ -42,7 +40,7 @@ void SensedPosition::update(const JointVector& q_desired, bool is_new_sample, do
     state.has_started = true;
   }
   for (int i = 0; i < q_desired.size(); ++i) state.commanded[i] = q_desired[i] - state.origin[i];
-  state.lagged += lagShare(period_s, drive_lag_s_) * (state.commanded - state.lagged);
+  state.lagged += state.drive_lag.of(period_s, drive_lag_s_) * (state.commanded - state.lagged);
   ScaledVector filtered;
   filter(state.lagged, std::min(kMaxK, std::numbers::pi * filter_cutoff_hz_ * period_s), state,
          filtered);

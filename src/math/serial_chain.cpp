@@ -118,20 +118,29 @@ Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcep
 
 void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const Vector3& p_BaseTip,
                         const int* components, int component_count, TaskJacobian& J) noexcept {
-  J.setZero(component_count, chain.size());
+  J.resize(component_count, chain.size());
   double unselected[kMaxJoints];
   double* row[6];  // where each of the six components goes
   std::fill(row, row + 6, &unselected[0]);
-  for (int i = 0; i < component_count; ++i) row[components[i]] = &J(i, 0);
-  for (int i = 0; i <= chain.tip().joint; ++i) {
+  bool has_rotation = false;
+  for (int i = 0; i < component_count; ++i) {
+    row[components[i]] = &J(i, 0);
+    has_rotation = has_rotation || components[i] >= 3;
+  }
+  const int joints = chain.tip().joint + 1;
+  for (int i = 0; i < joints; ++i) {
     const Vector3& axis = pose.axis_Base[i];
     const bool revolute = chain.type(i) == JointType::kRevolute;
     const Vector3 linear = revolute ? axis.cross(p_BaseTip - pose.p_BaseJoint[i]) : axis;
-    for (int k = 0; k < 3; ++k) {
-      row[k][i] = linear[k];
-      row[3 + k][i] = revolute ? axis[k] : 0.0;
-    }
+    row[0][i] = linear[0];
+    row[1][i] = linear[1];
+    row[2][i] = linear[2];
   }
+  for (int i = 0; has_rotation && i < joints; ++i) {
+    const bool revolute = chain.type(i) == JointType::kRevolute;
+    for (int k = 0; k < 3; ++k) row[3 + k][i] = revolute ? pose.axis_Base[i][k] : 0.0;
+  }
+  if (joints < chain.size()) J.rightCols(chain.size() - joints).setZero();
 }
 
 void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,

@@ -67,8 +67,8 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
   list("smoother.R_BaseModule", X_BaseModule.R_AB.reshaped());
   list("smoother.p_BaseModule", X_BaseModule.p_AB);
   point("smoother.force_N", "smoother.position_m", "smoother.direction", smooth);
-  const auto& [has_started, origin, commanded, lagged, s0, s1, s2, sensed, sensed_before] =
-      position;
+  const auto& [has_started, origin, commanded, lagged, s0, s1, s2, sensed, sensed_before,
+               drive_lag] = position;
   list("sensed.origin", origin);
   list("sensed.commanded", commanded);
   list("sensed.lagged", lagged);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tactus/control/controller_config.h"
+#include "tactus/math/filter.h"
 
 namespace tactus {
 
@@ -15,6 +16,7 @@ struct SensedPositionState {
   ScaledVector s2 = ScaledVector::Zero();
   ScaledVector sensed = ScaledVector::Zero();         ///< q_f at the newest force sample
   ScaledVector sensed_before = ScaledVector::Zero();  ///< and at the one before it
+  KnownLagShare drive_lag;
 };
 
 /// Where the arm was, as the force sample tells it: the desired joints through the nominal lag of
