@@ -189,7 +189,7 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   thread.join();
   telemetry.drain();
   nameForbiddenCall(filter);
-  const ModeReport& end = loop->report();
+  const FaultReport& end = loop->report();
   telemetry.finish(
       {end, loopFigures(scene, *loop, link, thread, processTime_ns() - process_start_ns)});
   return end.fault;

@@ -73,6 +73,7 @@ static_assert(sizeof(Gains) == 8 * (4 + 3 + 9 + 5 + 4), "no padding: gains are c
 /// Of any of the above, to the bit.
 template <typename T>
 bool isSame(const T& a, const T& b) noexcept {
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): the bits are what is asked for
   return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 

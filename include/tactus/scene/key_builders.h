@@ -19,12 +19,13 @@ inline Range within(double lower, double upper) { return {lower, upper, false}; 
 
 /// A value of a std::optional may be absent; any other has its initialiser as default.
 template <class S, class T>
-Row<S> value(ValueType type, std::string key, std::string unit, std::string doc, T S::*member) {
+Row<S> value(ValueType type, const std::string& key, const std::string& unit,
+             const std::string& doc, T S::*member) {
   Row<S> row;
-  row.spec.key = std::move(key);
+  row.spec.key = key;
   row.spec.type = type;
-  row.spec.unit = std::move(unit);
-  row.spec.doc = std::move(doc);
+  row.spec.unit = unit;
+  row.spec.doc = doc;
   row.spec.presence = Content<T>::kIsOptional ? Presence::kOptional : Presence::kDefaulted;
   row.spec.target = [member](void* owner) -> Target {
     return &make(static_cast<S*>(owner)->*member);
@@ -33,39 +34,40 @@ Row<S> value(ValueType type, std::string key, std::string unit, std::string doc,
 }
 
 template <class S, class T>
-Row<S> number(std::string key, std::string unit, Range range, std::string doc, T S::*member) {
-  Row<S> row = value(ValueType::kNumber, std::move(key), std::move(unit), std::move(doc), member);
+Row<S> number(const std::string& key, const std::string& unit, Range range, const std::string& doc,
+              T S::*member) {
+  Row<S> row = value(ValueType::kNumber, key, unit, doc, member);
   row.spec.range = range;
   return row;
 }
 
 template <class S, class T>
-Row<S> integer(std::string key, Range range, std::string doc, T S::*member) {
-  Row<S> row = value(ValueType::kInteger, std::move(key), "", std::move(doc), member);
+Row<S> integer(const std::string& key, Range range, const std::string& doc, T S::*member) {
+  Row<S> row = value(ValueType::kInteger, key, "", doc, member);
   row.spec.range = range;
   return row;
 }
 
 template <class S>
-Row<S> boolean(std::string key, std::string doc, bool S::*member) {
-  return value(ValueType::kBoolean, std::move(key), "", std::move(doc), member);
+Row<S> boolean(const std::string& key, const std::string& doc, bool S::*member) {
+  return value(ValueType::kBoolean, key, "", doc, member);
 }
 
 /// Required, unless it is a std::optional.
 template <class S, class T>
-Row<S> text(std::string key, std::string doc, T S::*member) {
-  Row<S> row = value(ValueType::kText, std::move(key), "", std::move(doc), member);
+Row<S> text(const std::string& key, const std::string& doc, T S::*member) {
+  Row<S> row = value(ValueType::kText, key, "", doc, member);
   return Content<T>::kIsOptional ? row : required(row);
 }
 
 /// One of `words`, which last for ever.
 template <class S, class E, std::size_t kSize>
-Row<S> choice(std::string key, std::string doc, E S::*member,
+Row<S> choice(const std::string& key, const std::string& doc, E S::*member,
               const std::array<Word<E>, kSize>& words) {
   Row<S> row;
-  row.spec.key = std::move(key);
+  row.spec.key = key;
   row.spec.type = ValueType::kChoice;
-  row.spec.doc = std::move(doc);
+  row.spec.doc = doc;
   for (const Word<E>& word : words) row.spec.choices.push_back(word.text);
   row.spec.target = [member, &words](void* owner) -> Target {
     E& place = static_cast<S*>(owner)->*member;
@@ -78,10 +80,9 @@ Row<S> choice(std::string key, std::string doc, E S::*member,
 }
 
 template <class S>
-Row<S> vector3(std::string key, std::string unit, Range range, std::string doc,
+Row<S> vector3(const std::string& key, const std::string& unit, Range range, const std::string& doc,
                Vector3 S::*member) {
-  Row<S> row =
-      value(ValueType::kNumberList, std::move(key), std::move(unit), std::move(doc), member);
+  Row<S> row = value(ValueType::kNumberList, key, unit, doc, member);
   row.spec.range = range;
   row.spec.count = {3, 3};
   return row;
@@ -89,9 +90,9 @@ Row<S> vector3(std::string key, std::string unit, Range range, std::string doc,
 
 /// Required, unless it is a std::optional.
 template <class S, class T>
-Row<S> oneAJoint(std::string key, std::string unit, Range range, std::string doc, T S::*member) {
-  Row<S> row =
-      value(ValueType::kNumberList, std::move(key), std::move(unit), std::move(doc), member);
+Row<S> oneAJoint(const std::string& key, const std::string& unit, Range range,
+                 const std::string& doc, T S::*member) {
+  Row<S> row = value(ValueType::kNumberList, key, unit, doc, member);
   row.spec.range = range;
   row.spec.count = {2, kMaxJoints, true};
   return Content<T>::kIsOptional ? row : required(row);
@@ -99,11 +100,12 @@ Row<S> oneAJoint(std::string key, std::string unit, Range range, std::string doc
 
 /// Keys of the same struct S under a name of their own. `begin` is called if they are present.
 template <class S>
-Row<S> group(std::string key, std::string doc, Table<S> rows, void (*begin)(S&) = nullptr) {
+Row<S> group(const std::string& key, const std::string& doc, Table<S> rows,
+             void (*begin)(S&) = nullptr) {
   Row<S> row;
-  row.spec.key = std::move(key);
+  row.spec.key = key;
   row.spec.type = ValueType::kSection;
-  row.spec.doc = std::move(doc);
+  row.spec.doc = doc;
   row.spec.presence = Presence::kDefaulted;
   row.spec.keys = specsOf(std::move(rows));
   row.spec.enter = [begin](void* owner) {
@@ -115,8 +117,9 @@ Row<S> group(std::string key, std::string doc, Table<S> rows, void (*begin)(S&) 
 
 /// A struct inside S. That of a std::optional may be absent; any other is the same as empty then.
 template <class S, class T>
-Row<S> section(std::string key, std::string doc, T S::*member, Table<ContentOf<T>> rows) {
-  Row<S> row = group<S>(std::move(key), std::move(doc), {});
+Row<S> section(const std::string& key, const std::string& doc, T S::*member,
+               Table<ContentOf<T>> rows) {
+  Row<S> row = group<S>(key, doc, {});
   row.spec.presence = Content<T>::kIsOptional ? Presence::kOptional : Presence::kDefaulted;
   row.spec.keys = specsOf(std::move(rows));
   row.spec.enter = [member](void* owner) -> void* {
@@ -127,9 +130,9 @@ Row<S> section(std::string key, std::string doc, T S::*member, Table<ContentOf<T
 
 /// An entry a section; absent, the list is empty.
 template <class S, class T>
-Row<S> sectionList(std::string key, Count count, std::string doc, std::vector<T> S::*member,
-                   Table<T> rows) {
-  Row<S> row = optional(group<S>(std::move(key), std::move(doc), {}));
+Row<S> sectionList(const std::string& key, Count count, const std::string& doc,
+                   std::vector<T> S::*member, Table<T> rows) {
+  Row<S> row = optional(group<S>(key, doc, {}));
   row.spec.type = ValueType::kSectionList;
   row.spec.count = count;
   row.spec.keys = specsOf(std::move(rows));

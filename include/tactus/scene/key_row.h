@@ -68,13 +68,13 @@ Row<S> optional(Row<S> row) {
   return row;
 }
 template <class S>
-Row<S> withSymbol(std::string symbol, Row<S> row) {
-  row.spec.symbol = std::move(symbol);
+Row<S> withSymbol(const std::string& symbol, Row<S> row) {
+  row.spec.symbol = symbol;
   return row;
 }
 template <class S>
-Row<S> onlyWith(Needs needs, Row<S> row) {
-  row.spec.needs = std::move(needs);
+Row<S> onlyWith(const Needs& needs, Row<S> row) {
+  row.spec.needs = needs;
   return row;
 }
 
