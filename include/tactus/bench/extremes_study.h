@@ -14,7 +14,7 @@ struct ExtremeRow {
 };
 
 /// Every case with every law, on all processors; the order is that of cases, then laws, and no
-/// result depends on the number of processors. Long cases are run with the laws of long_laws only.
+/// result depends on the number of processors.
 std::vector<ExtremeRow> runExtremes(const std::string& base, const std::vector<ExtremeCase>& cases,
                                     const std::vector<ExtremeLaw>& laws, double duration_share);
 
