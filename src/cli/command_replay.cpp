@@ -112,7 +112,8 @@ class LogReplay {
         replayer_(controller_, shape_.joints, scene_.period_s, first.has(kMissedCycles)),
         comparison_(shape_),
         set_gains_(setGains(options.settings)),
-        gains_(scene_.controller.gains) {
+        gains_(scene_.controller.gains),
+        used_(gains_) {
     refuseUnknown(options.logs, LogContinuity(scene_.period_s, first.has(kMissedCycles)));
     if (!options.output.empty()) csv_.emplace(options.output, shape_);
   }
@@ -149,6 +150,8 @@ class LogReplay {
       std::memcpy(reinterpret_cast<char*>(&recorded.gains) + offset,
                   reinterpret_cast<const char*>(&scene_.controller.gains) + offset, sizeof(double));
     }
+    if (!set_gains_.empty() && !isSame(recorded.gains, used_)) checkGains(path, scene_, recorded);
+    used_ = recorded.gains;
   }
 
   RecordShape shape_;
@@ -158,6 +161,7 @@ class LogReplay {
   ReplayComparison comparison_;
   std::vector<std::size_t> set_gains_;  ///< offsets
   Gains gains_;                         ///< of the cycle before, as recorded
+  Gains used_;                          ///< and with those of --set
   std::optional<ReplayCsv> csv_;
 };
 

@@ -163,7 +163,9 @@ const ContactPointState& ContactController::follow(const Gains& gains,
     }
     return contact;
   }
-  return hasReturnSpeed(gains.task) ? holdLost(gains.force, sensor, state) : sensor;
+  if (hasReturnSpeed(gains.task)) return holdLost(gains.force, sensor, state);
+  state.contact = sensor;  // for a cycle that is tuned to have one
+  return sensor;
 }
 
 ContactController::Contact ContactController::locate(

@@ -17,15 +17,15 @@ constexpr std::size_t kMostSamples = std::size_t{1} << 20;
 
 }  // namespace
 
-ContactList::ContactList(bool has_force_control, const ForceGains& gains,
-                         std::size_t expected_cycles)
-    : has_force_control_(has_force_control),
-      threshold_N_(gains.contact_threshold_N),
-      release_N_(gains.transition.release_force_N) {
+ContactList::ContactList(bool has_force_control, std::size_t expected_cycles)
+    : has_force_control_(has_force_control) {
   present_.samples.reserve(std::min(expected_cycles, kMostSamples));
 }
 
 void ContactList::add(const CycleRecord& record) {
+  threshold_N_ = record.gains.force.contact_threshold_N;
+  // A force at which a contact would begin ends none.
+  release_N_ = std::min(record.gains.force.transition.release_force_N, threshold_N_);
   if (present_.confirmed_cycles == 0 && !isTouch(record)) {
     if (present_.cycles > 0) clear();
     return;

@@ -49,8 +49,7 @@ void addTo(Json& json, const RunFigures& figures) {
 }  // namespace
 
 RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
-    : limits_(config.limits),
-      contacts_(config.force_control.has_value(), config.gains.force, expected_cycles) {
+    : limits_(config.limits), contacts_(config.force_control.has_value(), expected_cycles) {
   if (hasRotation(config.task)) figures_.tcp_rotation_error.emplace();
 }
 

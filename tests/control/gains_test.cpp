@@ -32,6 +32,7 @@ void forgetDerived(ControllerState& state) {
   contact.estimator.filter = {};
   contact.joint_space_transition.response = contact.joint_space_transition.fade = {};
   contact.approach.fade = {};
+  contact.approach.position.drive_lag = {};
   contact.approach.smoother.ringing = contact.approach.smoother.smoothing = {};
   contact.approach.estimator.filter = contact.approach.estimator.forgetting = {};
 }
@@ -55,6 +56,29 @@ TEST(Gains, ThatChangeLeaveNothingOfTheOldOnesBehind) {
       ASSERT_FALSE(HasFailure()) << "cycle " << i;
     }
   }
+}
+
+/// Below the threshold the law holds on to the contact that it lost.
+TEST(Gains, AReturnSpeedThatComesFindsTheLostContact) {
+  test::Random random(403);
+  const Controller controller(test::fullController(random, 7, Variant::kNullSpace));
+  ControllerState state = controller.initialState();
+  Gains gains;
+  ControllerOutput output;
+  for (int i = 0; i < 500; ++i) {
+    const double force_N = i < 480 ? 8.0 : 0.5;
+    const RobotInput input{state.q_desired, test::touchAt(0.2, force_N, 0.4, i + 1)};
+    controller.update(input, gains, 1e-3 * i, 1e-3, state, output);
+  }
+  const RobotInput input{state.q_desired, test::touchAt(0.2, 0.5, 0.4, 500)};
+  ControllerState with_speed = state;
+  ControllerOutput expected;
+  controller.update(input, gains, 0.5, 1e-3, state, expected);
+  gains.task.max_return_speed_m_per_s = 1e3;  // far from limiting anything
+  controller.update(input, gains, 0.5, 1e-3, with_speed, output);
+  EXPECT_GT(expected.contact.gamma, 0.5);
+  EXPECT_NEAR(output.contact.gamma, expected.contact.gamma, 1e-3);
+  EXPECT_NEAR(output.contact.u_n, expected.contact.u_n, 1e-3 * std::abs(expected.contact.u_n));
 }
 
 TEST(Gains, ThatChangeDoSoInTheSameCycle) {

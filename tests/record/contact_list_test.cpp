@@ -17,7 +17,7 @@ constexpr double kRelease_N = 0.3;
 
 /// Forces of consecutive cycles of 10 ms, starting at t = 0.
 std::vector<ContactSummary> contactsOf(const std::vector<double>& forces_N, bool force_control) {
-  ContactList list(force_control, ForceGains(), forces_N.size());
+  ContactList list(force_control, forces_N.size());
   CycleRecord record;
   for (std::size_t i = 0; i < forces_N.size(); ++i) {
     record.t_s = 0.01 * static_cast<double>(i);
@@ -86,7 +86,7 @@ std::vector<ContactSummary> noisyContacts(const std::vector<std::pair<int, doubl
                                           bool force_control, double noise_N, int seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> noise(0.0, noise_N);
-  ContactList list(force_control, ForceGains(), 0);
+  ContactList list(force_control, 0);
   CycleRecord record;
   for (const double force_N : sequence(stretches)) {
     record.force_sensor_N = std::hypot(force_N + noise(random), noise(random));
@@ -116,11 +116,10 @@ TEST(ContactList, NoiseNeitherKeepsAContactNorMakesOneNorEndsOne) {
 }
 
 TEST(ContactList, EndsAtTheForceOfTheScene) {
-  ForceGains gains;
   for (const auto& [release_N, count] : {std::pair{kRelease_N, 1u}, std::pair{0.75, 2u}}) {
-    gains.transition.release_force_N = release_N;
-    ContactList list(true, gains, 0);
+    ContactList list(true, 0);
     CycleRecord record;
+    record.gains.force.transition.release_force_N = release_N;
     for (const double force_N : sequence({{20, 3.0}, {20, 0.7}, {20, 3.0}})) {
       record.force_sensor_N = force_N;
       record.force_contact_N = std::max(0.0, force_N - kThreshold_N);
@@ -129,6 +128,20 @@ TEST(ContactList, EndsAtTheForceOfTheScene) {
     }
     EXPECT_EQ(list.contacts().size(), count) << release_N;
   }
+}
+
+/// An arm at rest between F_th and a larger F_rel touches: that is one contact.
+TEST(ContactList, IsOneWhereItRestsBelowTheReleaseForce) {
+  ContactList list(true, 0);
+  CycleRecord record;
+  record.gains.force.contact_threshold_N = 0.1;
+  for (const double force_N : sequence({{20, 3.0}, {200, 0.2}, {20, 0.0}})) {
+    record.force_sensor_N = force_N;
+    record.force_contact_N = std::max(0.0, force_N - 0.1);
+    list.add(record);
+    record.t_s += 0.01;
+  }
+  EXPECT_EQ(list.contacts().size(), 1u);
 }
 
 TEST(ContactList, TheBandIsTwoPercentOrFiveHundredthsOfANewton) {

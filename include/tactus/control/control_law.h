@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "tactus/control/controller_config.h"
 #include "tactus/math/contact_space.h"
@@ -9,7 +10,9 @@ namespace tactus {
 
 /// 1 / (W^1/2 limit) of each joint, for a_scaled u_n; zero beyond the robot's joints.
 struct NullSpeedLimits {
-  double max_speed_m_per_s = 0.0, max_speed_rad_per_s = 0.0;  ///< that this follows from
+  /// That this follows from; NaN: from none yet.
+  double max_speed_m_per_s = std::numeric_limits<double>::quiet_NaN();
+  double max_speed_rad_per_s = std::numeric_limits<double>::quiet_NaN();
   ScaledVector inverse = ScaledVector::Zero();
 };
 

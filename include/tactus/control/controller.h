@@ -92,8 +92,9 @@ class Controller {
   /// its progress.
   void coast(int missed_cycles, double period_s, ControllerState& state) const noexcept;
 
-  /// One cycle. gains: any, another one each cycle if need be; t_s: the task's time, which goes on
-  /// by period_s > 0 to the next cycle, or stands still while state.is_stopping.
+  /// One cycle. gains: within the ranges of their keys and fit for each other (findGainProblem() of
+  /// scene says so), others each cycle if need be; t_s: the task's time, which goes on by period_s
+  /// > 0 to the next cycle, or stands still while state.is_stopping.
   void update(const RobotInput& input, const Gains& gains, double t_s, double period_s,
               ControllerState& state, ControllerOutput& output) const noexcept;
 

@@ -4,7 +4,6 @@
 #include <deque>
 #include <vector>
 
-#include "tactus/control/gains.h"
 #include "tactus/supervisor/cycle_record.h"
 
 namespace tactus {
@@ -23,15 +22,15 @@ struct ContactSummary {
 
 /// Finds the contacts of a run. A contact starts when F_sen exceeds the contact threshold F_th;
 /// without force control, where nothing else says what a touch is, it started when F_sen last rose
-/// above 0.05 N. It ends when the mean of F_sen over 0.1 s is at most F_rel, which is above offset
-/// and noise of the sensor, and then end_s is the first cycle of these 0.1 s with at most F_rel; or
-/// with the last cycle. The threshold works one way only: an arm that comes to rest just below it
-/// is still touching. Memory is bounded: in a contact of more than 17 minutes at 1 kHz settling_s
-/// is known to 2e-6 of its length.
+/// above 0.05 N. It ends when the mean of F_sen over 0.1 s is at most F_rel (at most F_th), which
+/// is above offset and noise of the sensor, and then end_s is the first cycle of these 0.1 s with
+/// at most F_rel; or with the last cycle. The threshold works one way only: an arm that comes to
+/// rest just below it is still touching. Memory is bounded: in a contact of more than 17 minutes at
+/// 1 kHz settling_s is known to 2e-6 of its length.
 class ContactList {
  public:
-  /// `gains` has F_th and F_rel. `expected_cycles` is only used to allocate in advance.
-  ContactList(bool has_force_control, const ForceGains& gains, std::size_t expected_cycles);
+  /// `expected_cycles` is only used to allocate in advance.
+  ContactList(bool has_force_control, std::size_t expected_cycles);
 
   void add(const CycleRecord& record);
 
@@ -63,7 +62,7 @@ class ContactList {
   void clear();
 
   bool has_force_control_;
-  double threshold_N_, release_N_;
+  double threshold_N_ = 0.0, release_N_ = 0.0;  ///< of the newest record
   std::vector<ContactSummary> finished_;
   Present present_;
 };

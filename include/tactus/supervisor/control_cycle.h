@@ -32,7 +32,8 @@ class ControlCycle {
  public:
   ControlCycle(const ControllerConfig& controller, const HardwareConfig& hardware, double period_s);
 
-  /// What the next cycles are given; at first the config's.
+  /// What the next cycles are given, as Controller::update() wants them; at first the config's.
+  /// Before update(), or after fill().
   void tune(const Gains& gains) noexcept { gains_ = gains; }
 
   void receive(int bus, std::span<const CanFrame> frames) noexcept { robot_.receive(bus, frames); }
