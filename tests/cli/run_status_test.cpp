@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/command_run.h"
+#include "support/run_folder.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/cli/commands.h"
@@ -21,16 +22,7 @@ namespace {
 /// A daemon's telemetry with a folder for its status, and `tactus status` that looks there.
 class RunStatusFile : public ::testing::Test {
  protected:
-  RunStatusFile() : folder_(::testing::TempDir() + "tactus_status.XXXXXX") {
-    EXPECT_NE(mkdtemp(folder_.data()), nullptr);
-    setenv("RUNTIME_DIRECTORY", folder_.c_str(), 1);
-  }
-  ~RunStatusFile() override {
-    unsetenv("RUNTIME_DIRECTORY");
-    std::filesystem::remove_all(folder_);
-  }
-
-  std::string path() const { return folder_ + "/" + kStatusName; }
+  std::string path() const { return folder_.path() + "/" + kStatusName; }
 
   int run(std::vector<std::string> options = {}) {
     options.insert(options.begin(), "status");
@@ -65,7 +57,7 @@ class RunStatusFile : public ::testing::Test {
   }
 
   const Scene scene_ = test::shippedScene("scenario1_multi_space");
-  std::string folder_;
+  const test::RunFolder folder_;
   const std::unique_ptr<LoopLink> link_ = std::make_unique<LoopLink>();
   std::string output_;
 };
@@ -142,8 +134,8 @@ TEST_F(RunStatusFile, ANumberThatIsNoneIsShownAsSuch) {
 }
 
 TEST_F(RunStatusFile, AFolderThatCannotBeWrittenEndsNothing) {
-  const std::string elsewhere = folder_ + ".away";
-  std::filesystem::rename(folder_, elsewhere);
+  const std::string elsewhere = folder_.path() + ".away";
+  std::filesystem::rename(folder_.path(), elsewhere);
   StatusFile file;
   EXPECT_TRUE(file.isDue());
   const std::string description = "running";
@@ -155,7 +147,7 @@ TEST_F(RunStatusFile, AFolderThatCannotBeWrittenEndsNothing) {
   const std::string said = ::testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("tactusd: no status: "), std::string::npos) << said;
   EXPECT_EQ(said.find("no status", said.find("no status") + 1), std::string::npos) << said;
-  std::filesystem::rename(elsewhere, folder_);
+  std::filesystem::rename(elsewhere, folder_.path());
   file.write(status);
   EXPECT_EQ(run(), kExitDone) << "what hindered it has gone";
 }
@@ -173,13 +165,14 @@ TEST_F(RunStatusFile, TellsALogThatHasStoppedFromOneThatIsWritten) {
   };
   EXPECT_FALSE(show("").IsDefined());
   EXPECT_EQ(output_.find("\nlog "), std::string::npos) << output_;
-  EXPECT_EQ(show(folder_)["state"].as<std::string>(), "writing");
+  EXPECT_EQ(show(folder_.path())["state"].as<std::string>(), "writing");
   EXPECT_NE(output_.find("\nlog      writing; 1 file\n"), std::string::npos) << output_;
   scene.log.min_free_bytes = 1e15;
   ::testing::internal::CaptureStderr();
-  EXPECT_EQ(show(folder_)["state"].as<std::string>(), "stopped");
+  EXPECT_EQ(show(folder_.path())["state"].as<std::string>(), "stopped");
   ::testing::internal::GetCapturedStderr();
-  EXPECT_NE(output_.find("\nlog      stopped: " + folder_ + ": "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("\nlog      stopped: " + folder_.path() + ": "), std::string::npos)
+      << output_;
 }
 
 TEST_F(RunStatusFile, NoneWithoutAFolder) {

@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cstdio>
 
 #include "support/child_process.h"
+#include "support/run_folder.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/daemon/run_status.h"
@@ -20,21 +20,8 @@ namespace {
 /// A daemon's telemetry with a folder for log and summary, and one for the status.
 class TelemetryLog : public ::testing::Test {
  protected:
-  TelemetryLog() : folder_(::testing::TempDir() + "tactus_log.XXXXXX") {
-    EXPECT_NE(mkdtemp(folder_.data()), nullptr);
-    setenv("RUNTIME_DIRECTORY", folder_.c_str(), 1);
-  }
-  ~TelemetryLog() override {
-    unsetenv("RUNTIME_DIRECTORY");
-    std::filesystem::remove_all(folder_);
-  }
-
-  std::string path(const std::string& name) const { return folder_ + "/" + name; }
-
-  std::string content(const std::string& name) const {
-    std::ifstream in(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  std::string path(const std::string& name) const { return folder_.path() + "/" + name; }
+  std::string content(const std::string& name) const { return folder_.content(name); }
 
   /// As the loop does it, `cycles` times.
   void cycle(int cycles) {
@@ -48,7 +35,7 @@ class TelemetryLog : public ::testing::Test {
   }
 
   const Scene scene_ = test::shippedScene("scenario1_multi_space");
-  std::string folder_;
+  const test::RunFolder folder_;
   const std::unique_ptr<LoopLink> link_ = std::make_unique<LoopLink>();
   long long cycles_ = 0;
 };
@@ -57,7 +44,7 @@ TEST_F(TelemetryLog, WhatWasDrainedSurvivesAKill) {
   const pid_t child = fork();
   if (child == 0)
     [&]() noexcept {
-      Telemetry telemetry(scene_, folder_, *link_);
+      Telemetry telemetry(scene_, folder_.path(), *link_);
       cycle(7);
       telemetry.drain();
       raise(SIGKILL);
@@ -74,7 +61,7 @@ TEST_F(TelemetryLog, AFullDiskStopsTheLogAndNothingElse) {
     if (!std::freopen(path("stderr").c_str(), "w", stderr)) return false;
     std::setvbuf(stderr, nullptr, _IONBF, 0);
     signal(SIGXFSZ, SIG_IGN);
-    Telemetry telemetry(scene_, folder_, *link_);
+    Telemetry telemetry(scene_, folder_.path(), *link_);
     test::setLimit(RLIMIT_FSIZE, 1 << 20);
     for (int i = 0; i < kRounds; ++i) {
       cycle(kCyclesARound);
@@ -107,7 +94,7 @@ TEST_F(TelemetryLog, AFullDiskStopsTheLogAndNothingElse) {
 }
 
 TEST_F(TelemetryLog, ASummaryThatCannotBeWrittenIsSaidWithTheLogComplete) {
-  Telemetry telemetry(scene_, folder_, *link_);
+  Telemetry telemetry(scene_, folder_.path(), *link_);
   cycle(3);
   telemetry.drain();
   std::filesystem::create_directories(path("summary.json/in_the_way"));
@@ -123,7 +110,7 @@ TEST_F(TelemetryLog, ASummaryThatCannotBeWrittenIsSaidWithTheLogComplete) {
 TEST_F(TelemetryLog, HalfASummaryIsNone) {
   const bool has_failed = test::holdsInChild([this] {
     signal(SIGXFSZ, SIG_IGN);
-    Telemetry telemetry(scene_, folder_, *link_);
+    Telemetry telemetry(scene_, folder_.path(), *link_);
     test::setLimit(RLIMIT_FSIZE, 100);
     try {
       telemetry.finish({});
@@ -137,7 +124,7 @@ TEST_F(TelemetryLog, HalfASummaryIsNone) {
 }
 
 TEST_F(TelemetryLog, OneThatWasWrittenToTheEndIsComplete) {
-  Telemetry telemetry(scene_, folder_, *link_);
+  Telemetry telemetry(scene_, folder_.path(), *link_);
   cycle(3);
   telemetry.drain();
   telemetry.finish({});
