@@ -50,6 +50,10 @@ void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
   }
 }
 
+void CanRobot::coast(int missed_cycles) noexcept {
+  for (Drive& drive : drives_) drive.coast(missed_cycles);
+}
+
 void CanRobot::read(RobotInput& input) noexcept {
   input.q_measured.resize(static_cast<int>(drives_.size()));
   for (std::size_t i = 0; i < drives_.size(); ++i) {

@@ -103,6 +103,15 @@ void Drive::receiveEmergency(const CanFrame& frame) noexcept {
   if (is_new && emergency->code != 0) fail(Fault::kDriveFault, emergencyDetail());
 }
 
+void Drive::coast(int missed_cycles) noexcept {
+  const auto pass = [&](int& cycles) {
+    const long long passed = static_cast<long long>(cycles) + missed_cycles;
+    if (cycles > 0) cycles = static_cast<int>(std::min<long long>(passed, stop_deadline_cycles_));
+  };
+  pass(quick_stop_cycles_);
+  pass(ignored_cycles_);
+}
+
 void Drive::observe(double position) noexcept {
   if (phase_ == Phase::kStarting) awaitOperation();
   if (phase_ == Phase::kRestarting || phase_ == Phase::kUnconfigured) watchRestart();

@@ -243,7 +243,7 @@ void Controller::avoidJointLimits(const JointLimitAvoidanceGains& gains,
   if (!isSame(state.zones.gains, gains)) state.zones = joint_limit_avoidance_->zones(gains);
   const JointLimitCost cost = joint_limit_avoidance_->evaluate(state.zones, state.q_desired);
   motion.limit_nearness = cost.nearness;
-  motion.v_scaled = -cost.gradient;
+  motion.v_scaled = -state.return_share * cost.gradient;
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 

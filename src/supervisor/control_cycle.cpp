@@ -116,7 +116,9 @@ void ControlCycle::prepare() noexcept {
 
 /// The drives kept the last command, and the sensor's sample grew older.
 void ControlCycle::coast(int missed_cycles) noexcept {
-  if (missed_cycles > 0) controller_.coast(missed_cycles, period_s_, state_);
+  if (missed_cycles <= 0) return;
+  controller_.coast(missed_cycles, period_s_, state_);
+  robot_.coast(missed_cycles);
 }
 
 bool ControlCycle::areConfigured() const noexcept {
@@ -161,6 +163,7 @@ ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept
   mode.are_enabled = drives.are_enabled;
   mode.are_disabled = drives.are_disabled;
   mode.is_at_rest = output_.velocity.isZero(0.0);
+  mode.missed_cycles = std::max(0, input.missed_cycles);
   return mode;
 }
 
@@ -171,13 +174,20 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
     output_.q_desired = robot_.hasPositions() ? input_.q_measured : places_.commanded();
     return;
   }
-  if (!is_started_) state_ = controller_.initialState();  // as a replay begins
+  if (!is_started_) begin();
   missed_cycles_ = is_started_ ? input.missed_cycles : 0;
   cycles_ += is_started_ ? 1 + missed_cycles_ : 0;
   task_cycles_ += is_started_ && before == Mode::kRunning ? 1 + missed_cycles_ : 0;
   is_started_ = true;
   applyMode(controller_, mode_.mode, before, input_, state_);
   controller_.update(input_, gains_, taskTime_s(), period_s_, prepared_, state_, output_);
+}
+
+/// As a replay begins, which knows of no sample before. Of this one the age is remembered.
+void ControlCycle::begin() noexcept {
+  age_at_start_s_ = controller_.sampleAge_s(input_, period_s_, state_);
+  sequence_at_start_ = input_.tactile.sequence;
+  state_ = controller_.initialState();
 }
 
 void ControlCycle::fill(CycleRecord& record) const noexcept {

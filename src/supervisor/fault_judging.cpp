@@ -86,12 +86,13 @@ Fault ControlCycle::judgeTactile() noexcept {
 }
 
 FaultDetail ControlCycle::sampleAge() const noexcept {
-  return {controller_.sampleAge_s(input_, period_s_, state_), max_sample_age_s_, "s"};
+  const bool is_first = is_started_ && input_.tactile.sequence == sequence_at_start_;
+  const double before_s = is_first ? age_at_start_s_ : 0.0;
+  return {before_s + controller_.sampleAge_s(input_, period_s_, state_), max_sample_age_s_, "s"};
 }
 
 bool ControlCycle::hasFreshSample() const noexcept {
-  return input_.tactile.sequence > 0 &&
-         controller_.sampleAge_s(input_, period_s_, state_) <= max_sample_age_s_;
+  return input_.tactile.sequence > 0 && sampleAge().value <= max_sample_age_s_;
 }
 
 }  // namespace tactus

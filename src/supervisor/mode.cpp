@@ -135,7 +135,8 @@ bool isLegal(Mode from, Mode to) noexcept {
 
 void updateMode(const ModeConfig& config, const ModeInput& input, ModeState& state) noexcept {
   note(state, input.fault);
-  state.cycles_in_mode = std::min(state.cycles_in_mode + 1, kMaxCyclesInMode);
+  const long long cycles = 1LL + input.missed_cycles + state.cycles_in_mode;
+  state.cycles_in_mode = static_cast<int>(std::min<long long>(cycles, kMaxCyclesInMode));
   switch (state.mode) {
     case kBoot:
       return boot(config, input, state);

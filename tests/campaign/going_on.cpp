@@ -10,16 +10,26 @@ namespace tactus::campaign {
 namespace {
 
 constexpr double kMaxPeakMore = 0.25;  ///< than without a trouble, m/s or rad/s
+constexpr int kBefore_ms = 200;
 
-/// The peak where nothing went wrong: the same start, the line off from each stop to where the arm
-/// goes on, and the same forces, those between only if asked for.
-double undisturbedPeak(const Stage& stage, const Plan& plan, const std::vector<GoingOn>& stops,
+struct Peaks {
+  double before = 0.0;  ///< the last stop, just
+  double after = 0.0;   ///< in the time that is looked at
+};
+
+double speedOf(const Observation& now) {
+  return std::max(now.command.cwiseAbs().maxCoeff(), now.velocity.cwiseAbs().maxCoeff());
+}
+
+/// The peaks where nothing went wrong: the same start, the line off from each stop to where the arm
+/// goes on, and the same forces, those in the last stop only if asked for.
+Peaks undisturbedPeaks(const Stage& stage, const Plan& plan, const std::vector<GoingOn>& stops,
                        bool has_forces_between, long long& cycles) {
   const GoingOn& last = stops.back();
   Plan forces = plan;
   std::erase_if(forces.injections, [](const Injection& x) { return !x.kind->is_followed; });
   Play play(stage, forces);
-  double peak = 0.0;
+  Peaks peaks;
   while (play.now_ms() <= last.end_ms) {
     const int t_ms = play.now_ms() + 1;  // when this cycle has been
     const bool is_stopped = std::any_of(stops.begin(), stops.end(), [t_ms](const GoingOn& stop) {
@@ -27,14 +37,23 @@ double undisturbedPeak(const Stage& stage, const Plan& plan, const std::vector<G
     });
     CycleInput input;
     input.lines.enable = !is_stopped;
-    play.setForces(!is_stopped || has_forces_between);
+    const bool is_last = t_ms >= last.stop_ms && t_ms < last.return_ms;
+    play.setForces(!is_last || has_forces_between);
     play.step(input);
     ++cycles;
-    if (t_ms < last.return_ms) continue;
-    peak = std::max({peak, play.now().command.cwiseAbs().maxCoeff(),
-                     play.now().velocity.cwiseAbs().maxCoeff()});
+    const double speed = speedOf(play.now());
+    const bool is_before = t_ms < last.stop_ms && t_ms >= last.stop_ms - kBefore_ms;
+    if (is_before && !is_stopped) peaks.before = std::max(peaks.before, speed);
+    if (t_ms >= last.return_ms) peaks.after = std::max(peaks.after, speed);
   }
-  return peak;
+  return peaks;
+}
+
+/// What `one` may have come to, if the undisturbed run came to this.
+double allowedPeak(const GoingOn& one, const Peaks& undisturbed) {
+  const bool went_apart = one.before > undisturbed.before + kMaxPeakMore;
+  const double peak = went_apart ? std::max(one.before, undisturbed.after) : undisturbed.after;
+  return peak + kMaxPeakMore;
 }
 
 }  // namespace
@@ -46,11 +65,13 @@ void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& ju
     if (!judge.is_calm[i] || one.peak <= kMaxPeakMore) continue;
     const std::vector<GoingOn> stops(judge.all.begin(),
                                      judge.all.begin() + static_cast<long>(i) + 1);
-    double peak = undisturbedPeak(stage, plan, stops, false, cycles);
-    if (one.has_hand) peak = std::max(peak, undisturbedPeak(stage, plan, stops, true, cycles));
-    if (one.peak <= peak + kMaxPeakMore) continue;
+    double allowed = allowedPeak(one, undisturbedPeaks(stage, plan, stops, false, cycles));
+    if (one.has_hand)
+      allowed =
+          std::max(allowed, allowedPeak(one, undisturbedPeaks(stage, plan, stops, true, cycles)));
+    if (one.peak <= allowed) continue;
     found.push_back({"going on", "faster than undisturbed after a return to running",
-                     fmt::format("{:.2f}, undisturbed {:.2f}", one.peak, peak), one.return_ms});
+                     fmt::format("{:.2f}, allowed {:.2f}", one.peak, allowed), one.return_ms});
     return;
   }
 }
@@ -63,14 +84,17 @@ void GoingOnJudge::look(const Look& look) {
   if (has_ended) all.back().end_ms = look.before.t_ms;
   if (now.mode != Mode::kRunning && look.before.mode == Mode::kRunning) stop_ms = now.t_ms;
   if (look.entered(Mode::kRunning) && stop_ms >= 0) {
-    all.push_back({.stop_ms = stop_ms, .return_ms = now.t_ms});
+    const double before = newest.empty() ? 0.0 : *std::ranges::max_element(newest);
+    all.push_back({.stop_ms = stop_ms, .return_ms = now.t_ms, .before = before});
     is_calm.push_back(true);
+    newest.clear();
   }
+  if (now.mode == Mode::kRunning) newest.push_back(speedOf(now));
+  if (newest.size() > kBefore_ms) newest.pop_front();
   if (all.empty() || all.back().end_ms != 0) return;
   is_calm.back() = is_calm.back() && now.is_calm;
   all.back().has_hand = all.back().has_hand || now.has_hand;
-  all.back().peak = std::max(
-      {all.back().peak, now.command.cwiseAbs().maxCoeff(), now.velocity.cwiseAbs().maxCoeff()});
+  all.back().peak = std::max(all.back().peak, speedOf(now));
 }
 
 void GoingOnJudge::end(int now_ms) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <vector>
 
 #include "campaign/judges.h"
@@ -15,6 +16,7 @@ struct GoingOn {
   int return_ms = 0;      ///< and ran again
   int end_ms = 0;         ///< of what was looked at: 3 s, or the next stop
   double peak = 0.0;      ///< of commands and drives, m/s or rad/s
+  double before = 0.0;    ///< the same, in the last 0.2 s before the stop
   bool has_hand = false;  ///< that still leans on the arm, which gives way to it then
 };
 
@@ -23,14 +25,17 @@ struct GoingOnJudge {
   std::vector<GoingOn> all;
   std::vector<bool> is_calm;  ///< of each
   int stop_ms = -1;
+  std::deque<double> newest;  ///< of the last 0.2 s of running, m/s or rad/s
   void look(const Look& look);
   void end(int now_ms);  ///< of the run
   double peak() const;   ///< the largest while nothing was at work but hands
 };
 
-/// Complains of what was faster than in the same run without a trouble, in which nobody leans on an
-/// arm that is stopped; or, where a hand is there beyond the stop, that leans on it then, too. Adds
-/// the cycles that this takes.
+/// Complains of what was faster than in the same run without a trouble, in which nobody leans on
+/// the arm in the last stop; or, where a hand is there beyond the stop, that leans on it then, too.
+/// Two runs that went apart before the stop, as where an arm meets the band a little elsewhere,
+/// cannot be compared: there nothing may be faster than just before the stop. Adds the cycles that
+/// this takes.
 void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& judge,
                     std::vector<Violation>& found, long long& cycles);
 

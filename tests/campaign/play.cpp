@@ -159,6 +159,18 @@ void Play::observePlant() {
   now_.stale_setpoints = cell_.plant.counters().stale_setpoints_applied;
 }
 
+/// When it could first be seen: another trouble of the tactile module, that is over now, hid it. A
+/// sample that lost a frame is news when it is sent again whole.
+int Play::shownSince_ms(const Injection& x, int t_ms) const {
+  int since_ms = x.from_ms;
+  if (x.kind->where != InjectionKind::Where::kTactile) return since_ms;
+  for (const Injection& other : injections_) {
+    if (other.kind->where == x.kind->where && !other.isAtWork(t_ms) && other.from_ms <= t_ms)
+      since_ms = std::max(since_ms, other.until_ms);
+  }
+  return since_ms;
+}
+
 void Play::observeInjections() {
   const int t_ms = now_ms() - 1;  // when it was done
   now_.is_calm = now_.is_free = true;
@@ -180,7 +192,8 @@ void Play::observeInjections() {
     const bool is_tactile = x.kind->where == InjectionKind::Where::kTactile;
     const int silence_ms = injections_.size() < 2 ? 0 : is_tactile ? kStaleSample_ms : kSilent_ms;
     const int detected_ms = std::max(x.kind->detected_ms, silence_ms);
-    if (x.kind->detected_ms > 0 && t_ms - x.from_ms > detected_ms) now_.hidden_cause = x.kind->name;
+    if (x.kind->detected_ms > 0 && t_ms - shownSince_ms(x, t_ms) > detected_ms)
+      now_.hidden_cause = x.kind->name;
     if (x.kind == &push()) now_.pushed = std::max(now_.pushed, std::abs(x.offset));
   }
   now_.pushed_ms = now_.pushed > 1.05 * stage_.promise.start_tolerance ? now_.pushed_ms + 1 : 0;

@@ -33,6 +33,7 @@ class Play {
   void observe();
   void observeSetpoints();
   void observePlant();
+  int shownSince_ms(const Injection& x, int t_ms) const;
   void observeInjections();
 
   const Stage& stage_;

@@ -162,6 +162,25 @@ TEST(LyingDrive, ThatNeverSwitchesOffKeepsNoBrakeOpen) {
   }
 }
 
+/// The deadlines are of time: a loop that misses cycles meanwhile has fewer of them.
+TEST(LyingDrive, ThatNeverSwitchesOffIsCutOffInTimeThoughCyclesAreMissed) {
+  VirtualRobotCell cell(sceneWith({troubleOf(Kind::kIgnoreCommands, 0.1, 1e3, 1, 2)}, true));
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  step(cell, 200);
+  cell.input.are_lines_lost = true;
+  step(cell, 1);
+  ASSERT_EQ(cell.cycle.report().mode, Mode::kFault);
+  constexpr int kMissed = 4;  // each time, just before a cycle
+  cell.input.missed_cycles = kMissed;
+  for (int passed = 0; passed <= kDeadline; passed += kMissed + 1) {
+    cell.t_ns += kMissed * 1'000'000;
+    cell.step();
+  }
+  EXPECT_FALSE(cell.cycle.lines().release_brake);
+  step(cell, 40);
+  EXPECT_NE(cell.plant.drive(4).powerState(), PowerState::kOperationEnabled) << "cut off";
+}
+
 TEST(LyingDrive, ThatSaysItBootsIsResetAndDoesNotRunAgainstTheBrake) {
   for (const int joint : {1, 5}) {
     VirtualRobotCell cell(sceneWith(

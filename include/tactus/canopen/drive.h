@@ -75,6 +75,9 @@ class Drive {
   /// are counted and ignored.
   void receive(const CanFrame& frame) noexcept;
 
+  /// For cycles that were missed just before this one: the deadlines of a stop go on in them.
+  void coast(int missed_cycles) noexcept;
+
   /// Once a cycle, after all frames: judges what came, by what update() asked for last. position:
   /// where the drive is commanded to be at the start of this cycle, m or rad, for the following
   /// error.

@@ -35,7 +35,7 @@ struct ControllerState {
   bool is_stopping = false;     ///< set by the caller: ramp to rest and stay there
   double waited_s = 0.0;        ///< how far the reference is behind the task's time
   double progress = 1.0;        ///< of the reference in the last cycle: 1 on time, 0 at rest
-  double return_share = 1.0;    ///< of beta; grows from 0 after restart(), see return_speed.h
+  double return_share = 1.0;    ///< of beta and more; grows from 0 after restart()
   std::uint32_t sample_sequence = 0;
   double sample_age_s = 0.0;
   Fault sample_fault = Fault::kNone;  ///< of the newest sample

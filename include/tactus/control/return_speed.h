@@ -4,10 +4,11 @@
 
 namespace tactus {
 
-/// An arm that its drives had let go may stand beside its path where it goes on, and beta e at once
-/// would be a jump. So beta, and joint space's pull, grow linearly within this time: with beta =
-/// 5/s an error e makes at most 1.4 e /s, and not 5.
-inline constexpr double kReturnRise_s = 1.0;
+/// An arm that its drives had let go may stand beside its path where it goes on, or nearer to a
+/// joint limit, and beta e or the way out of the limit's zone at once would be a jump. So beta,
+/// joint space's pull and the joint limits' gradient grow linearly within this time: with beta =
+/// 5/s an error e makes at most 1.0 e /s, and not 5.
+inline constexpr double kReturnRise_s = 2.0;
 
 inline bool hasReturnSpeed(const TaskGains& gains) noexcept {
   return gains.max_return_speed_m_per_s < kNoLimit || gains.max_return_speed_rad_per_s < kNoLimit;

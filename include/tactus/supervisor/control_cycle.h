@@ -67,6 +67,7 @@ class ControlCycle {
   void rememberPlaces() noexcept;
   void coast(int missed_cycles) noexcept;
   bool hasFreshSample() const noexcept;
+  void begin() noexcept;
   void startTare() noexcept;
   void repeatRefusedTare() noexcept;
   void noteCulprit() noexcept;
@@ -101,6 +102,8 @@ class ControlCycle {
   ModeReport report_;
   ControllerState state_;
   PreparedCycle prepared_;
+  double age_at_start_s_ = 0.0;  ///< of the sample that the controller's state began with
+  std::uint32_t sequence_at_start_ = 0;
   RobotInput input_;
   ControllerOutput output_;
   bool is_started_ = false;  ///< the controller has a state

@@ -43,6 +43,7 @@ struct ModeInput {
   bool are_enabled = false;      ///< every drive follows setpoints
   bool are_disabled = true;      ///< no drive that can be reached has power
   bool is_at_rest = true;        ///< the commanded velocity is zero
+  int missed_cycles = 0;         ///< just before this one; time limits go on in them
 };
 
 /// Far beyond every time limit, and below where a count would overflow: an arm may run for months.
