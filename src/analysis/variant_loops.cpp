@@ -5,15 +5,16 @@ namespace {
 
 ContactLoop loopOf(const ControllerConfig& config, const PlantConfig& plant, double period_s) {
   const ForceGains& force = config.gains.force;
+  const SimulatedModuleConfig& module = plant.modules.front();
   return {.order = config.force_control->order,
           .time_constant_s = force.time_constant_s,
           .damping = force.damping,
           .period_s = period_s,
           .drive_lag_s = plant.drive_lag_s,
-          .filter_cutoff_hz = plant.module.filter_cutoff_hz,
-          .filter_rate_hz = plant.module.filter_rate_hz,
-          .sample_period_s = plant.module.sample_period_s,
-          .filters_at_samples = !plant.module.filtered};
+          .filter_cutoff_hz = module.filter_cutoff_hz,
+          .filter_rate_hz = module.filter_rate_hz,
+          .sample_period_s = module.channels.sample_period_s,
+          .filters_at_samples = !module.filtered};
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const Plan
       limit.law = LoopLaw::kApproachLimit;
       limit.order = 1;
       limit.model_drive_lag_s = config.drive_lag_s;
-      limit.model_filter_cutoff_hz = config.tactile_module->filter_cutoff_hz;
+      limit.model_filter_cutoff_hz = config.tactile_modules.front().filter_cutoff_hz;
       return {{"one space", one}, {"approach limit", limit}};
     }
   }

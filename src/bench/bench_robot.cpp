@@ -25,9 +25,9 @@ JointVector makeStart(int count) {
 }
 
 void addContact(int joints, ControllerConfig& config) {
-  config.tactile_module.emplace();
-  config.tactile_module->link.joint = joints / 2;
-  config.tactile_module->length_m = kLinkLength_m;
+  config.tactile_modules.emplace_back();
+  config.tactile_modules.front().link.joint = joints / 2;
+  config.tactile_modules.front().length_m = kLinkLength_m;
   config.force_control.emplace();
   config.force_control->variant = Variant::kNullTask;
   config.force_control->has_estimator = true;
@@ -58,9 +58,9 @@ BenchRobot makeBenchRobot(int joints, int task_components, int contacts) {
 RobotInput benchInput(const BenchRobot& robot, int cycle) {
   RobotInput input;
   input.q_measured = robot.config.q_start;
-  if (!robot.config.tactile_module) return input;
+  if (robot.config.tactile_modules.empty()) return input;
   const int sample = cycle / 4 + 1;
-  TactileSample& tactile = input.tactile;
+  TactileSample& tactile = input.tactile[0];
   tactile.force_y_N = 2.5 + 0.5 * std::sin(0.3 * sample);
   tactile.force_z_N = 1.0;
   const double x_m = 0.4 * kLinkLength_m;

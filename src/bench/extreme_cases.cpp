@@ -65,7 +65,7 @@ void makeArmRigid(Scene& scene) { scene.plant.robot_stiffness_N_per_m = kNoLimit
 
 void addBeside(const Beside& place, double stiffness_N_per_m, double swing_m, double frequency_hz,
                double vanishes_s, Scene& scene) {
-  const TactileModuleConfig& module = *scene.controller.tactile_module;
+  const TactileModuleConfig& module = scene.controller.tactile_modules.front();
   ChainPose pose;
   scene.controller.chain.computePose(scene.controller.q_start, pose);
   const Pose X = framePose(pose, module.link);
@@ -73,7 +73,7 @@ void addBeside(const Beside& place, double stiffness_N_per_m, double swing_m, do
   const Vector3 left = Vector3(-axis.y(), axis.x(), 0.0).normalized();
   const Vector3 away = place.side * left;
   const Vector3 point = X.p_AB + place.along_share * module.length_m * axis +
-                        (scene.plant.cover_radius_m + place.gap_m) * away;
+                        (scene.plant.modules[0].cover_radius_m + place.gap_m) * away;
   ObstacleConfig obstacle;
   obstacle.x_m = point.x();
   obstacle.y_m = point.y();

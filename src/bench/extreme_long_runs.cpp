@@ -13,7 +13,7 @@ void addSilences(std::vector<ExtremeCase>& cases) {
                    {obstaclesAre({bandText(60.0, ", vanishes_s: 12"),
                                   profileText(17000.0, ", vanishes_s: 12")}),
                     {"simulation.duration_s", "920"}},
-                   [](Scene& scene) { scene.plant.module.quantised = false; }});
+                   [](Scene& scene) { scene.plant.modules[0].quantised = false; }});
   ExtremeCase fades{"silence", "a reading that halves every second for 20 minutes"};
   setHold(1200.0, fades.overrides);
   fades.reading = [](double t_s, TactileSample& sample) {

@@ -113,16 +113,16 @@ void play(const Scene& scene, const ExtremeCase& extreme, ExtremeRun& run) {
   for (; run.cycles < cycles && !isOver(output); ++run.cycles) {
     const double t_s = static_cast<double>(run.cycles) * scene.period_s;
     robot.read(input);
-    if (extreme.reading) extreme.reading(t_s, input.tactile);
+    if (extreme.reading) extreme.reading(t_s, input.tactile[0]);
     const JointVector velocity_before = state.velocity_before;
     watch.beforeStep();
     controller.update(input, scene.controller.gains, t_s, scene.period_s, state, output);
     watch.afterStep(state, velocity_before, output);
     if (extreme.is_long) state_watch.add(run.cycles, state);
     run.peak_force_N = std::max(run.peak_force_N, robot.trueForce_N());
-    run.peak_reading_N = std::max(run.peak_reading_N, output.contact.force_sensor_N);
+    run.peak_reading_N = std::max(run.peak_reading_N, output.sensed[0].force_N);
     if (run.cycles >= rest_from) {
-      readings.add(output.contact.force_sensor_N);
+      readings.add(output.sensed[0].force_N);
       forces.add(robot.trueForce_N());
       final_speed = std::max(final_speed, output.velocity.cwiseAbs().maxCoeff());
     }
@@ -155,7 +155,7 @@ ExtremeRun runExtreme(const std::string& base, const ExtremeCase& extreme, const
       run.refused_by_check = keyOf(error);
     }
     play(scene, extreme, run);
-    run.outcome = outcomeOf(run, scene.plant.module.noise_N > 0.0);
+    run.outcome = outcomeOf(run, scene.plant.modules[0].noise_N > 0.0);
   } catch (const InputError& error) {
     run.refused_at_load = keyOf(error);
     run.outcome = "refused at load";

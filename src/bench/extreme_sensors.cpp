@@ -41,10 +41,10 @@ void addImperfections(std::vector<ExtremeCase>& cases) {
           {{"simulation.tactile_module.lost_share", fmt::format("{}", share)}});
     for (const double counts_per_N : {1000.0, 20.0, 2.0})
       add(fmt::format("steps of {:g} N", 1.0 / counts_per_N), {},
-          [=](Scene& scene) { scene.plant.module.counts_per_N = counts_per_N; });
+          [=](Scene& scene) { scene.plant.modules[0].channels.counts_per_N = counts_per_N; });
     for (const double period_s : {0.001, 0.004, 0.008, 0.020})
       add(fmt::format("a sample every {:g} ms", 1e3 * period_s), {},
-          [=](Scene& scene) { scene.plant.module.sample_period_s = period_s; });
+          [=](Scene& scene) { scene.plant.modules[0].channels.sample_period_s = period_s; });
   }
 }
 

@@ -16,8 +16,8 @@ class ProfileProbe {
  public:
   explicit ProfileProbe(const RunSetup& setup)
       : chain_(setup.controller.chain),
-        module_(*setup.controller.tactile_module),
-        radius_m_(setup.plant.cover_radius_m),
+        module_(setup.controller.tactile_modules.front()),
+        radius_m_(setup.plant.modules[0].cover_radius_m),
         obstacle_({setup.plant.obstacles.back().x_m,
                    setup.plant.obstacles.back().y_m,
                    1.0,
@@ -59,14 +59,14 @@ JudgedRun judgeRun(const RunSetup& setup) {
   for (long cycle = 0; cycle < cycles; ++cycle) {
     const double t_s = static_cast<double>(cycle) * setup.period_s;
     robot.read(input);
-    if (setup.reading) setup.reading(input.tactile);
+    if (setup.reading) setup.reading(input.tactile[0]);
     controller.update(input, setup.controller.gains, t_s, setup.period_s, state, output);
     const Vector3 goal = output.w_d.size() >= 3 ? Vector3(output.w_d.head<3>()) : Vector3::Zero();
     run.tcp_error_final_m = (goal - robot.toolPosition()).norm();
     robot.write(output.velocity);
-    run.peak_force_N = std::max(run.peak_force_N, output.contact.force_sensor_N);
+    run.peak_force_N = std::max(run.peak_force_N, output.sensed[0].force_N);
     if (cycle >= rest_from) {
-      last_readings.add(output.contact.force_sensor_N);
+      last_readings.add(output.sensed[0].force_N);
       last_forces.add(robot.trueForce_N());
     }
     if (run.touch_speed_m_per_s > 0.0) continue;
@@ -85,8 +85,8 @@ JudgedRun judgeRun(const RunSetup& setup) {
 
 double feedbackDelay_s(const PlantConfig& plant) {
   // A 3rd-order Butterworth filter delays slow signals by 2 / w_c.
-  return plant.drive_lag_s + 1.0 / (std::numbers::pi * plant.module.filter_cutoff_hz) +
-         0.5 * plant.module.sample_period_s;
+  return plant.drive_lag_s + 1.0 / (std::numbers::pi * plant.modules[0].filter_cutoff_hz) +
+         0.5 * plant.modules[0].channels.sample_period_s;
 }
 
 double contactStiffness(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m) {

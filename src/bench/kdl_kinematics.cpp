@@ -19,7 +19,8 @@ Pose fromKdl(const KDL::Frame& X) {
 }
 
 AttachedFrame linkOf(const BenchRobot& robot) {
-  return robot.config.tactile_module ? robot.config.tactile_module->link : robot.config.chain.tip();
+  const std::vector<TactileModuleConfig>& modules = robot.config.tactile_modules;
+  return modules.empty() ? robot.config.chain.tip() : modules.front().link;
 }
 
 /// Damps only singular values below the solver's 1e-5; without it, those of components that do not

@@ -40,8 +40,8 @@ RunSetup lawGridSetup(const RunSetup& base, const LawGridPoint& point, GridLaw l
   ForceControlConfig& force = *setup.controller.force_control;
   force.variant = law == GridLaw::kLimited ? Variant::kNullLimit : Variant::kNullTask;
   if (law == GridLaw::kAssumed) force.has_estimator = false;
-  setup.controller.tactile_module->max_force_N = kNoLimit;
-  setup.plant.module.quantised = false;  // counts have a range
+  setup.controller.tactile_modules.front().max_force_N = kNoLimit;
+  setup.plant.modules[0].quantised = false;  // counts have a range
   setup.plant.robot_stiffness_N_per_m = point.robot_stiffness_N_per_m;
   setup.plant.obstacles.back().stiffness_N_per_m = point.profile_N_per_m;
   setup.plant.obstacles.back().foam.clear();

@@ -13,12 +13,13 @@ constexpr double kFarAway_m = 10.0;
 
 /// Each component of the force as the module reads it.
 void addNoise(double sigma_N, RunSetup& setup) {
-  setup.plant.module.noise_N = sigma_N / setup.plant.module.calibration.row(0).norm();
+  setup.plant.modules[0].noise_N =
+      sigma_N / setup.plant.modules[0].channels.calibration.row(0).norm();
 }
 
 void sampleEvery(double period_s, RunSetup& setup) {
-  setup.plant.module.sample_period_s = period_s;
-  setup.controller.tactile_module->max_sample_age_s = 5.0 * period_s;
+  setup.plant.modules[0].channels.sample_period_s = period_s;
+  setup.controller.tactile_modules.front().max_sample_age_s = 5.0 * period_s;
 }
 
 void shiftContact(double shift_m, RunSetup& setup) {

@@ -40,7 +40,7 @@ PlainControllerState PlainController::initialState() const {
   state.q_desired = config_.q_start;
   state.velocity_before = JointVector::Zero(config_.chain.size());
   if (!law_) return state;
-  state.contact_point.position_m = 0.5 * config_.tactile_module->length_m;
+  state.contact_point.position_m = 0.5 * config_.tactile_modules.front().length_m;
   const double c_0 = config_.gains.force.assumed_stiffness_N_per_m;
   state.estimator.stiffness_N_per_m = state.estimator.stiffness_raw_N_per_m = c_0;
   return state;
@@ -60,9 +60,9 @@ Eigen::VectorXd PlainController::taskVelocity(double t_s) const {
 /// What contact adds to the joint speeds.
 Eigen::VectorXd PlainController::answer(const RobotInput& input, const Eigen::VectorXd& q_dot_eff,
                                         double period_s, PlainControllerState& state) const {
-  if (input.tactile.sequence != state.sample_sequence)
-    locateContact(input.tactile, config_.tactile_module->length_m, state.contact_point);
-  state.sample_sequence = input.tactile.sequence;
+  if (input.tactile[0].sequence != state.sample_sequence)
+    locateContact(input.tactile[0], config_.tactile_modules.front().length_m, state.contact_point);
+  state.sample_sequence = input.tactile[0].sequence;
   Vector3 p_BaseContact;
   const Eigen::VectorXd a = kinematics_->contactDirection(state.contact_point, p_BaseContact);
   const Eigen::VectorXd Na = kinematics_->project(a);

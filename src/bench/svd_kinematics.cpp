@@ -46,7 +46,7 @@ class SvdKinematics final : public PlainKinematics {
 
   Eigen::VectorXd contactDirection(const ContactPointState& contact,
                                    Vector3& p_BaseContact) const override {
-    const AttachedFrame& link = robot_.config.tactile_module->link;
+    const AttachedFrame& link = robot_.config.tactile_modules.front().link;
     const Eigen::Isometry3d X = frames_[link.joint] * isometry(link.X_JointFrame);
     p_BaseContact = X * Vector3(contact.position_m, 0.0, 0.0);
     Eigen::MatrixXd J_p = Eigen::MatrixXd::Zero(3, J_.cols());

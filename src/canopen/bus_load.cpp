@@ -35,9 +35,11 @@ std::vector<BusLoad> busLoads(const HardwareConfig& hardware, double period_s) {
     const auto drives = std::count_if(hardware.drives.begin(), hardware.drives.end(),
                                       [bus](const DriveConfig& drive) { return drive.bus == bus; });
     if (drives > 0) addDrives(hardware, static_cast<int>(drives), period_s, load);
-    if (hardware.tactile && hardware.tactile->bus == bus)
+    for (const CanTactileConfig& module : hardware.tactile_modules) {
+      if (module.bus != bus) continue;
       load.terms.push_back(
-          {"tactile module", kTactileFrames, kTactileBytes, hardware.tactile->sample_period_s});
+          {"tactile module", kTactileFrames, kTactileBytes, module.channels.sample_period_s});
+    }
     loads.push_back(load);
   }
   return loads;

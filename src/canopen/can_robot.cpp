@@ -36,9 +36,8 @@ CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
     drives_.emplace_back(drive, hardware.canopen, period_s);
     has_drives_[drive.bus] = true;
   }
-  if (!hardware.tactile) return;
-  tactile_.emplace(*hardware.tactile, period_s);
-  tactile_bus_ = hardware.tactile->bus;
+  for (const CanTactileConfig& module : hardware.tactile_modules)
+    tactile_modules_.emplace_back(module, period_s);
 }
 
 void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
@@ -46,7 +45,9 @@ void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
     for (Drive& drive : drives_) {
       if (drive.bus() == bus) drive.receive(frame);
     }
-    if (bus == tactile_bus_) tactile_->receive(frame);
+    for (TactileReceiver& module : tactile_modules_) {
+      if (module.bus() == bus) module.receive(frame);
+    }
   }
 }
 
@@ -61,8 +62,10 @@ void CanRobot::read(RobotInput& input) noexcept {
     drives_[i].observe(q_commanded_[joint]);
     input.q_measured[joint] = drives_[i].report().position;
   }
-  if (tactile_) tactile_->tick();
-  if (tactile_) input.tactile = tactile_->sample();
+  for (std::size_t i = 0; i < tactile_modules_.size(); ++i) {
+    tactile_modules_[i].tick();
+    input.tactile[i] = tactile_modules_[i].sample();
+  }
 }
 
 void CanRobot::command(DriveGoal goal, bool is_restart, const JointVector& q) noexcept {

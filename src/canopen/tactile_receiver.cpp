@@ -27,9 +27,10 @@ bool isAtRail(int counts) noexcept { return counts >= kRail || counts <= -kRail;
 
 TactileReceiver::TactileReceiver(const CanTactileConfig& config, double period_s)
     : config_(config),
-      max_silent_cycles_(cyclesLasting(kMaxSilentSamples * config.sample_period_s, period_s)) {
+      max_silent_cycles_(
+          cyclesLasting(kMaxSilentSamples * config.channels.sample_period_s, period_s)) {
   if (config.filter_cutoff_hz)
-    fresh_filter_.emplace(*config.filter_cutoff_hz, 1.0 / config.sample_period_s);
+    fresh_filter_.emplace(*config.filter_cutoff_hz, 1.0 / config.channels.sample_period_s);
   filters_.fill(fresh_filter_);
 }
 
@@ -103,7 +104,7 @@ void TactileReceiver::finish() noexcept {
   }
   fault_ = is_saturated ? Fault::kTactileSaturated : Fault::kNone;
   if ((assembly_.status & ~kSaturated) != 0) fault_ = Fault::kTactileCableBreak;
-  publish(config_.calibration * counts / config_.counts_per_N);
+  publish(config_.channels.calibration * counts / config_.channels.counts_per_N);
 }
 
 void TactileReceiver::publish(const Wrench& raw) noexcept {

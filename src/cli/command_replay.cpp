@@ -49,8 +49,10 @@ Scene loadLoggedScene(const ReplayOptions& options, const LogDescription& descri
            "expected the files of the run");
   }
   Scene scene = loadScene(description.sources, overrides, SceneUse::kSimulation);
-  checkSize(log, "q", "joints", description.shape.joints, scene.controller.chain.size());
-  checkSize(log, "w", "task components", description.shape.task_size, scene.controller.task.size);
+  const RecordShape expected = describeLog(scene).shape;
+  checkSize(log, "q", "joints", description.shape.joints, expected.joints);
+  checkSize(log, "w", "task components", description.shape.task_size, expected.task_size);
+  checkSize(log, "force_sensor_N", "tactile modules", description.shape.modules, expected.modules);
   return scene;
 }
 

@@ -19,8 +19,8 @@ double approach(const JointVector& a, const ScaledVector& from, const ScaledVect
 
 ApproachLimit::ApproachLimit(const ControllerConfig& config)
     : has_estimator_(config.force_control->has_estimator),
-      smoother_(*config.tactile_module),
-      position_(config.drive_lag_s, config.tactile_module->filter_cutoff_hz) {}
+      smoother_(config.tactile_modules.front()),
+      position_(config.drive_lag_s, config.tactile_modules.front().filter_cutoff_hz) {}
 
 ApproachLimitState ApproachLimit::initialState() const noexcept {
   ApproachLimitState state;

@@ -45,8 +45,8 @@ struct ContactController::Contact {
 ContactController::ContactController(const ControllerConfig& config,
                                      const ScaledVector& inv_sqrt_weights)
     : chain_(config.chain),
-      link_(config.tactile_module->link),
-      initial_position_m_(0.5 * config.tactile_module->length_m),
+      link_(config.tactile_modules.front().link),
+      initial_position_m_(0.5 * config.tactile_modules.front().length_m),
       task_(config.task),
       is_joint_space_(config.force_control->variant == Variant::kJointSpace),
       is_multi_space_(config.force_control->variant == Variant::kNullTask ||

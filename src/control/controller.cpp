@@ -51,13 +51,6 @@ void replaceRotation(const TaskConfig& task, const Vector3& rotation_vector,
     if (task.components[i] >= 3) w[i] = rotation_vector[task.components[i] - 3];
 }
 
-/// |F|, N; not finite if any reading is.
-double judgedForce_N(const TactileSample& sample) noexcept {
-  const bool is_finite = std::isfinite(sample.moment_y_Nm) && std::isfinite(sample.moment_z_Nm);
-  return is_finite ? std::hypot(sample.force_y_N, sample.force_z_N)
-                   : std::numeric_limits<double>::quiet_NaN();
-}
-
 /// How far the tool is from its reference, m.
 double lag_m(const TaskConfig& task, const TaskVector& error) noexcept {
   double squared = 0.0;
@@ -77,15 +70,16 @@ Controller::Controller(const ControllerConfig& config)
   if (config.has_joint_limit_avoidance)
     joint_limit_avoidance_.emplace(config.limits, inv_sqrt_weights_);
   if (!config.force_control) return;
-  if (!config.tactile_module) throw std::invalid_argument("force control needs a tactile module");
+  if (config.tactile_modules.size() != 1)
+    throw std::invalid_argument("force control needs one tactile module");
   contact_controller_.emplace(config, inv_sqrt_weights_);
 }
 
 ControllerState Controller::initialState(const JointVector& q) const {
   ControllerState state;
   place(q, state);
-  if (config_.tactile_module)
-    state.contact_point.position_m = 0.5 * config_.tactile_module->length_m;
+  for (int i = 0; i < modules(); ++i)
+    state.modules[i].contact.position_m = 0.5 * config_.tactile_modules[i].length_m;
   if (contact_controller_) state.contact = contact_controller_->initialState();
   return state;
 }
@@ -101,14 +95,16 @@ void Controller::place(const JointVector& q, ControllerState& state) const noexc
   state.fault = Fault::kNone;
 }
 
-void Controller::watchSensor(const RobotInput& input, double period_s,
-                             ControllerState& state) const noexcept {
-  if (config_.tactile_module) readTactileModule(input, period_s, state);
+void Controller::watchSensors(const RobotInput& input, double period_s,
+                              ControllerState& state) const noexcept {
+  for (int i = 0; i < modules(); ++i)
+    readSample(config_.tactile_modules[i], input.tactile[i], period_s, state.modules[i]);
 }
 
-double Controller::sampleAge_s(const RobotInput& input, double period_s,
-                               const ControllerState& state) const noexcept {
-  return input.tactile.sequence == state.sample_sequence ? state.sample_age_s + period_s : 0.0;
+FaultDetail Controller::sampleAge(int module, const RobotInput& input, double period_s,
+                                  const ControllerState& state) const noexcept {
+  const double age_s = sampleAge_s(input.tactile[module], period_s, state.modules[module]);
+  return {age_s, config_.tactile_modules[module].max_sample_age_s, "s", -1, module};
 }
 
 void Controller::update(const RobotInput& input, const Gains& gains, double t_s, double period_s,
@@ -168,19 +164,10 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   output.error = kinematics.error;
   state.progress = prepared.progress;
   output.contact = {};
-  if (config_.tactile_module) {
-    const Fault fault = readTactileModule(input, period_s, state);
-    if (state.fault == Fault::kNone && fault != Fault::kNone) {
-      state.fault = fault;
-      output.fault_detail = state.sample_detail;
-    }
-    output.contact.force_sensor_N = state.contact_point.force_N;
-    output.contact.contact_position_m = state.contact_point.position_m;
-    output.contact.contact_direction = state.contact_point.direction;
-  }
+  sense(input, period_s, state, output);
   if (contact_controller_)
     contact_controller_->update(
-        gains, kinematics, state.contact_point,
+        gains, kinematics, state.modules.front().contact,
         {state.q_desired, state.velocity_before, mayMove(state), state.return_share}, period_s,
         state.contact, output.contact, motion);
 
@@ -190,9 +177,25 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   limit(motion, period_s, state, output);
 }
 
+/// Of several modules with a fault the first one counts.
+void Controller::sense(const RobotInput& input, double period_s, ControllerState& state,
+                       ControllerOutput& output) const noexcept {
+  output.modules = modules();
+  for (int i = 0; i < output.modules; ++i) {
+    TactileReading& reading = state.modules[i];
+    const Fault fault = readSample(config_.tactile_modules[i], input.tactile[i], period_s, reading);
+    if (state.fault == Fault::kNone && fault != Fault::kNone) {
+      state.fault = fault;
+      output.fault_detail = reading.detail;
+      output.fault_detail.module = i;
+    }
+    output.sensed[i] = reading.contact;
+  }
+}
+
 void Controller::coast(int missed_cycles, double period_s, ControllerState& state) const noexcept {
   passTime(missed_cycles * period_s, state);
-  state.sample_age_s += missed_cycles * period_s;
+  for (int i = 0; i < modules(); ++i) state.modules[i].age_s += missed_cycles * period_s;
 }
 
 /// What the limits cut from the contact point's motion is told to the law, which must not ask for
@@ -292,30 +295,6 @@ void Controller::computeTaskMotion(const TaskGains& gains, const ControllerState
   TaskVector correction = state.return_share * gains.drift_gain_per_s * kinematics.error;
   limitReturnSpeed(gains, config_.task, state.contact.push, correction);
   kinematics.y_eff = kinematics.pseudoinverse.solve(prepared.w_d_dot + correction);
-}
-
-Fault Controller::readTactileModule(const RobotInput& input, double period_s,
-                                    ControllerState& state) const noexcept {
-  const TactileModuleConfig& module = *config_.tactile_module;
-  state.contact_point.interval_s = 0.0;
-  if (input.tactile.sequence == state.sample_sequence) {
-    state.sample_age_s += period_s;
-    if (state.sample_age_s <= module.max_sample_age_s) return state.sample_fault;
-    state.sample_detail = {state.sample_age_s, module.max_sample_age_s, "s"};
-    return Fault::kTactileStale;
-  }
-  state.sample_sequence = input.tactile.sequence;
-  const double interval_s = state.sample_age_s + period_s;
-  state.sample_age_s = 0.0;
-  const bool is_valid = isValid(input.tactile, module);
-  state.sample_fault = is_valid ? Fault::kNone : Fault::kTactileInvalid;
-  if (is_valid) {
-    locateContact(input.tactile, module.length_m, state.contact_point);
-    state.contact_point.interval_s = interval_s;
-  } else {
-    state.sample_detail = {judgedForce_N(input.tactile), module.max_force_N, "N"};
-  }
-  return state.sample_fault;
 }
 
 }  // namespace tactus

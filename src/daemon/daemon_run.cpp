@@ -141,7 +141,9 @@ LoopFigures loopFigures(const Scene& scene, const HardwareLoop& loop, const Loop
     figures.buses.push_back({scene.hardware->buses[i].interface, loop.counters(i)});
   const CanRobot& robot = loop.robot();
   figures.malformed_drive_frames = robot.malformedFrames();
-  if (robot.tactile()) figures.tactile = robot.tactile()->counters();
+  const auto modules = robot.tactileModules();
+  for (std::size_t i = 0; i < modules.size(); ++i)
+    figures.tactile_modules.push_back({scene.module_links[i], modules[i].counters()});
   return figures;
 }
 

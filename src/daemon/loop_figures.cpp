@@ -21,6 +21,13 @@ Json tactileJson(const TactileCounters& counters) {
           {"repeated", counters.repeated}};
 }
 
+void add(const TactileCounters& counters, TactileCounters& sum) {
+  sum.samples += counters.samples;
+  sum.incomplete += counters.incomplete;
+  sum.malformed += counters.malformed;
+  sum.repeated += counters.repeated;
+}
+
 }  // namespace
 
 Json loopJson(const LoopFigures& figures) {
@@ -37,7 +44,14 @@ Json loopJson(const LoopFigures& figures) {
                {"buses", Json::array()},
                {"malformed_drive_frames", figures.malformed_drive_frames}};
   for (const LoopFigures::Bus& bus : figures.buses) json["buses"].push_back(busJson(bus));
-  if (figures.tactile) json["tactile"] = tactileJson(*figures.tactile);
+  if (figures.tactile_modules.empty()) return json;
+  TactileCounters all;
+  for (const LoopFigures::TactileModule& module : figures.tactile_modules) {
+    add(module.counters, all);
+    Json& entry = json["tactile_modules"].emplace_back(tactileJson(module.counters));
+    entry["link"] = module.link;
+  }
+  json["tactile"] = tactileJson(all);
   return json;
 }
 

@@ -18,11 +18,12 @@ BusIds busIds(const HardwareConfig& hardware, int bus) {
   if (!ids.sent.empty()) {
     for (const std::uint32_t id : {cob_id::kNmt, cob_id::kSync}) ids.sent.push_back({id});
   }
-  // Also where only the module is: to probe a bus that was down.
+  // Also where only a module is: to probe a bus that was down.
   const auto master = static_cast<std::uint32_t>(hardware.canopen.master_node_id);
   ids.sent.push_back({cob_id::kHeartbeat + master});
-  if (hardware.tactile && hardware.tactile->bus == bus) {
-    for (std::uint32_t k = 0; k < 4; ++k) ids.received.push_back({hardware.tactile->first_id + k});
+  for (const CanTactileConfig& module : hardware.tactile_modules) {
+    if (module.bus != bus) continue;
+    for (std::uint32_t k = 0; k < 4; ++k) ids.received.push_back({module.first_id + k});
   }
   return ids;
 }

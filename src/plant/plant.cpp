@@ -18,12 +18,15 @@ constexpr double kFirstMove_periods = 0.25;
 constexpr double kMoveAfterSync_periods = 0.5;
 constexpr std::int64_t kLongSilence_periods = 100;
 
-/// The module on the bus has 24 bits, and filters only if nobody behind it does.
-PlantConfig withModuleOf(const HardwareConfig& hardware, PlantConfig plant) {
-  plant.module.quantised = true;
-  if (!hardware.tactile) return plant;
-  plant.module.sample_period_s = hardware.tactile->sample_period_s;
-  plant.module.filtered = !hardware.tactile->filter_cutoff_hz;
+/// A module on a bus has 24 bits, and filters only if nobody behind it does.
+PlantConfig withModulesOf(const HardwareConfig& hardware, PlantConfig plant) {
+  for (std::size_t i = 0; i < hardware.tactile_modules.size(); ++i) {
+    const CanTactileConfig& on_bus = hardware.tactile_modules[i];
+    SimulatedModuleConfig& module = plant.modules[i];
+    module.quantised = true;
+    module.channels.sample_period_s = on_bus.channels.sample_period_s;
+    module.filtered = !on_bus.filter_cutoff_hz;
+  }
   return plant;
 }
 
@@ -34,7 +37,7 @@ Plant::Plant(const ControllerConfig& robot, const PlantConfig& plant,
     : hardware_(hardware),
       period_s_(period_s),
       period_ns_(std::llround(1e9 * period_s)),
-      world_(robot, withModuleOf(hardware, plant), period_s),
+      world_(robot, withModulesOf(hardware, plant), period_s),
       velocity_(JointVector::Zero(robot.q_start.size())),
       script_(std::move(troubles)),
       next_move_ns_(std::llround(1e9 * kFirstMove_periods * period_s)),
@@ -43,7 +46,8 @@ Plant::Plant(const ControllerConfig& robot, const PlantConfig& plant,
   for (const DriveConfig& config : hardware_.drives)
     drives_.push_back({SlaveDrive(config, period_s), config.bus, nodes[config.bus]++,
                        static_cast<std::uint32_t>(config.node_id)});
-  if (hardware_.tactile) module_number_ = nodes[hardware_.tactile->bus]++;
+  for (const CanTactileConfig& config : hardware_.tactile_modules)
+    modules_.push_back({config.bus, config.first_id, nodes[config.bus]++});
   for (int bus = 0; bus < static_cast<int>(nodes.size()); ++bus)
     links_.push_back(
         {PlantBus(hardware_.buses[bus].bit_rate_per_s, nodes[bus]), FrameTroubles(bus), {}});
@@ -195,17 +199,19 @@ void Plant::moveWorld(std::int64_t t_ns) noexcept {
     drives_[i].drive.setPosition(seen_.q_measured[hardware_.drives[i].joint]);
     collect(drives_[i], t_ns);
   }
-  sendSample(t_ns);
+  sendSamples(t_ns);
 }
 
-void Plant::sendSample(std::int64_t t_ns) noexcept {
-  if (!hardware_.tactile || seen_.tactile.sequence == sample_sequence_) return;
-  sample_sequence_ = seen_.tactile.sequence;
-  PlantBus& bus = links_[hardware_.tactile->bus].bus;
-  for (const CanFrame& frame :
-       moduleFrames(hardware_.tactile->first_id, static_cast<std::uint8_t>(sample_sequence_),
-                    world_.module()->counts(), false))
-    bus.send(module_number_, frame, t_ns);
+void Plant::sendSamples(std::int64_t t_ns) noexcept {
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    Module& module = modules_[i];
+    const std::uint32_t sequence = seen_.tactile[i].sequence;
+    if (sequence == module.sample_sequence) continue;
+    module.sample_sequence = sequence;
+    for (const CanFrame& frame : moduleFrames(module.first_id, static_cast<std::uint8_t>(sequence),
+                                              world_.module(static_cast<int>(i)).counts(), false))
+      links_[module.bus].bus.send(module.number, frame, t_ns);
+  }
 }
 
 void Plant::noticeEnabling(std::int64_t t_ns) noexcept {

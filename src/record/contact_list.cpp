@@ -17,8 +17,8 @@ constexpr std::size_t kMostSamples = std::size_t{1} << 20;
 
 }  // namespace
 
-ContactList::ContactList(bool has_force_control, std::size_t expected_cycles)
-    : has_force_control_(has_force_control) {
+ContactList::ContactList(bool has_force_control, std::size_t expected_cycles, int module)
+    : has_force_control_(has_force_control), module_(module) {
   present_.samples.reserve(std::min(expected_cycles, kMostSamples));
 }
 
@@ -30,7 +30,7 @@ void ContactList::add(const CycleRecord& record) {
     if (present_.cycles > 0) clear();
     return;
   }
-  const Sample sample{record.t_s, record.force_sensor_N};
+  const Sample sample{record.t_s, record.force_sensor_N[module_]};
   keep(sample);
   if (present_.confirmed_cycles == 0 && !has_force_control_ && sample.force_N <= threshold_N_)
     return;
@@ -48,7 +48,8 @@ std::vector<ContactSummary> ContactList::contacts() const {
 }
 
 bool ContactList::isTouch(const CycleRecord& record) const noexcept {
-  return has_force_control_ ? record.force_contact_N > 0.0 : record.force_sensor_N > kTouchForce_N;
+  return has_force_control_ ? record.force_contact_N > 0.0
+                            : record.force_sensor_N[module_] > kTouchForce_N;
 }
 
 /// By the mean: single samples of a free arm are above F_rel and those of one that leans on
@@ -100,6 +101,7 @@ void ContactList::keepNewest(const Sample& sample) {
 ContactSummary ContactList::summarise(bool is_released) const {
   const std::vector<Sample>& samples = present_.samples;
   ContactSummary contact;
+  contact.module = module_;
   contact.start_s = samples.front().t_s;
   contact.end_s = is_released ? releaseTime_s() : present_.newest.back().t_s;
   contact.peak_force_N = present_.peak_force_N;

@@ -44,6 +44,8 @@ std::string describeCulprit(const FaultReport& report, const Scene& scene) {
     return ", " + describePlace(report, scene);
   if (report.joint >= 0 && isOfDrive(report.fault)) return ", " + describeDrive(report, scene);
   if (report.joint >= 0) return ", joint " + scene.joint_names[report.joint];
+  if (report.detail.module >= 0 && scene.module_links.size() > 1)
+    return ", tactile module " + scene.module_links[report.detail.module];
   if (report.bus >= 0) return ", " + scene.hardware->buses[report.bus].interface;
   return "";
 }
@@ -86,10 +88,12 @@ std::string describeMode(const ModeReport& report, const Scene& scene) {
 Json faultJson(const FaultReport& report, const Scene& scene) {
   if (report.fault == Fault::kNone) return nullptr;
   const std::string unit = report.detail.unit;
+  const int module = report.detail.module;
   return {{"name", faultName(report.fault)},
           {"time_s", report.time_s},
           {"joint", report.joint < 0 ? Json() : Json(scene.joint_names[report.joint])},
           {"bus", busName(report, scene)},
+          {"tactile_module", module < 0 ? Json() : Json(scene.module_links[module])},
           {"value", report.detail.value},
           {"limit", report.detail.limit},
           {"unit", unit.empty() ? Json() : Json(unit)},

@@ -13,17 +13,16 @@ using enum FieldType;
 using enum FieldRole;
 
 constexpr std::size_t kWord = sizeof(double);
-constexpr std::size_t kDirection = offsetof(CycleRecord, contact_direction);
 constexpr std::size_t kToolError = offsetof(CycleRecord, tool_error_m);
 
 #define AT(member) offsetof(CycleRecord, member)
 constexpr std::array kFields = {
     RecordField{"t_s", "s", kScalar, kDouble, kInput, AT(t_s)},
-    RecordField{"force_sensor_N", "N", kScalar, kDouble, kOutput, AT(force_sensor_N)},
-    RecordField{"contact_position_m", "m", kScalar, kDouble, kOutput, AT(contact_position_m)},
-    RecordField{"contact_dir_x", "", kScalar, kDouble, kOutput, kDirection},
-    RecordField{"contact_dir_y", "", kScalar, kDouble, kOutput, kDirection + kWord},
-    RecordField{"contact_dir_z", "", kScalar, kDouble, kOutput, kDirection + 2 * kWord},
+    RecordField{"force_sensor_N", "N", kPerModule, kDouble, kOutput, AT(force_sensor_N)},
+    RecordField{"contact_position_m", "m", kPerModule, kDouble, kOutput, AT(contact_position_m)},
+    RecordField{"contact_dir_x", "", kPerModule, kDouble, kOutput, AT(contact_dir_x)},
+    RecordField{"contact_dir_y", "", kPerModule, kDouble, kOutput, AT(contact_dir_y)},
+    RecordField{"contact_dir_z", "", kPerModule, kDouble, kOutput, AT(contact_dir_z)},
     RecordField{"force_contact_N", "N", kScalar, kDouble, kOutput, AT(force_contact_N)},
     RecordField{"stiffness_N_per_m", "N/m", kScalar, kDouble, kOutput, AT(stiffness_N_per_m)},
     RecordField{"stiffness_raw_N_per_m", "N/m", kScalar, kDouble, kOutput,
@@ -45,11 +44,11 @@ constexpr std::array kFields = {
     RecordField{"wake_latency_ns", "ns", kScalar, kInt64, kObservation, AT(wake_latency_ns)},
     RecordField{"step_ns", "ns", kScalar, kInt64, kObservation, AT(step_ns)},
     RecordField{"q_measured", "m or rad", kPerJoint, kDouble, kInput, AT(q_measured)},
-    RecordField{"tactile_force_y_N", "N", kScalar, kDouble, kInput, AT(tactile_force_y_N)},
-    RecordField{"tactile_force_z_N", "N", kScalar, kDouble, kInput, AT(tactile_force_z_N)},
-    RecordField{"tactile_moment_y_Nm", "Nm", kScalar, kDouble, kInput, AT(tactile_moment_y_Nm)},
-    RecordField{"tactile_moment_z_Nm", "Nm", kScalar, kDouble, kInput, AT(tactile_moment_z_Nm)},
-    RecordField{"tactile_sequence", "", kScalar, kUint64, kInput, AT(tactile_sequence)},
+    RecordField{"tactile_force_y_N", "N", kPerModule, kDouble, kInput, AT(tactile_force_y_N)},
+    RecordField{"tactile_force_z_N", "N", kPerModule, kDouble, kInput, AT(tactile_force_z_N)},
+    RecordField{"tactile_moment_y_Nm", "Nm", kPerModule, kDouble, kInput, AT(tactile_moment_y_Nm)},
+    RecordField{"tactile_moment_z_Nm", "Nm", kPerModule, kDouble, kInput, AT(tactile_moment_z_Nm)},
+    RecordField{"tactile_sequence", "", kPerModule, kUint64, kInput, AT(tactile_sequence)},
     RecordField{"tool_error_x_m", "m", kScalar, kDouble, kObservation, kToolError},
     RecordField{"tool_error_y_m", "m", kScalar, kDouble, kObservation, kToolError + kWord},
     RecordField{"tool_error_z_m", "m", kScalar, kDouble, kObservation, kToolError + 2 * kWord},
@@ -68,8 +67,6 @@ constexpr std::array kFields = {
 
 std::span<const RecordField> recordFields() noexcept { return kFields; }
 
-bool isArray(FieldShape shape) noexcept { return shape == kPerJoint || shape == kPerTaskComponent; }
-
 std::size_t RecordShape::entries(const RecordField& field) const noexcept {
   switch (field.shape) {
     case kScalar:
@@ -80,8 +77,15 @@ std::size_t RecordShape::entries(const RecordField& field) const noexcept {
       return static_cast<std::size_t>(task_size);
     case kOfRotation:
       return has_rotation ? 1 : 0;
+    case kPerModule:
+      return static_cast<std::size_t>(modules);
   }
   return 0;
+}
+
+bool RecordShape::isArray(const RecordField& field) const noexcept {
+  return field.shape == kPerJoint || field.shape == kPerTaskComponent ||
+         (field.shape == kPerModule && modules > 1);
 }
 
 const char* typeName(FieldType type) noexcept {
@@ -91,13 +95,20 @@ const char* typeName(FieldType type) noexcept {
 
 std::vector<RecordColumn> recordColumns(const RecordShape& shape) {
   std::vector<RecordColumn> columns;
+  const auto add = [&](const RecordField& field, std::size_t entry, bool is_numbered) {
+    std::string name = field.name;
+    if (is_numbered) name += fmt::format("_{}", entry + 1);
+    columns.push_back(
+        {std::move(name), field.name, field.type, field.role, field.offset + entry * kWord});
+  };
   for (const RecordField& field : kFields) {
-    for (std::size_t i = 0; i < shape.entries(field); ++i) {
-      std::string name = field.name;
-      if (isArray(field.shape)) name += fmt::format("_{}", i + 1);
-      columns.push_back(
-          {std::move(name), field.name, field.type, field.role, field.offset + i * kWord});
-    }
+    const bool is_module = field.shape == kPerModule;
+    const std::size_t entries = is_module ? 1 : shape.entries(field);
+    for (std::size_t i = 0; i < entries; ++i) add(field, i, !is_module && shape.isArray(field));
+  }
+  for (std::size_t module = 1; module < static_cast<std::size_t>(shape.modules); ++module) {
+    for (const RecordField& field : kFields)
+      if (field.shape == kPerModule) add(field, module, true);
   }
   return columns;
 }

@@ -18,14 +18,15 @@ double norm(const double (&vector)[3]) noexcept {
   return std::sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
 }
 
-Json contactJson(const ContactSummary& contact) {
+Json contactJson(const ContactSummary& contact, const Scene& scene) {
   return {{"start_s", contact.start_s},
           {"end_s", contact.end_s},
           {"peak_force_N", contact.peak_force_N},
-          {"settling_s", contact.settling_s}};
+          {"settling_s", contact.settling_s},
+          {"tactile_module", scene.module_links[contact.module]}};
 }
 
-void addTo(Json& json, const RunFigures& figures) {
+void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
   json["cycles"] = figures.cycles;
   json["peak_force_N"] = figures.peak_force_N;
   json["final_force_N"] = figures.final_force_N;
@@ -42,29 +43,35 @@ void addTo(Json& json, const RunFigures& figures) {
   json["stiffness_final_N_per_m"] = figures.stiffness_final_N_per_m;
   json["stiffness_at_peak_N_per_m"] = figures.stiffness_at_peak_N_per_m;
   Json& contacts = json["contacts"] = Json::array();
-  for (const ContactSummary& contact : figures.contacts) contacts.push_back(contactJson(contact));
+  for (const ContactSummary& contact : figures.contacts)
+    contacts.push_back(contactJson(contact, scene));
   json["step_time_ns"] = timesJson(figures.step_time_ns);
 }
 
 }  // namespace
 
 RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
-    : limits_(config.limits), contacts_(config.force_control.has_value(), expected_cycles) {
+    : limits_(config.limits),
+      modules_(std::max(1, static_cast<int>(config.tactile_modules.size()))) {
+  for (std::size_t i = 0; i < config.tactile_modules.size(); ++i) {
+    contacts_.emplace_back(config.force_control.has_value(), expected_cycles, static_cast<int>(i));
+  }
   if (hasRotation(config.task)) figures_.tcp_rotation_error.emplace();
 }
 
 void RunSummary::add(const CycleRecord& record) {
   addFigures(record);
-  contacts_.add(record);
+  for (ContactList& contacts : contacts_) contacts.add(record);
 }
 
 void RunSummary::addFigures(const CycleRecord& record) noexcept {
   ++figures_.cycles;
-  if (record.force_sensor_N > figures_.peak_force_N) {
-    figures_.peak_force_N = record.force_sensor_N;
+  const double force_N = *std::max_element(record.force_sensor_N, record.force_sensor_N + modules_);
+  if (force_N > figures_.peak_force_N) {
+    figures_.peak_force_N = force_N;
     figures_.stiffness_at_peak_N_per_m = record.stiffness_N_per_m;
   }
-  figures_.final_force_N = record.force_sensor_N;
+  figures_.final_force_N = force_N;
   figures_.stiffness_final_N_per_m = record.stiffness_N_per_m;
   addToolError(record);
   addJoints(record);
@@ -104,7 +111,11 @@ RunFigures RunSummary::figures() const {
     if (figures.tcp_rotation_error)
       figures.tcp_rotation_error->rms_rad = std::sqrt(squared_rotation_sum_rad2_ / cycles);
   }
-  figures.contacts = contacts_.contacts();
+  for (const ContactList& of_module : contacts_) {
+    const std::vector<ContactSummary> contacts = of_module.contacts();
+    figures.contacts.insert(figures.contacts.end(), contacts.begin(), contacts.end());
+  }
+  std::ranges::stable_sort(figures.contacts, {}, &ContactSummary::start_s);
   figures.step_time_ns = timeFigures(step_times_);
   return figures;
 }
@@ -116,7 +127,7 @@ Json summaryJson(const Scene& scene, const RunFigures& figures, double real_time
     for (const std::string& stage : hardwareStageNames(*scene.hardware)) stages.push_back(stage);
   }
   Json json = {{"scene", scene.name}, {"variant", scene.variant}, {"stages", stages}};
-  addTo(json, figures);
+  addTo(json, figures, scene);
   if (hardware) {
     json["loop"] = hardware->loop;
     json["log"] = logJson(hardware->log, "complete");

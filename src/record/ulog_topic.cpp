@@ -94,8 +94,14 @@ std::string findShape(const std::vector<LoggedField>& fields, RecordShape& shape
     return fmt::format("no field w with an entry for each task component, 1 to {} are expected",
                        kMaxTaskSize);
   }
+  const LoggedField* force = find(fields, "force_sensor_N");
+  if (!force || force->entries > kMaxTactileModules) {
+    return fmt::format(
+        "no field force_sensor_N with an entry for each tactile module, 1 to {} are expected",
+        kMaxTactileModules);
+  }
   shape = {static_cast<int>(q->entries), static_cast<int>(w->entries),
-           find(fields, "tool_rotation_error_rad") != nullptr};
+           find(fields, "tool_rotation_error_rad") != nullptr, static_cast<int>(force->entries)};
   return {};
 }
 

@@ -67,7 +67,7 @@ void appendFormat(std::string& bytes, const RecordShape& shape) {
   for (const RecordField& field : recordFields()) {
     if (shape.entries(field) == 0) continue;
     format += typeName(field.type);
-    if (isArray(field.shape)) format += fmt::format("[{}]", shape.entries(field));
+    if (shape.isArray(field)) format += fmt::format("[{}]", shape.entries(field));
     format += fmt::format(" {};", field.name);
   }
   appendMessage(bytes, 'F', format);
@@ -130,13 +130,18 @@ void appendParameter(std::string& bytes, std::string name, double value) {
 LogDescription describeLog(const Scene& scene) {
   LogDescription description;
   const TaskConfig& task = scene.controller.task;
-  description.shape = {scene.controller.chain.size(), task.size, hasRotation(task)};
+  const int modules = static_cast<int>(scene.controller.tactile_modules.size());
+  description.shape = {scene.controller.chain.size(), task.size, hasRotation(task),
+                       std::max(1, modules)};
   description.infos = {{"ver_sw", TACTUS_VERSION},
                        {"scene", scene.name},
                        {"variant", scene.variant},
                        {"robot", scene.robot_name}};
   for (std::size_t i = 0; i < scene.joint_names.size(); ++i) {
     description.infos.emplace_back(fmt::format("joint/{}", i + 1), scene.joint_names[i]);
+  }
+  for (std::size_t i = 0; i < scene.module_links.size(); ++i) {
+    description.infos.emplace_back(fmt::format("tactile_module/{}", i + 1), scene.module_links[i]);
   }
   constexpr std::array kComponents = {"x", "y", "z", "rx", "ry", "rz"};
   for (int i = 0; i < task.size; ++i)

@@ -50,12 +50,16 @@ std::string cureOfOverload(double period_s, const RobotConfig& config,
                            const HardwareConfig& hardware) {
   constexpr int kStepsPerSecond = 100000;
   constexpr int kMaxSteps = 2000;  // 0.02 s, the longest cycle
-  const double filter_rate_hz = electronicsOf(config).filter_rate_hz;
+  const auto fitsModules = [&](double longer_s) {
+    const auto fits = [longer_s](const TactileModuleSection& module) {
+      return fitsModule(longer_s, module.simulated.filter_rate_hz);
+    };
+    return hardware.tactile_modules.empty() || std::ranges::all_of(config.tactile_modules, fits);
+  };
   for (int steps = static_cast<int>(period_s * kStepsPerSecond); steps <= kMaxSteps; ++steps) {
     const double longer_s = static_cast<double>(steps) / kStepsPerSecond;
     if (longer_s <= period_s || longer_s > hardware.canopen.heartbeat_period_s ||
-        !interpolationPeriod(longer_s) ||
-        (hardware.tactile && !fitsModule(longer_s, filter_rate_hz)) ||
+        !interpolationPeriod(longer_s) || !fitsModules(longer_s) ||
         std::ranges::any_of(busLoads(hardware, longer_s), isOverloaded))
       continue;
     return fmt::format("a period_s of at least {}", longer_s);

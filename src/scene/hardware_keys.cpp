@@ -15,7 +15,7 @@ Needs canOfTheRobot() { return {"can", "the robot has no can section", "one, or 
 
 /// A module that is on a bus, or not: without buses it is on none.
 Needs busOfTheModule() {
-  return {"can", "the module is on no bus", "tactile_module.interface, or not this key"};
+  return {"can", "the module is on no bus", "its interface, or not this key"};
 }
 
 Table<BusConfig> busKeys() {
@@ -127,7 +127,7 @@ Row<GpioConfig> brakeSection() {
 
 Row<RobotConfig> canSection() {
   const Table<CanSection> buses = {required(sectionList(
-      "buses", {1, kMaxBuses}, "buses of drives and module", &CanSection::buses, busKeys()))};
+      "buses", {1, kMaxBuses}, "buses of drives and modules", &CanSection::buses, busKeys()))};
   return section("can", "how the arm is connected; absent: it only simulates", &RobotConfig::can,
                  join(buses, inside(&CanSection::canopen, canopenKeys())));
 }

@@ -8,6 +8,7 @@
 
 #include "tactus/canopen/canopen.h"
 #include "tactus/scene/drive_loader.h"
+#include "tactus/scene/tactile_loader.h"
 
 namespace tactus {
 namespace {
@@ -78,31 +79,46 @@ std::vector<UsedId> usedIds(const HardwareConfig& hardware, int bus) {
   return ids;
 }
 
-void checkModuleIds(const LoadingRobot& l, const HardwareConfig& hardware) {
-  const CanTactileConfig& module = *hardware.tactile;
-  for (const UsedId& used : usedIds(hardware, module.bus)) {
+/// Frames of the modules before this one on its bus.
+std::vector<UsedId> moduleIds(const HardwareConfig& hardware, std::size_t before, int bus) {
+  std::vector<UsedId> ids;
+  for (std::size_t i = 0; i < before; ++i) {
+    const CanTactileConfig& module = hardware.tactile_modules[i];
+    if (module.bus != bus) continue;
+    for (std::uint32_t k = 0; k < 4; ++k)
+      ids.push_back({module.first_id + k, fmt::format("frame {} of tactile_modules[{}]", k, i)});
+  }
+  return ids;
+}
+
+void checkModuleIds(const LoadingRobot& l, const HardwareConfig& hardware, std::size_t index) {
+  const CanTactileConfig& module = hardware.tactile_modules[index];
+  std::vector<UsedId> ids = usedIds(hardware, module.bus);
+  for (UsedId& used : moduleIds(hardware, index, module.bus)) ids.push_back(std::move(used));
+  for (const UsedId& used : ids) {
     if (used.id < module.first_id || used.id > module.first_id + 3) continue;
-    l.fail("tactile_module.first_id",
+    l.fail(moduleKey(l.root, index) + ".first_id",
            fmt::format("frame {:#05x} is the {} on the same bus", used.id, used.name),
            "four ids of its own");
   }
 }
 
-CanTactileConfig makeModule(const LoadingRobot& l, const TactileModuleSection& module) {
-  const std::string path = "tactile_module.interface";
+CanTactileConfig makeModule(const LoadingRobot& l, std::size_t index) {
+  const TactileModuleSection& module = l.config.tactile_modules[index];
+  const std::string key = moduleKey(l.root, index);
+  const std::string path = key + ".interface";
   if (!module.interface) l.fail(path, "is missing", "one of " + listOfBuses(l));
   CanTactileConfig config = module.on_bus;
   config.bus = findBus(l, *module.interface, path);
-  config.calibration = module.electronics.calibration;
-  config.counts_per_N = module.electronics.counts_per_N;
-  config.sample_period_s = module.electronics.sample_period_s;
+  config.channels = module.channels;
   if (!module.filter_in_daemon) return config;
   const double cutoff_hz = module.config.filter_cutoff_hz;
+  const double sample_period_s = module.channels.sample_period_s;
   config.filter_cutoff_hz = cutoff_hz;
-  if (cutoff_hz * config.sample_period_s >= 0.5) {
-    l.fail("tactile_module.filter_cutoff_hz",
+  if (cutoff_hz * sample_period_s >= 0.5) {
+    l.fail(key + ".filter_cutoff_hz",
            fmt::format("{} Hz is too high for a filter in the daemon", cutoff_hz),
-           fmt::format("less than half the samples' rate of {} Hz", 1.0 / config.sample_period_s));
+           fmt::format("less than half the samples' rate of {} Hz", 1.0 / sample_period_s));
   }
   return config;
 }
@@ -133,7 +149,7 @@ void checkLines(const LoadingRobot& l, const GpioConfig& gpio) {
 
 bool isUsed(const HardwareConfig& hardware, int bus) {
   return std::ranges::count(hardware.drives, bus, &DriveConfig::bus) > 0 ||
-         (hardware.tactile && hardware.tactile->bus == bus);
+         std::ranges::count(hardware.tactile_modules, bus, &CanTactileConfig::bus) > 0;
 }
 
 }  // namespace
@@ -147,26 +163,26 @@ std::optional<HardwareConfig> loadHardware(const YamlNode& root, const RobotConf
   HardwareConfig hardware{.buses = l.can.buses,
                           .drives = loadDrives(l),
                           .canopen = l.can.canopen,
-                          .tactile = std::nullopt,
+                          .tactile_modules = {},
                           .gpio = config.gpio,
                           .real_time = config.real_time,
                           .start_tolerance = config.drives.start_tolerance};
-  if (config.tactile_module) {
-    hardware.tactile = makeModule(l, *config.tactile_module);
-    checkModuleIds(l, hardware);
+  for (std::size_t i = 0; i < config.tactile_modules.size(); ++i) {
+    hardware.tactile_modules.push_back(makeModule(l, i));
+    checkModuleIds(l, hardware, i);
   }
   for (std::size_t i = 0; i < l.can.buses.size(); ++i) {
     if (isUsed(hardware, static_cast<int>(i))) continue;
     l.fail(fmt::format("can.buses[{}]", i), "nothing is on " + inQuotes(l.can.buses[i].interface),
-           "a drive or the tactile module, or no such bus");
+           "a drive or a tactile module, or no such bus");
   }
   if (hardware.gpio) checkLines(l, *hardware.gpio);
   return hardware;
 }
 
-HardwareConfig withoutTactileModule(const HardwareConfig& hardware) {
+HardwareConfig withoutTactileModules(const HardwareConfig& hardware) {
   HardwareConfig result = hardware;
-  result.tactile.reset();
+  result.tactile_modules.clear();
   result.buses.clear();
   for (std::size_t i = 0; i < hardware.buses.size(); ++i) {
     const int old_bus = static_cast<int>(i);

@@ -7,6 +7,7 @@ void addRows(const std::vector<KeySpec>& keys, const std::string& prefix,
              std::vector<KeyRow>& rows) {
   for (const KeySpec& spec : keys) {
     rows.push_back({prefix + spec.key, &spec});
+    if (!spec.same_as.empty()) continue;
     const bool is_list = spec.type == ValueType::kSectionList;
     addRows(spec.keys, prefix + spec.key + (is_list ? "[]." : "."), rows);
   }
@@ -22,6 +23,15 @@ std::string withoutIndices(std::string_view path) {
     if (c == ']') is_index = false;
   }
   return result;
+}
+
+/// A path below a section that is the same as a list, as one of that list.
+std::string withList(const std::vector<KeySpec>& keys, const std::string& path) {
+  for (const KeySpec& spec : keys) {
+    if (!spec.same_as.empty() && path.starts_with(spec.key + "."))
+      return spec.same_as + path.substr(spec.key.size());
+  }
+  return path;
 }
 
 }  // namespace
@@ -50,7 +60,7 @@ std::string keyFacts(const KeySpec& spec) {
 }
 
 std::vector<KeyRow> findKeyRows(const std::vector<KeySpec>& keys, std::string_view path) {
-  const std::string wanted = "." + withoutIndices(path);
+  const std::string wanted = "." + withList(keys, withoutIndices(path));
   std::vector<KeyRow> found;
   for (KeyRow& row : keyRows(keys)) {
     const std::string words = "." + withoutIndices(row.path);

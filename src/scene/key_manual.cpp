@@ -168,8 +168,10 @@ std::string describeKeys(const std::vector<KeySpec>& keys) {
   for (const KeySpec& spec : keys) {
     if (spec.keys.empty()) continue;
     page += fmt::format(".SS {}\n{}: {}.\n", spec.key, roff(keyFacts(spec)), roff(spec.doc));
+    if (!spec.same_as.empty()) continue;
+    const char* const mark = spec.type == ValueType::kSectionList ? "[]." : ".";
     for (const KeyRow& row : keyRows(spec.keys))
-      addRow({spec.key + "." + row.path, row.spec}, page);
+      addRow({spec.key + mark + row.path, row.spec}, page);
   }
   return page;
 }

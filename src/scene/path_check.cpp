@@ -18,7 +18,7 @@ constexpr double kMaxCheckedCycles = 3e5;
 /// The motion without a contact, along a path that does not wait.
 ControllerConfig undisturbed(ControllerConfig config) {
   config.gains.task.wait_beyond_m = kNoLimit;
-  config.tactile_module.reset();
+  config.tactile_modules.clear();
   config.force_control.reset();
   return config;
 }
@@ -69,7 +69,7 @@ std::string shortRun(const Scene& scene) {
 }
 
 std::string unfeltObstacles(const Scene& scene) {
-  if (scene.controller.tactile_module || scene.plant.obstacles.empty()) return "";
+  if (!scene.controller.tactile_modules.empty() || scene.plant.obstacles.empty()) return "";
   return "nothing feels the obstacles: there is no controller";
 }
 

@@ -9,10 +9,12 @@ using namespace keys;
 Table<TactileModuleSection> placeKeys() {
   using Config = TactileModuleSection;
   return {
-      text("link", "URDF link whose x axis runs along the cover from its start", &Config::link),
-      required(number("cover_radius_m", "m", above(0, 1), "radius of the cover around x",
-                      &Config::cover_radius_m)),
-  };
+      text("link", "URDF link whose x axis runs along the cover from its start", &Config::link)};
+}
+
+Table<SimulatedModuleConfig> coverKeys() {
+  return {required(number("cover_radius_m", "m", above(0, 1), "radius of the cover around x",
+                          &SimulatedModuleConfig::cover_radius_m))};
 }
 
 Table<TactileModuleConfig> readingKeys() {
@@ -29,23 +31,26 @@ Table<TactileModuleConfig> readingKeys() {
   };
 }
 
-Row<SimulatedModuleConfig> calibrationTable() {
-  Row<SimulatedModuleConfig> row =
+Row<TactileChannels> calibrationTable() {
+  Row<TactileChannels> row =
       required(value(ValueType::kNumberTable, "calibration", "1 or m",
                      "rows of F_y, F_z, M_y, M_z in the link's frame for a force of 1 N on each "
                      "of the 8 channels",
-                     &SimulatedModuleConfig::calibration));
+                     &TactileChannels::calibration));
   row.spec.range = within(-1e3, 1e3);
   row.spec.count = {4, 4};
   row.spec.columns = 8;
   return row;
 }
 
-Table<SimulatedModuleConfig> electronicsKeys() {
-  using Config = SimulatedModuleConfig;
+Table<SimulatedModuleConfig> filterKeys() {
+  return {number("filter_rate_hz", "Hz", within(1, 1e5), "rate at which the module filters",
+                 &SimulatedModuleConfig::filter_rate_hz)};
+}
+
+Table<TactileChannels> channelKeys() {
+  using Config = TactileChannels;
   return {
-      number("filter_rate_hz", "Hz", within(1, 1e5), "rate at which the module filters",
-             &Config::filter_rate_hz),
       number("sample_period_s", "s", above(0, 1),
              "time between samples, a multiple of the filter's period", &Config::sample_period_s),
       number("counts_per_N", "1/N", above(0, 1e7), "of the 24-bit channels", &Config::counts_per_N),
@@ -55,8 +60,9 @@ Table<SimulatedModuleConfig> electronicsKeys() {
 
 Table<TactileModuleSection> tactileModuleKeys() {
   using Config = TactileModuleSection;
-  return join(placeKeys(), inside(&Config::config, readingKeys()),
-              inside(&Config::electronics, electronicsKeys()), moduleOnBusKeys());
+  return join(placeKeys(), inside(&Config::simulated, coverKeys()),
+              inside(&Config::config, readingKeys()), inside(&Config::simulated, filterKeys()),
+              inside(&Config::channels, channelKeys()), moduleOnBusKeys());
 }
 
 Table<RobotConfig> robotTable() {
@@ -75,8 +81,11 @@ Table<RobotConfig> robotTable() {
                       &Config::stiffness_N_per_m)),
       canSection(),
       drivesSection(),
-      section("tactile_module", "the sensing cover around one link", &Config::tactile_module,
-              tactileModuleKeys()),
+      sectionList("tactile_modules", {1, kMaxTactileModules}, "sensing covers, one around a link",
+                  &Config::tactile_modules, tactileModuleKeys()),
+      onlyEntryOf("tactile_modules", "tactile_module",
+                  "in place of tactile_modules: the only one, with the same keys",
+                  &Config::tactile_modules, tactileModuleKeys()),
       gpioSection(),
       realTimeSection(),
   };

@@ -8,6 +8,7 @@
 
 #include "tactus/scene/gain_keys.h"
 #include "tactus/scene/key_words.h"
+#include "tactus/scene/tactile_loader.h"
 
 namespace tactus {
 namespace {
@@ -118,11 +119,24 @@ bool needsActivationForce(Variant variant) {
          variant == Variant::kNullLimit;
 }
 
+/// The laws answer one contact; without a law any number of modules is read.
+void checkModules(const Checked& c) {
+  const std::size_t modules = c.robot.config.tactile_modules.size();
+  if (modules == 0) {
+    c.fail("controller", "the robot has no tactile_modules", "no controller, or such a robot");
+  }
+  const Variant variant = c.scene.controller->variant;
+  if (modules > 1 && variant != Variant::kNone) {
+    c.fail("controller.variant",
+           fmt::format("{} answers the contact of one tactile module, the robot has {}",
+                       wordOf(kVariantWords, variant), modules),
+           "none, or a robot with one");
+  }
+}
+
 void checkController(const Checked& c) {
   if (!c.scene.controller) return;
-  if (!c.robot.config.tactile_module) {
-    c.fail("controller", "the robot has no tactile_module", "no controller, or such a robot");
-  }
+  checkModules(c);
   const Variant variant = c.scene.controller->variant;
   const std::string name = wordOf(kVariantWords, variant);
   if (needsActivationForce(variant) && !findGiven(c.root, "controller.activation_force_N")) {
@@ -153,30 +167,38 @@ void checkDuration(const Checked& c) {
 
 void checkSimulatedModule(const Checked& c) {
   const std::optional<double>& cutoff_hz = c.scene.simulation.filter_cutoff_hz;
-  const double limit_hz = 0.5 * electronicsOf(c.robot.config).filter_rate_hz;
-  if (cutoff_hz && *cutoff_hz >= limit_hz) {
+  if (!cutoff_hz) return;
+  for (const TactileModuleSection& module : c.robot.config.tactile_modules) {
+    const double limit_hz = 0.5 * module.simulated.filter_rate_hz;
+    if (*cutoff_hz < limit_hz) continue;
     c.fail("simulation.tactile_module.filter_cutoff_hz",
            fmt::format("{} Hz is too high", *cutoff_hz),
            fmt::format("less than half the filter's rate, {} Hz", limit_hz));
   }
 }
 
-void checkPeriod(const Checked& c) {
-  if (!c.scene.controller) return;
-  const double filter_rate_hz = electronicsOf(c.robot.config).filter_rate_hz;
+void checkPeriodOfModule(const Checked& c, std::size_t index) {
+  const TactileModuleSection& module = c.robot.config.tactile_modules[index];
+  const double filter_rate_hz = module.simulated.filter_rate_hz;
+  const std::string key = moduleKey(c.robot.root, index);
   if (!fitsModule(c.scene.period_s, filter_rate_hz)) {
     c.fail("period_s", fmt::format("{} s does not fit the tactile module", c.scene.period_s),
            fmt::format("a multiple or a whole part of its filter period of {} s",
                        1.0 / filter_rate_hz));
   }
   // A sample that is not new is a period old at once.
-  const double max_sample_age_s = c.robot.config.tactile_module->config.max_sample_age_s;
+  const double max_sample_age_s = module.config.max_sample_age_s;
   if (max_sample_age_s < c.scene.period_s) {
-    const std::string key = "tactile_module.max_sample_age_s";
-    failAt(locate(c.robot.root, key), key,
+    const std::string age_key = key + ".max_sample_age_s";
+    failAt(locate(c.robot.root, age_key), age_key,
            fmt::format("{} s is shorter than a cycle", max_sample_age_s),
            fmt::format("expected at least the scene's period_s = {}", c.scene.period_s));
   }
+}
+
+void checkPeriod(const Checked& c) {
+  if (!c.scene.controller) return;
+  for (std::size_t i = 0; i < c.robot.config.tactile_modules.size(); ++i) checkPeriodOfModule(c, i);
 }
 
 void checkGains(const Checked& c) {

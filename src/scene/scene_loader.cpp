@@ -50,7 +50,7 @@ void applyOverrides(YamlNode& root, const std::vector<Override>& overrides) {
       failAt({std::make_shared<std::string>("--set " + setting.key), 1, 1}, setting.key,
              "cannot be set here", "expected in a file");
     }
-    if (!setting.key.starts_with(kRobotPrefix)) applyOverride(root, setting);
+    if (!setting.key.starts_with(kRobotPrefix)) applyOverride(root, setting, setting.key);
   }
 }
 
@@ -87,12 +87,25 @@ ControllerConfig makeController(const YamlNode& root, const SceneConfig& config,
   controller.has_joint_limit_avoidance = config.has_joint_limit_avoidance;
   controller.gains = config.gains;
   if (!config.controller) return controller;
-  controller.tactile_module = robot.config.tactile_module->config;
+  for (const TactileModuleSection& module : robot.config.tactile_modules)
+    controller.tactile_modules.push_back(module.config);
   controller.drive_lag_s = robot.config.drives.position_lag_s;
   if (config.controller->variant != Variant::kNone) {
     controller.force_control = makeForceControl(config);
   }
   return controller;
+}
+
+/// A module as it is simulated: with the scene's imperfections, and chances of its own.
+SimulatedModuleConfig makeSimulatedModule(const SimulationSection& simulation,
+                                          const TactileModuleSection& section, std::size_t index) {
+  SimulatedModuleConfig module = simulation.module;
+  module.seed += index;
+  module.cover_radius_m = section.simulated.cover_radius_m;
+  module.filter_rate_hz = section.simulated.filter_rate_hz;
+  module.filter_cutoff_hz = simulation.filter_cutoff_hz.value_or(section.config.filter_cutoff_hz);
+  module.channels = section.channels;
+  return module;
 }
 
 /// The robot as it is simulated, which may differ from the one that the controller reckons with.
@@ -101,26 +114,23 @@ PlantConfig makePlant(const SimulationSection& simulation, const RobotConfig& ro
   plant.drive_lag_s = simulation.drive_lag_s.value_or(robot.drives.position_lag_s);
   plant.robot_stiffness_N_per_m = robot.stiffness_N_per_m;
   plant.obstacles = simulation.obstacles;
-  plant.module = simulation.module;
-  if (robot.tactile_module) {
-    const TactileModuleSection& module = *robot.tactile_module;
-    plant.cover_radius_m = module.cover_radius_m;
-    plant.module.filter_cutoff_hz = module.config.filter_cutoff_hz;
-    plant.module.filter_rate_hz = module.electronics.filter_rate_hz;
-    plant.module.sample_period_s = module.electronics.sample_period_s;
-    plant.module.calibration = module.electronics.calibration;
-    plant.module.counts_per_N = module.electronics.counts_per_N;
-  }
-  plant.module.filter_cutoff_hz =
-      simulation.filter_cutoff_hz.value_or(plant.module.filter_cutoff_hz);
+  for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i)
+    plant.modules.push_back(makeSimulatedModule(simulation, robot.tactile_modules[i], i));
   return plant;
 }
 
-/// What the scene needs of the robot's hardware: without a controller, the module is not read.
+std::vector<std::string> moduleLinks(const SceneConfig& config, const RobotConfig& robot) {
+  std::vector<std::string> links;
+  if (!config.controller) return links;
+  for (const TactileModuleSection& module : robot.tactile_modules) links.push_back(module.link);
+  return links;
+}
+
+/// What the scene needs of the robot's hardware: without a controller, no module is read.
 std::optional<HardwareConfig> chooseHardware(const SceneConfig& config, const LoadedRobot& robot) {
   if (!robot.hardware) return std::nullopt;
   HardwareConfig hardware =
-      config.controller ? *robot.hardware : withoutTactileModule(*robot.hardware);
+      config.controller ? *robot.hardware : withoutTactileModules(*robot.hardware);
   hardware.real_time.required = config.requires_real_time;
   return hardware;
 }
@@ -164,6 +174,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
               .plant = makePlant(config.simulation, robot.config),
               .robot_name = robot.chain.robot_name,
               .joint_names = robot.chain.joint_names,
+              .module_links = moduleLinks(config, robot.config),
               .sources = reader.files(),
               .overrides = overrides,
               .numbers = std::move(numbers),

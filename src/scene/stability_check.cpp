@@ -104,11 +104,13 @@ std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, doubl
                    kInside * ratio * report.stiffness_N_per_m, least_N_per_m, rule));
 }
 
-/// The module's electronics, but the daemon's filter where the daemon filters.
+/// The modules' electronics, but the daemon's filter where the daemon filters.
 PlantConfig plantOf(const Scene& scene) {
   PlantConfig plant = scene.plant;
-  const bool is_on_bus = scene.hardware && scene.hardware->tactile;
-  plant.module.filtered = !(is_on_bus && scene.hardware->tactile->filter_cutoff_hz);
+  if (!scene.hardware) return plant;
+  const std::vector<CanTactileConfig>& on_bus = scene.hardware->tactile_modules;
+  for (std::size_t i = 0; i < on_bus.size(); ++i)
+    plant.modules[i].filtered = !on_bus[i].filter_cutoff_hz;
   return plant;
 }
 

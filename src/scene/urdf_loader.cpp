@@ -250,7 +250,7 @@ AttachedFrame moduleFrame(const UrdfTree& tree, const Walk& walk, const NamedFra
 }  // namespace
 
 UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
-                        const std::optional<NamedFrame>& module_link) {
+                        const std::vector<NamedFrame>& module_links) {
   UrdfTree tree;
   parseUrdf(file, tree);
   const int tip_link = requireLink(tree, tip);
@@ -265,7 +265,8 @@ UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
   for (const MovingJoint& m : walk.moving) chain.joints.push_back(m.joint);
   chain.tip = walk.frame;
   setLimits(walk.moving, chain.limits);
-  if (module_link) chain.module_link = moduleFrame(tree, walk, *module_link);
+  for (const NamedFrame& link : module_links)
+    chain.module_links.push_back(moduleFrame(tree, walk, link));
   return chain;
 }
 

@@ -101,10 +101,10 @@ void mergeYaml(YamlNode& base, YamlNode overlay) {
   }
 }
 
-void applyOverride(YamlNode& root, const Override& setting, std::size_t skipped) {
+void applyOverride(YamlNode& root, const Override& setting, std::string_view path) {
   const SourceFile source{"--set " + setting.key, setting.value};
   const SourcePosition at{std::make_shared<std::string>(source.path), 1, 1};
-  const std::vector<PathStep> steps = splitPath(std::string_view(setting.key).substr(skipped));
+  const std::vector<PathStep> steps = splitPath(path);
   if (steps.empty()) {
     failAt(at, setting.key, "is no path of keys", "expected section.key or section.list[0].key");
   }
@@ -113,7 +113,8 @@ void applyOverride(YamlNode& root, const Override& setting, std::size_t skipped)
     if (isNothing(*node)) *node = YamlNode{YamlNode::Kind::kMap, at};
     if (node->kind != YamlNode::Kind::kMap) {
       failAt(at, setting.key, fmt::format("{} is no key of a section", inQuotes(path_step.key)),
-             skipped == 0 ? "expected a key the scene knows" : "expected a key the robot knows");
+             setting.key == path ? "expected a key the scene knows"
+                                 : "expected a key the robot knows");
     }
     if (!node->find(path_step.key)) {
       node->entries.push_back({path_step.key, at, YamlNode{YamlNode::Kind::kEmpty, at}});

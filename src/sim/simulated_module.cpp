@@ -21,10 +21,10 @@ SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config)
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz)},
-      channels_from_wrench_(pseudoinverse(config.calibration)),
+      channels_from_wrench_(pseudoinverse(config.channels.calibration)),
       random_(config.seed),
       steps_a_sample_(
-          static_cast<int>(std::lround(config.sample_period_s * config.filter_rate_hz))) {}
+          static_cast<int>(std::lround(config.channels.sample_period_s * config.filter_rate_hz))) {}
 
 void SimulatedModule::update(const Wrench4& wrench) noexcept {
   Wrench4 filtered;
@@ -50,11 +50,11 @@ Wrench4 SimulatedModule::measure(const Wrench4& wrench) noexcept {
     if (config_.noise_N > 0.0) force_N += config_.noise_N * normal_(random_);
     if (!config_.quantised) continue;
     const double counts =
-        std::clamp(std::round(force_N * config_.counts_per_N), -kMaxCounts, kMaxCounts);
-    force_N = counts / config_.counts_per_N;
+        std::clamp(std::round(force_N * config_.channels.counts_per_N), -kMaxCounts, kMaxCounts);
+    force_N = counts / config_.channels.counts_per_N;
     counts_[i] = static_cast<std::int32_t>(counts);
   }
-  return config_.calibration * channels;
+  return config_.channels.calibration * channels;
 }
 
 }  // namespace tactus

@@ -19,40 +19,50 @@ int wholeRatio(double longer, double shorter) {
   return static_cast<int>(std::lround(ratio));
 }
 
+double shortestStep_s(const ControllerConfig& robot, const PlantConfig& plant, double period_s) {
+  if (plant.modules.size() < robot.tactile_modules.size())
+    throw std::invalid_argument("each tactile module must have a simulated one");
+  double step_s = period_s;
+  for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i)
+    step_s = std::min(step_s, 1.0 / plant.modules[i].filter_rate_hz);
+  return step_s;
+}
+
 }  // namespace
 
 SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig& plant,
                                double period_s)
     : chain_(robot.chain),
       limits_(robot.limits),
-      module_config_(robot.tactile_module),
-      cover_radius_m_(plant.cover_radius_m),
+      step_s_(shortestStep_s(robot, plant, period_s)),
+      steps_a_cycle_(wholeRatio(period_s, step_s_)),
+      drive_share_(lagShare(step_s_, plant.drive_lag_s)),
       q_commanded_(robot.q_start),
       q_(robot.q_start) {
-  const double filter_period_s = module_config_ ? 1.0 / plant.module.filter_rate_hz : period_s;
-  step_s_ = std::min(period_s, filter_period_s);
-  steps_a_cycle_ = wholeRatio(period_s, step_s_);
-  steps_a_filter_step_ = wholeRatio(filter_period_s, step_s_);
-  drive_share_ = lagShare(step_s_, plant.drive_lag_s);
-  if (module_config_) {
-    module_.emplace(plant.module);
+  for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i) {
+    const TactileModuleConfig& config = robot.tactile_modules[i];
+    const SimulatedModuleConfig& module = plant.modules[i];
+    modules_.push_back(
+        {config.link, config.length_m, module.cover_radius_m, SimulatedModule(module), {}});
+    modules_.back().steps_a_filter_step = wholeRatio(1.0 / module.filter_rate_hz, step_s_);
     for (const ObstacleConfig& obstacle : plant.obstacles)
-      obstacles_.emplace_back(obstacle, plant.robot_stiffness_N_per_m);
+      modules_.back().obstacles.emplace_back(obstacle, plant.robot_stiffness_N_per_m);
   }
   chain_.computePose(q_, pose_);
 }
 
 void SimulatedRobot::read(RobotInput& input) noexcept {
   input.q_measured = q_;
-  if (module_) input.tactile = module_->sample();
+  for (int i = 0; i < modules(); ++i) input.tactile[i] = modules_[i].electronics.sample();
 }
 
 void SimulatedRobot::write(const JointVector& velocity_setpoint) noexcept {
   for (int i = 0; i < steps_a_cycle_; ++i, ++step_) {
     moveArm(velocity_setpoint);
-    if (!module_) continue;
-    const Wrench4 wrench = contactWrench();
-    if (step_ % steps_a_filter_step_ == 0) module_->update(wrench);
+    for (Module& module : modules_) {
+      const Wrench4 wrench = contactWrench(module);
+      if (step_ % module.steps_a_filter_step == 0) module.electronics.update(wrench);
+    }
   }
 }
 
@@ -63,21 +73,21 @@ void SimulatedRobot::moveArm(const JointVector& velocity_setpoint) noexcept {
   chain_.computePose(q_, pose_);
 }
 
-Wrench4 SimulatedRobot::contactWrench() noexcept {
-  const Pose X_BaseModule = framePose(pose_, module_config_->link);
-  const CoverAxis axis{X_BaseModule.p_AB, X_BaseModule.R_AB.col(0), module_config_->length_m,
-                       cover_radius_m_};
+Wrench4 SimulatedRobot::contactWrench(Module& module) const noexcept {
+  const Pose X_BaseModule = framePose(pose_, module.link);
+  const CoverAxis axis{X_BaseModule.p_AB, X_BaseModule.R_AB.col(0), module.length_m,
+                       module.cover_radius_m};
   Vector3 force_Base = Vector3::Zero();
   Wrench4 wrench = Wrench4::Zero();
   const double t_s = static_cast<double>(step_) * step_s_;
-  for (Obstacle& obstacle : obstacles_) {
+  for (Obstacle& obstacle : module.obstacles) {
     const ObstacleContact contact = obstacle.touch(axis, t_s);
     if (contact.force_N == 0.0) continue;
     const Vector3 F = X_BaseModule.R_AB.transpose() * contact.force_Base;
     force_Base += contact.force_Base;
     wrench += Wrench4(F.y(), F.z(), -contact.position_m * F.z(), contact.position_m * F.y());
   }
-  true_force_N_ = force_Base.norm();
+  module.true_force_N = force_Base.norm();
   return wrench;
 }
 

@@ -23,8 +23,10 @@ double brakeTime_s(const HardwareConfig& hardware) {
 }
 
 double tareTime_s(const HardwareConfig& hardware) {
-  return hardware.tactile ? hardware.tactile->tare_samples * hardware.tactile->sample_period_s
-                          : 0.0;
+  double longest_s = 0.0;
+  for (const CanTactileConfig& module : hardware.tactile_modules)
+    longest_s = std::max(longest_s, module.tare_samples * module.channels.sample_period_s);
+  return longest_s;
 }
 
 double rampTime_s(const JointLimits& limits) {
@@ -70,8 +72,6 @@ ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareCon
       period_s_(period_s),
       max_late_cycles_(hardware.real_time.max_late_cycles),
       has_enable_line_(hardware.gpio && hardware.gpio->enable),
-      max_sample_age_s_(controller.tactile_module ? controller.tactile_module->max_sample_age_s
-                                                  : 0.0),
       mode_config_(modeConfig(controller.limits, hardware, period_s)),
       brake_config_(brakeConfig(hardware, period_s)),
       state_(controller_.initialState()) {
@@ -83,7 +83,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   coast(input.missed_cycles);
   robot_.expect(isCommanding(mode_.mode) ? state_.q_desired : output_.q_desired);
   robot_.read(input_);
-  startTare();
+  startTares();
   const Mode before = mode_.mode;
   const Fault fault_before = mode_.fault;
   updateMode(mode_config_, modeInput(input, judge(input)), mode_);
@@ -97,7 +97,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   updateBrakes();
   rememberPlaces();
   const bool is_boot_new = mode_.mode == Mode::kBoot && mode_.cycles_in_mode == 0;
-  if (is_boot_new) repeatRefusedTare();
+  if (is_boot_new) repeatRefusedTares();
   robot_.command(driveGoal(), is_boot_new || is_first_, output_.q_desired);
   if (mode_.mode == Mode::kOff) {
     robot_.release();
@@ -114,7 +114,7 @@ void ControlCycle::prepare() noexcept {
   controller_.prepare(gains_, static_cast<double>(next) * period_s_, state_, prepared_);
 }
 
-/// The drives kept the last command, and the sensor's sample grew older.
+/// The drives kept the last command, and samples grew older.
 void ControlCycle::coast(int missed_cycles) noexcept {
   if (missed_cycles <= 0) return;
   controller_.coast(missed_cycles, period_s_, state_);
@@ -123,22 +123,23 @@ void ControlCycle::coast(int missed_cycles) noexcept {
 
 bool ControlCycle::areConfigured() const noexcept {
   if (!robot_.drives().are_configured || !robot_.hasPositions()) return false;
-  const TactileReceiver* const tactile = robot_.tactile();
-  return !tactile || (tactile->tareState() == TareState::kDone && hasFreshSample());
+  for (int module = 0; module < modules(); ++module)
+    if (!isReady(module)) return false;
+  return true;
 }
 
-/// The tare is taken once, before the arm has ever moved: afterwards it may rest in contact.
-void ControlCycle::startTare() noexcept {
-  TactileReceiver* const tactile = robot_.tactile();
-  const bool is_due = tactile && tactile->tareState() == TareState::kNone &&
-                      mode_.mode == Mode::kBoot && robot_.drives().are_configured &&
-                      robot_.hasPositions();
-  if (is_due) tactile->startTare();
+/// A tare is taken once, before the arm has ever moved: afterwards it may rest in contact.
+void ControlCycle::startTares() noexcept {
+  if (modules() == 0 || mode_.mode != Mode::kBoot) return;
+  if (!robot_.drives().are_configured || !robot_.hasPositions()) return;
+  for (TactileReceiver& module : robot_.tactileModules())
+    if (module.tareState() == TareState::kNone) module.startTare();
 }
 
-void ControlCycle::repeatRefusedTare() noexcept {
-  TactileReceiver* const tactile = robot_.tactile();
-  if (!is_started_ && tactile && tactile->tareState() == TareState::kRefused) tactile->startTare();
+void ControlCycle::repeatRefusedTares() noexcept {
+  if (is_started_) return;
+  for (TactileReceiver& module : robot_.tactileModules())
+    if (module.tareState() == TareState::kRefused) module.startTare();
 }
 
 void ControlCycle::rememberPlaces() noexcept {
@@ -170,7 +171,7 @@ ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept
 void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   const bool is_running = mode_.mode == Mode::kRunning;
   if (!is_started_ && !is_running) {
-    controller_.watchSensor(input_, period_s_, state_);
+    controller_.watchSensors(input_, period_s_, state_);
     output_.q_desired = robot_.hasPositions() ? input_.q_measured : places_.commanded();
     return;
   }
@@ -183,10 +184,10 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   controller_.update(input_, gains_, taskTime_s(), period_s_, prepared_, state_, output_);
 }
 
-/// As a replay begins, which knows of no sample before. Of this one the age is remembered.
+/// As a replay begins, which knows of no sample before. Of these the age is remembered.
 void ControlCycle::begin() noexcept {
-  age_at_start_s_ = controller_.sampleAge_s(input_, period_s_, state_);
-  sequence_at_start_ = input_.tactile.sequence;
+  for (int module = 0; module < modules(); ++module)
+    samples_at_start_[module] = {input_.tactile[module].sequence, sampleAge(module).value};
   state_ = controller_.initialState();
 }
 

@@ -11,9 +11,6 @@ void copy(const Vector& from, double* to) noexcept {
 }
 
 void fillContact(const ContactReport& contact, CycleRecord& record) noexcept {
-  record.force_sensor_N = contact.force_sensor_N;
-  record.contact_position_m = contact.contact_position_m;
-  copy(contact.contact_direction, record.contact_direction);
   record.force_contact_N = contact.force_contact_N;
   record.stiffness_N_per_m = contact.stiffness_N_per_m;
   record.stiffness_raw_N_per_m = contact.stiffness_raw_N_per_m;
@@ -27,13 +24,18 @@ void fillContact(const ContactReport& contact, CycleRecord& record) noexcept {
   record.u_t = contact.u_t;
 }
 
-void fillInput(const RobotInput& input, CycleRecord& record) noexcept {
-  copy(input.q_measured, record.q_measured);
-  record.tactile_force_y_N = input.tactile.force_y_N;
-  record.tactile_force_z_N = input.tactile.force_z_N;
-  record.tactile_moment_y_Nm = input.tactile.moment_y_Nm;
-  record.tactile_moment_z_Nm = input.tactile.moment_z_Nm;
-  record.tactile_sequence = input.tactile.sequence;
+void fillModule(int i, const TactileSample& sample, const ContactPointState& sensed,
+                CycleRecord& record) noexcept {
+  record.force_sensor_N[i] = sensed.force_N;
+  record.contact_position_m[i] = sensed.position_m;
+  record.contact_dir_x[i] = sensed.direction.x();
+  record.contact_dir_y[i] = sensed.direction.y();
+  record.contact_dir_z[i] = sensed.direction.z();
+  record.tactile_force_y_N[i] = sample.force_y_N;
+  record.tactile_force_z_N[i] = sample.force_z_N;
+  record.tactile_moment_y_Nm[i] = sample.moment_y_Nm;
+  record.tactile_moment_z_Nm[i] = sample.moment_z_Nm;
+  record.tactile_sequence[i] = sample.sequence;
 }
 
 }  // namespace
@@ -43,7 +45,9 @@ void fillRecord(double t_s, const RobotInput& input, const Gains& gains,
                 CycleRecord& record) noexcept {
   record.t_s = t_s;
   record.task_time_s = t_s;
-  fillInput(input, record);
+  copy(input.q_measured, record.q_measured);
+  for (int i = 0; i < output.modules; ++i)
+    fillModule(i, input.tactile[i], output.sensed[i], record);
   fillContact(output.contact, record);
   copy(output.q_desired, record.q);
   copy(output.velocity, record.dq);
@@ -59,11 +63,11 @@ void fillRecord(double t_s, const RobotInput& input, const Gains& gains,
 RobotInput recordedInput(const CycleRecord& record, int joints) noexcept {
   RobotInput input;
   input.q_measured = Eigen::Map<const Eigen::VectorXd>(record.q_measured, joints);
-  input.tactile.force_y_N = record.tactile_force_y_N;
-  input.tactile.force_z_N = record.tactile_force_z_N;
-  input.tactile.moment_y_Nm = record.tactile_moment_y_Nm;
-  input.tactile.moment_z_Nm = record.tactile_moment_z_Nm;
-  input.tactile.sequence = static_cast<std::uint32_t>(record.tactile_sequence);
+  for (int i = 0; i < kMaxTactileModules; ++i) {
+    input.tactile[i] = {record.tactile_force_y_N[i], record.tactile_force_z_N[i],
+                        record.tactile_moment_y_Nm[i], record.tactile_moment_z_Nm[i],
+                        static_cast<std::uint32_t>(record.tactile_sequence[i])};
+  }
   return input;
 }
 

@@ -36,12 +36,20 @@ Fault ControlCycle::judge(const CycleInput& input) noexcept {
 /// Of the last cycle. At rest nothing starts on a reading that would stop it.
 Fault ControlCycle::judgeController() noexcept {
   if (mode_.mode == Mode::kBoot) return Fault::kNone;
-  const bool is_moving = mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding;
-  const Fault fault = is_moving ? output_.fault : state_.sample_fault;
-  if (fault == Fault::kNone) return fault;
-  judged_.detail = is_moving ? output_.fault_detail : state_.sample_detail;
-  judged_.joint = judged_.detail.joint;
-  return fault;
+  if (mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding) {
+    if (output_.fault == Fault::kNone) return Fault::kNone;
+    judged_.detail = output_.fault_detail;
+    judged_.joint = judged_.detail.joint;
+    return output_.fault;
+  }
+  for (int module = 0; module < modules(); ++module) {
+    const TactileReading& reading = state_.modules[module];
+    if (reading.fault == Fault::kNone) continue;
+    judged_.detail = reading.detail;
+    judged_.detail.module = module;
+    return reading.fault;
+  }
+  return Fault::kNone;
 }
 
 Fault ControlCycle::judgeBuses(const CycleInput& input) noexcept {
@@ -71,28 +79,45 @@ Fault ControlCycle::judgeDrives() noexcept {
 }
 
 Fault ControlCycle::judgeTactile() noexcept {
-  TactileReceiver* const tactile = robot_.tactile();
-  if (!tactile) return Fault::kNone;
+  for (int module = 0; module < modules(); ++module) {
+    const Fault fault = judgeModule(module);
+    if (fault == Fault::kNone) continue;
+    judged_.detail.module = module;
+    return fault;
+  }
+  return Fault::kNone;
+}
+
+Fault ControlCycle::judgeModule(int module) noexcept {
+  const TactileReceiver& receiver = robot_.tactileModules()[module];
   const bool is_boot = mode_.mode == Mode::kBoot;
-  if (!is_boot && hasFreshSample()) return tactile->fault();
-  if (is_boot && tactile->tareState() == TareState::kRefused) {
-    judged_.detail = tactile->tareRefusal();
+  if (!is_boot && hasFreshSample(module)) return receiver.fault();
+  if (is_boot && receiver.tareState() == TareState::kRefused) {
+    judged_.detail = receiver.tareRefusal();
     return Fault::kTareRefused;
   }
   const bool is_late = mode_.cycles_in_mode >= mode_config_.boot_cycles;
-  if (is_boot && !(is_late && robot_.drives().are_configured)) return Fault::kNone;
-  judged_.detail = sampleAge();
+  const bool is_missed = is_late && robot_.drives().are_configured && !isReady(module);
+  if (is_boot && !is_missed) return Fault::kNone;
+  judged_.detail = sampleAge(module);
   return Fault::kTactileStale;
 }
 
-FaultDetail ControlCycle::sampleAge() const noexcept {
-  const bool is_first = is_started_ && input_.tactile.sequence == sequence_at_start_;
-  const double before_s = is_first ? age_at_start_s_ : 0.0;
-  return {before_s + controller_.sampleAge_s(input_, period_s_, state_), max_sample_age_s_, "s"};
+FaultDetail ControlCycle::sampleAge(int module) const noexcept {
+  FaultDetail age = controller_.sampleAge(module, input_, period_s_, state_);
+  const SampleAtStart& first = samples_at_start_[module];
+  if (is_started_ && input_.tactile[module].sequence == first.sequence) age.value += first.age_s;
+  return age;
 }
 
-bool ControlCycle::hasFreshSample() const noexcept {
-  return input_.tactile.sequence > 0 && sampleAge().value <= max_sample_age_s_;
+bool ControlCycle::hasFreshSample(int module) const noexcept {
+  const FaultDetail age = sampleAge(module);
+  return input_.tactile[module].sequence > 0 && age.value <= age.limit;
+}
+
+bool ControlCycle::isReady(int module) const noexcept {
+  const TactileReceiver& receiver = robot_.tactileModules()[module];
+  return receiver.tareState() == TareState::kDone && hasFreshSample(module);
 }
 
 }  // namespace tactus

@@ -52,11 +52,11 @@ void setForceControl(const LoopCase& c, ControllerConfig& config) {
 PlantConfig plantAt(double x_m, double y_m, double stiffness_N_per_m, const ContactLoop& loop) {
   PlantConfig plant = test::crops9Plant({test::band(x_m, y_m, stiffness_N_per_m)});
   plant.robot_stiffness_N_per_m = kNoLimit;
-  plant.cover_radius_m = kRadius_m;
+  plant.modules[0].cover_radius_m = kRadius_m;
   plant.drive_lag_s = loop.drive_lag_s;
-  plant.module.filter_cutoff_hz = loop.filter_cutoff_hz;
-  plant.module.filter_rate_hz = loop.filter_rate_hz;
-  plant.module.sample_period_s = loop.sample_period_s;
+  plant.modules[0].filter_cutoff_hz = loop.filter_cutoff_hz;
+  plant.modules[0].filter_rate_hz = loop.filter_rate_hz;
+  plant.modules[0].channels.sample_period_s = loop.sample_period_s;
   return plant;
 }
 
@@ -145,8 +145,8 @@ bool calmsDownOnRail(const LoopCase& c, double stiffness_ratio) {
   ControllerConfig config = test::railController(c.variant);
   setForceControl(c, config);
   config.gains.force.activation_force_N = rest.activation_N;
-  config.tactile_module->max_sample_age_s = 1.0;
-  config.tactile_module->filter_cutoff_hz = c.loop.model_filter_cutoff_hz;
+  config.tactile_modules.front().max_sample_age_s = 1.0;
+  config.tactile_modules.front().filter_cutoff_hz = c.loop.model_filter_cutoff_hz;
   config.drive_lag_s = c.loop.model_drive_lag_s;
   config.gains.task.drift_gain_per_s = c.is_fed_forward ? 20.0 : c.loop.drift_gain_per_s;
   config.task.trajectory = trajectoryOf(rest);
@@ -176,7 +176,7 @@ bool calmsDownOnArm(const LoopCase& c, double stiffness_ratio) {
 
   ChainPose pose;
   config.chain.computePose(config.q_start, pose);
-  const Pose X_BaseModule = framePose(pose, config.tactile_module->link);
+  const Pose X_BaseModule = framePose(pose, config.tactile_modules.front().link);
   const Vector3 axis = X_BaseModule.R_AB.col(0);
   const Vector3 side = Vector3(-axis.y(), axis.x(), 0.0).normalized();
   const double depth_m = (1.0 + kKick) * rest_N / (stiffness_ratio * kC_N_per_m);

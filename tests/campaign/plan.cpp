@@ -41,14 +41,14 @@ void aim(Random& random, const Scene& scene, Injection& x) {
   x.node = static_cast<std::uint32_t>(drive.node_id);
   x.counts_per_unit = drive.counts_per_unit;
   if (x.kind->where == Where::kTactile) {
-    x.bus = hardware.tactile->bus;
+    x.bus = hardware.tactile_modules.front().bus;
     x.node = static_cast<std::uint32_t>(random.index(4));
   }
   if (x.kind->where != Where::kBus) return;
   x.bus = random.index(static_cast<int>(hardware.buses.size()));
   if (random.chance(0.5)) return;
   static constexpr std::array<std::uint32_t, 5> kFunctions = {0x180, 0x200, 0x700, 0x580, 0x80};
-  const bool is_tactile = x.bus == hardware.tactile->bus;
+  const bool is_tactile = x.bus == hardware.tactile_modules.front().bus;
   x.id = is_tactile ? 0x100 + x.node : kFunctions[random.index(5)] + x.node;
 }
 

@@ -127,7 +127,7 @@ void Play::observe() {
   const CycleRecord record = cell_.record();
   const int joints = stage_.scene.controller.chain.size();
   now_.command = Eigen::Map<const Eigen::VectorXd>(record.dq, joints);
-  now_.force_error_N = std::abs(record.force_sensor_N - cell_.plant.world().trueForce_N());
+  now_.force_error_N = std::abs(record.force_sensor_N[0] - cell_.plant.world().trueForce_N());
   observeSetpoints();
   observePlant();
   observeInjections();

@@ -44,7 +44,7 @@ Stage bootStage(const std::string& variant) {
   for (int i = 0; i < 5000 && cell.cycle.report().mode != Mode::kRunning; ++i) steps(1);
   steps(2000);
   stage.moments.push_back(cell);
-  for (int i = 0; i < 8000 && cell.record().force_sensor_N < 1.2; ++i) steps(1);
+  for (int i = 0; i < 8000 && cell.record().force_sensor_N[0] < 1.2; ++i) steps(1);
   stage.moments.push_back(cell);
   steps(2500);
   stage.moments.push_back(cell);

@@ -49,9 +49,9 @@ TEST(BusLoad, ABusWithoutDrivesHasNoSyncAndNoHeartbeat) {
   HardwareConfig hardware = withDrives(3, 0);
   EXPECT_TRUE(busLoads(hardware, 0.001)[1].terms.empty());
   EXPECT_EQ(busLoads(hardware, 0.001)[1].share(), 0.0);
-  hardware.tactile.emplace();
-  hardware.tactile->bus = 1;
-  hardware.tactile->sample_period_s = 0.004;
+  hardware.tactile_modules.emplace_back();
+  hardware.tactile_modules.front().bus = 1;
+  hardware.tactile_modules.front().channels.sample_period_s = 0.004;
   const BusLoad tactile = busLoads(hardware, 0.001)[1];
   ASSERT_EQ(tactile.terms.size(), 1u);
   EXPECT_DOUBLE_EQ(tactile.bitsPerSecond(), 4 * 135 / 0.004);
@@ -61,8 +61,8 @@ TEST(BusLoad, DrivesAndModuleOnOneBusAddUpAtAnotherRate) {
   HardwareConfig hardware = withDrives(1, 0);
   hardware.buses[0].bit_rate_per_s = 500e3;
   hardware.canopen.heartbeat_period_s = 0.1;
-  hardware.tactile.emplace();
-  hardware.tactile->sample_period_s = 0.01;
+  hardware.tactile_modules.emplace_back();
+  hardware.tactile_modules.front().channels.sample_period_s = 0.01;
   const BusLoad load = busLoads(hardware, 0.002)[0];
   EXPECT_DOUBLE_EQ(load.bitsPerSecond(), (115 + 115 + 55) / 0.002 + 2 * 65 / 0.1 + 4 * 135 / 0.01);
   EXPECT_DOUBLE_EQ(load.share(), load.bitsPerSecond() / 500e3);

@@ -30,13 +30,13 @@ inline TactileFrames tactileFrames(int sequence, const Counts& counts, std::uint
 /// counts a newton.
 inline CanTactileConfig tactileConfig() {
   CanTactileConfig config;
-  config.counts_per_N = 1000.0;
+  config.channels.counts_per_N = 1000.0;
   for (int end = 0; end < 2; ++end) {
     const double x_m = end == 0 ? 0.1 : 0.3;
-    config.calibration.col(4 * end + 0) << 1, 0, 0, x_m;
-    config.calibration.col(4 * end + 1) << -1, 0, 0, -x_m;
-    config.calibration.col(4 * end + 2) << 0, 1, -x_m, 0;
-    config.calibration.col(4 * end + 3) << 0, -1, x_m, 0;
+    config.channels.calibration.col(4 * end + 0) << 1, 0, 0, x_m;
+    config.channels.calibration.col(4 * end + 1) << -1, 0, 0, -x_m;
+    config.channels.calibration.col(4 * end + 2) << 0, 1, -x_m, 0;
+    config.channels.calibration.col(4 * end + 3) << 0, -1, x_m, 0;
   }
   return config;
 }

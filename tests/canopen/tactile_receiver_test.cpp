@@ -51,11 +51,11 @@ TEST(TactileReceiver, DecodesAFrameWrittenByHand) {
 
 TEST(TactileReceiver, DecodesEveryLevelOfEveryChannel) {
   CanTactileConfig config = tactileConfig();
-  config.counts_per_N = 1.0;
+  config.channels.counts_per_N = 1.0;
   std::mt19937 random(3);
   for (int channel = 0; channel < 8; ++channel) {
-    config.calibration.setZero();
-    config.calibration(2, channel) = 1.0;
+    config.channels.calibration.setZero();
+    config.channels.calibration(2, channel) = 1.0;
     TactileReceiver receiver(config, kPeriod_s);
     for (int i = 0; i < 20000; ++i) {
       Counts counts{};

@@ -25,9 +25,9 @@ class CommandReplay : public ::testing::Test {
     std::vector<CycleRecord> records(static_cast<std::size_t>(cycles));
     for (int i = 0; i < cycles; ++i) {
       const double t_s = i * scene.period_s;
-      input.tactile.force_y_N = std::max(0.0, 6.0 * std::sin(4.0 * t_s));
-      input.tactile.moment_z_Nm = 0.2 * input.tactile.force_y_N;
-      input.tactile.sequence = static_cast<std::uint32_t>(i / 4);
+      input.tactile[0].force_y_N = std::max(0.0, 6.0 * std::sin(4.0 * t_s));
+      input.tactile[0].moment_z_Nm = 0.2 * input.tactile[0].force_y_N;
+      input.tactile[0].sequence = static_cast<std::uint32_t>(i / 4);
       controller.update(input, controller.initialGains(), t_s, scene.period_s, state, output);
       fillRecord(t_s, input, controller.initialGains(), output, Vector3::Zero(), records[i]);
     }

@@ -41,7 +41,7 @@ class RunStatusFile : public ::testing::Test {
   void cycle(bool is_in_motion, double force_N) {
     LoopRecord record;
     record.is_in_motion = is_in_motion;
-    record.cycle.force_sensor_N = force_N;
+    record.cycle.force_sensor_N[0] = force_N;
     record.cycle.stiffness_N_per_m = 7000.0;
     record.cycle.wake_latency_ns = 4000;
     record.cycle.step_ns = 9000;

@@ -20,7 +20,7 @@ constexpr double kC_N_per_m = 1000.0;
 ControllerConfig bareRail(double speed_m_per_s) {
   ControllerConfig config = test::railController(Variant::kNullLimit);
   config.drive_lag_s = 0.0;
-  config.tactile_module->filter_cutoff_hz = 1e6;
+  config.tactile_modules.front().filter_cutoff_hz = 1e6;
   config.gains.force.assumed_stiffness_N_per_m = kC_N_per_m;
   config.gains.force.max_null_speed_m_per_s = 1e-12;
   Waypoint line;
@@ -126,14 +126,14 @@ struct TouchedRobot {
                         point(contact.position_m, output.q_desired - h * output.velocity);
     ChainPose pose;
     config.chain.computePose(output.q_desired, pose);
-    const Matrix3 R = framePose(pose, config.tactile_module->link).R_AB;
+    const Matrix3 R = framePose(pose, config.tactile_modules.front().link).R_AB;
     return -way.dot(R * contact.direction) / (2.0 * h);
   }
 
   Vector3 point(double along_m, const JointVector& q) const {
     ChainPose pose;
     config.chain.computePose(q, pose);
-    const Pose X = framePose(pose, config.tactile_module->link);
+    const Pose X = framePose(pose, config.tactile_modules.front().link);
     return X.p_AB + along_m * X.R_AB.col(0);
   }
 
@@ -204,7 +204,7 @@ TEST(ApproachLimit, StaysFiniteWhateverTheSensorSays) {
   test::Random random(333);
   for (int i = 0; i < 30; ++i) {
     TouchedRobot robot(random);
-    robot.config.tactile_module->max_force_N = 1e9;
+    robot.config.tactile_modules.front().max_force_N = 1e9;
     robot.config.limits.max_velocity = JointVector::Constant(robot.n, 5.0);
     robot.config.limits.max_acceleration = JointVector::Constant(robot.n, 200.0);
     const Controller controller(robot.config);

@@ -44,14 +44,14 @@ struct Touched {
   Vector3 contactPoint(const JointVector& q) const {
     ChainPose pose;
     config.chain.computePose(q, pose);
-    const Pose X = framePose(pose, config.tactile_module->link);
+    const Pose X = framePose(pose, config.tactile_modules.front().link);
     return X.p_AB + X.R_AB * Vector3(x_m, 0.0, 0.0);
   }
 
   Vector3 forceDirection() const {
     ChainPose pose;
     config.chain.computePose(output.q_desired, pose);
-    return framePose(pose, config.tactile_module->link).R_AB *
+    return framePose(pose, config.tactile_modules.front().link).R_AB *
            Vector3(0.0, std::cos(angle_rad), std::sin(angle_rad));
   }
 

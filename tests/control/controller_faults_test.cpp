@@ -67,8 +67,8 @@ class MovingArm {
 
 /// A fresh sample with one reading replaced.
 RobotInput spoilt(RobotInput input, double TactileSample::*reading, double value) {
-  ++input.tactile.sequence;
-  input.tactile.*reading = value;
+  ++input.tactile[0].sequence;
+  input.tactile[0].*reading = value;
   return input;
 }
 
@@ -92,7 +92,7 @@ TEST(ControllerFaults, SensorReadingsThatAreNoNumber) {
 
 TEST(ControllerFaults, ForceBeyondTheModulesRange) {
   MovingArm arm(193);
-  const double max_force_N = arm.config().tactile_module->max_force_N;
+  const double max_force_N = arm.config().tactile_modules.front().max_force_N;
   arm.step(spoilt(arm.touch(), &TactileSample::force_z_N, -1.01 * max_force_N));
   EXPECT_EQ(arm.output().fault, Fault::kTactileInvalid);
   arm.expectRestForGood(Fault::kTactileInvalid);
@@ -100,9 +100,9 @@ TEST(ControllerFaults, ForceBeyondTheModulesRange) {
 
 TEST(ControllerFaults, TellTheOffendingForceForGood) {
   MovingArm arm(193);
-  const double max_force_N = arm.config().tactile_module->max_force_N;
+  const double max_force_N = arm.config().tactile_modules.front().max_force_N;
   RobotInput input = spoilt(arm.touch(), &TactileSample::force_y_N, 3.0 * max_force_N);
-  input.tactile.force_z_N = -4.0 * max_force_N;
+  input.tactile[0].force_z_N = -4.0 * max_force_N;
   arm.step(input);
   arm.expectRestForGood(Fault::kTactileInvalid);
   const FaultDetail& detail = arm.output().fault_detail;
@@ -122,7 +122,7 @@ TEST(ControllerFaults, AMomentThatIsNoNumberIsNotToldAsAForce) {
 TEST(ControllerFaults, SampleThatIsTooOld) {
   MovingArm arm(194);
   RobotInput old = arm.touch();
-  ++old.tactile.sequence;
+  ++old.tactile[0].sequence;
   arm.step(old);
   for (int i = 1; i <= 20; ++i) {  // max_sample_age_s = 0.02
     arm.step(old);

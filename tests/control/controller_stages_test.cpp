@@ -30,7 +30,7 @@ TEST(ControllerStages, TactileModuleAloneChangesNoMotion) {
   ControllerConfig with = test::fullController(random, 9, Variant::kNone);
   with.force_control.reset();
   ControllerConfig without = with;
-  without.tactile_module.reset();
+  without.tactile_modules.clear();
   expectSameMotion(with, without, 10.0);
 }
 
@@ -74,7 +74,7 @@ TEST(ControllerStages, AbsentStagesReportZero) {
   test::Random random(246);
   ControllerConfig config = test::fullController(random, 7, Variant::kNone);
   config.force_control.reset();
-  config.tactile_module.reset();
+  config.tactile_modules.clear();
   const Controller controller(config);
   ControllerState state = controller.initialState();
   ControllerOutput output;
@@ -87,7 +87,7 @@ TEST(ControllerStages, AbsentStagesReportZero) {
 TEST(ControllerStages, RefusesALawWithoutAModule) {
   test::Random random(248);
   ControllerConfig config = test::fullController(random, 7, Variant::kNullSpace);
-  config.tactile_module.reset();
+  config.tactile_modules.clear();
   EXPECT_THROW(Controller{config}, std::invalid_argument);
 }
 

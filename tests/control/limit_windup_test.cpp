@@ -41,7 +41,7 @@ struct PushedArm {
     for (int i = 0; i < std::lround(duration_s / 0.001); ++i) {
       input.q_measured = state.q_desired;
       if (cycle++ % 4 == 0)
-        input.tactile = test::touchAt(0.2, force_N, 2.8, input.tactile.sequence + 1);
+        input.tactile[0] = test::touchAt(0.2, force_N, 2.8, input.tactile[0].sequence + 1);
       const ContactControllerState before = state.contact;
       controller.update(input, controller.initialGains(), 1e-3 * static_cast<double>(cycle), 0.001,
                         state, output);

@@ -90,7 +90,7 @@ struct PushedArm {
       : random(seed),
         config(test::randomController(random, 9, 6)),
         push(random.vector(9, -size_rad, size_rad)) {
-    config.tactile_module.reset();
+    config.tactile_modules.clear();
   }
 
   ControllerOutput respond() const {

@@ -18,7 +18,7 @@ constexpr double kPathWaitsBeyond_m = 0.02;
 /// A rail whose tool shall go 0.4 m and gets no faster than the two carriages together.
 ControllerConfig railThatReaches(double tool_speed_m_per_s) {
   ControllerConfig config = test::railController(Variant::kNone);
-  config.tactile_module.reset();
+  config.tactile_modules.clear();
   config.force_control.reset();
   config.limits.max_velocity.setConstant(0.5 * tool_speed_m_per_s);
   config.gains.task.drift_gain_per_s = 5.0;
@@ -203,7 +203,7 @@ class EventfulRun {
       if (random_.chance(0.01)) is_stopping_ = !is_stopping_;
       state.is_stopping = is_stopping_;
       RobotInput input = touches_.next(state.q_desired);
-      if (random_.chance(0.002)) input.tactile = test::touchAt(0.1, kNoLimit, 0.0, 1000000 + i);
+      if (random_.chance(0.002)) input.tactile[0] = test::touchAt(0.1, kNoLimit, 0.0, 1000000 + i);
       t_s += passed_s;
       update(input, t_s, period_s, state);
       check(passed_s, state);

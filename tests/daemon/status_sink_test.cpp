@@ -20,7 +20,7 @@ TEST(StatusSink, ShowsAChangeOfModeAtOnce) {
     sink.flush();
     LoopRecord record;
     record.is_in_motion = true;
-    record.cycle.force_sensor_N = 2.5;
+    record.cycle.force_sensor_N[0] = 2.5;
     sink.add(record);
     link->pulse.cycles = 17;
     ModeReport report;

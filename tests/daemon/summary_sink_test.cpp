@@ -16,11 +16,11 @@ TEST(SummarySink, TellsOfTheMotionTheTimesOfAllCyclesAndTheFault) {
   const LogState log;
   SummarySink sink(scene, folder.path(), log);
   LoopRecord record;
-  record.cycle.force_sensor_N = 99.0;
+  record.cycle.force_sensor_N[0] = 99.0;
   record.cycle.wake_latency_ns = 5000;
   sink.add(record);
   record.is_in_motion = true;
-  record.cycle.force_sensor_N = 2.5;
+  record.cycle.force_sensor_N[0] = 2.5;
   record.cycle.wake_latency_ns = 1000;
   sink.add(record);
   sink.flush();

@@ -71,9 +71,8 @@ inline void checkHardware(const Scene& scene) {
               "a node id twice");
     }
   }
-  if (hardware.tactile) {
-    require(isBus(hardware.tactile->bus) && hardware.tactile->first_id <= 0x7FC, "a lost module");
-  }
+  for (const CanTactileConfig& module : hardware.tactile_modules)
+    require(isBus(module.bus) && module.first_id <= 0x7FC, "a lost module");
   for (const BusLoad& load : busLoads(hardware, scene.period_s)) {
     require(!load.terms.empty() && load.share() <= kMaxBusLoad + 1e-6, "an overloaded bus");
   }

@@ -25,7 +25,7 @@ void require(bool holds) {
 
 CanTactileConfig configOf(std::uint8_t options) {
   CanTactileConfig config;
-  for (int i = 0; i < 32; ++i) config.calibration(i / 8, i % 8) = 0.25 * (i % 7) - 0.7;
+  for (int i = 0; i < 32; ++i) config.channels.calibration(i / 8, i % 8) = 0.25 * (i % 7) - 0.7;
   if ((options & 1) != 0) config.filter_cutoff_hz = 15.0;
   config.tare_samples = 1 + (options >> 1 & 7);
   return config;

@@ -120,16 +120,18 @@ std::vector<Decoded> decode(const std::vector<CanFrame>& frames, const HardwareC
   std::vector<Decoded> samples;
   Eigen::Matrix<double, 8, 1> channels;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const unsigned k = frames[i].id - hardware.tactile->first_id;
+    const unsigned k = frames[i].id - hardware.tactile_modules.front().first_id;
     EXPECT_EQ(k, i % 4) << "out of order";
     EXPECT_EQ(frames[i].data[0], frames[i - k].data[0]) << "mixed samples";
     EXPECT_EQ(frames[i].data[1], 0);
     for (unsigned half = 0; half < 2; ++half) {
       const auto raw = test::number(frames[i], static_cast<int>(2 + 3 * half), 3) << 8;
-      channels[2 * k + half] =
-          (static_cast<std::int32_t>(raw) >> 8) / hardware.tactile->counts_per_N;
+      channels[2 * k + half] = (static_cast<std::int32_t>(raw) >> 8) /
+                               hardware.tactile_modules.front().channels.counts_per_N;
     }
-    if (k == 3) samples.push_back({frames[i].data[0], hardware.tactile->calibration * channels});
+    if (k == 3)
+      samples.push_back(
+          {frames[i].data[0], hardware.tactile_modules.front().channels.calibration * channels});
   }
   return samples;
 }
@@ -148,8 +150,8 @@ TEST_F(PlantOfReferenceRobot, ContactAppearsInTheTactileFramesAsTheModuleMeasure
     SimulatedRobot world = plant_->world();
     RobotInput seen;
     world.read(seen);
-    if (static_cast<std::uint8_t>(seen.tactile.sequence) != samples.back().sequence) continue;
-    const TactileSample& s = seen.tactile;
+    if (static_cast<std::uint8_t>(seen.tactile[0].sequence) != samples.back().sequence) continue;
+    const TactileSample& s = seen.tactile[0];
     const Eigen::Vector4d measured(s.force_y_N, s.force_z_N, s.moment_y_Nm, s.moment_z_Nm);
     ASSERT_EQ(samples.back().wrench, measured) << "lost a bit";
     ++checked;
@@ -164,8 +166,8 @@ TEST_F(PlantOfReferenceRobot, ContactAppearsInTheTactileFramesAsTheModuleMeasure
 }
 
 TEST_F(PlantOfReferenceRobot, SendsUnfilteredSamplesWhereTheDaemonFilters) {
-  hardware_.tactile->filter_cutoff_hz = 15.0;
-  hardware_.tactile->sample_period_s = 0.001;
+  hardware_.tactile_modules.front().filter_cutoff_hz = 15.0;
+  hardware_.tactile_modules.front().channels.sample_period_s = 0.001;
   build(touching());
   plant_->advance(9 * kPeriod_ns);
   FrameBatch batch;

@@ -142,7 +142,7 @@ TEST_F(PlantInTrouble, CorruptsTheDataOfOneId) {
   int wrong = 0;
   for (int i = 0; i < 70; ++i) {
     master_->cycle();
-    const double q = plant_->world().module() != nullptr ? master_->position(1) : 0.0;
+    const double q = plant_->world().modules() > 0 ? master_->position(1) : 0.0;
     RobotInput seen;
     SimulatedRobot world = plant_->world();
     world.read(seen);

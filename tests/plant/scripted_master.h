@@ -31,9 +31,10 @@ inline HardwareConfig crops9Hardware() {
     drive.sign = joint % 2 == 0 ? 1 : -1;
     hardware.drives.push_back(drive);
   }
-  hardware.tactile.emplace();
-  hardware.tactile->bus = 3;
-  hardware.tactile->calibration = crops9Plant({}).module.calibration;
+  hardware.tactile_modules.emplace_back();
+  hardware.tactile_modules.front().bus = 3;
+  hardware.tactile_modules.front().channels.calibration =
+      crops9Plant({}).modules[0].channels.calibration;
   return hardware;
 }
 

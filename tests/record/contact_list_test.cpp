@@ -21,7 +21,7 @@ std::vector<ContactSummary> contactsOf(const std::vector<double>& forces_N, bool
   CycleRecord record;
   for (std::size_t i = 0; i < forces_N.size(); ++i) {
     record.t_s = 0.01 * static_cast<double>(i);
-    record.force_sensor_N = forces_N[i];
+    record.force_sensor_N[0] = forces_N[i];
     record.force_contact_N = force_control ? std::max(0.0, forces_N[i] - kThreshold_N) : 0.0;
     list.add(record);
   }
@@ -89,8 +89,8 @@ std::vector<ContactSummary> noisyContacts(const std::vector<std::pair<int, doubl
   ContactList list(force_control, 0);
   CycleRecord record;
   for (const double force_N : sequence(stretches)) {
-    record.force_sensor_N = std::hypot(force_N + noise(random), noise(random));
-    record.force_contact_N = std::max(0.0, record.force_sensor_N - kThreshold_N);
+    record.force_sensor_N[0] = std::hypot(force_N + noise(random), noise(random));
+    record.force_contact_N = std::max(0.0, record.force_sensor_N[0] - kThreshold_N);
     list.add(record);
     record.t_s += 1e-3;
   }
@@ -121,7 +121,7 @@ TEST(ContactList, EndsAtTheForceOfTheScene) {
     CycleRecord record;
     record.gains.force.transition.release_force_N = release_N;
     for (const double force_N : sequence({{20, 3.0}, {20, 0.7}, {20, 3.0}})) {
-      record.force_sensor_N = force_N;
+      record.force_sensor_N[0] = force_N;
       record.force_contact_N = std::max(0.0, force_N - kThreshold_N);
       list.add(record);
       record.t_s += 0.01;
@@ -136,7 +136,7 @@ TEST(ContactList, IsOneWhereItRestsBelowTheReleaseForce) {
   CycleRecord record;
   record.gains.force.contact_threshold_N = 0.1;
   for (const double force_N : sequence({{20, 3.0}, {200, 0.2}, {20, 0.0}})) {
-    record.force_sensor_N = force_N;
+    record.force_sensor_N[0] = force_N;
     record.force_contact_N = std::max(0.0, force_N - 0.1);
     list.add(record);
     record.t_s += 0.01;

@@ -13,9 +13,23 @@ namespace tactus {
 namespace {
 
 TEST(RecordFields, NameEveryWordOfARecordButItsGainsExactlyOnceInItsOrder) {
-  const auto columns = recordColumns({kMaxJoints, kMaxTaskSize, true});
-  ASSERT_EQ(columns.size() * 8, offsetof(CycleRecord, gains));
-  for (std::size_t i = 0; i < columns.size(); ++i) EXPECT_EQ(columns[i].offset, 8 * i);
+  std::vector<std::size_t> offsets;
+  for (const RecordColumn& column :
+       recordColumns({kMaxJoints, kMaxTaskSize, true, kMaxTactileModules}))
+    offsets.push_back(column.offset);
+  std::ranges::sort(offsets);
+  ASSERT_EQ(offsets.size() * 8, offsetof(CycleRecord, gains));
+  for (std::size_t i = 0; i < offsets.size(); ++i) EXPECT_EQ(offsets[i], 8 * i);
+  const auto of_one_module = recordColumns({kMaxJoints, kMaxTaskSize, true});
+  EXPECT_TRUE(std::ranges::is_sorted(of_one_module, {}, &RecordColumn::offset));
+}
+
+TEST(RecordFields, OfFurtherModulesComeLast) {
+  const auto one = recordColumns({9, 3}), two = recordColumns({9, 3, false, 2});
+  ASSERT_EQ(two.size(), one.size() + 10);
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(two[i].name, one[i].name);
+  EXPECT_EQ(two[one.size()].name, "force_sensor_N_2");
+  EXPECT_EQ(two.back().name, "tactile_sequence_2");
 }
 
 TEST(RecordFields, NamesAreUniqueAndAllowedInUlog) {
@@ -117,16 +131,17 @@ struct Cycle {
   Cycle() {
     input.q_measured = JointVector::LinSpaced(3, 1.1, 1.3);
     gains.force.damping = 9.1;
-    input.tactile = {2.1, 2.2, 2.3, 2.4, 4000000000u};
+    input.tactile[0] = {2.1, 2.2, 2.3, 2.4, 4000000000u};
     output.velocity = JointVector::LinSpaced(3, 3.1, 3.3);
     output.q_desired = JointVector::LinSpaced(3, 4.1, 4.3);
     output.w = TaskVector::LinSpaced(2, 5.1, 5.2);
     output.w_d = TaskVector::LinSpaced(2, 6.1, 6.2);
     output.w_d_dot = TaskVector::LinSpaced(2, 7.1, 7.2);
-    output.contact = {.force_sensor_N = 8.01,
-                      .contact_position_m = 8.02,
-                      .contact_direction = {8.03, 8.04, 8.05},
-                      .force_contact_N = 8.06,
+    output.modules = 2;
+    output.sensed[0] = {8.01, 8.02, {8.03, 8.04, 8.05}};
+    output.sensed[1] = {8.21, 8.22, {8.23, 8.24, 8.25}};
+    input.tactile[1] = {2.6, 2.7, 2.8, 2.9, 17};
+    output.contact = {.force_contact_N = 8.06,
                       .stiffness_N_per_m = 8.07,
                       .stiffness_raw_N_per_m = 8.08,
                       .gamma = 8.09,
@@ -151,12 +166,12 @@ TEST(FillRecord, PutsEveryNumberInItsColumn) {
   record.write_ns = 8;
   record.missed_cycles = 9;
   fillRecord(0.5, cycle.input, cycle.gains, cycle.output, cycle.tool_error, record);
-  const std::vector<double> expected = {0.5,  8.01, 8.02, 8.03, 8.04, 8.05, 8.06, 8.07, 8.08, 8.09,
-                                        8.10, 8.11, 8.12, 8.13, 8.14, 8.15, 8.16, 4.1,  4.2,  4.3,
-                                        3.1,  3.2,  3.3,  5.1,  5.2,  6.1,  6.2,  7.1,  7.2,  2,
-                                        6,    -5,   1.1,  1.2,  1.3,  2.1,  2.2,  2.3,  2.4,  4e9,
-                                        0.91, 0.92, 0.93, 0.5,  3,    7,    8,    9,    0.25};
-  const RecordShape shape{3, 2};
+  const std::vector<double> expected = {
+      0.5,  8.01, 8.02, 8.03, 8.04, 8.05, 8.06, 8.07, 8.08, 8.09, 8.10, 8.11, 8.12, 8.13, 8.14,
+      8.15, 8.16, 4.1,  4.2,  4.3,  3.1,  3.2,  3.3,  5.1,  5.2,  6.1,  6.2,  7.1,  7.2,  2,
+      6,    -5,   1.1,  1.2,  1.3,  2.1,  2.2,  2.3,  2.4,  4e9,  0.91, 0.92, 0.93, 0.5,  3,
+      7,    8,    9,    0.25, 8.21, 8.22, 8.23, 8.24, 8.25, 2.6,  2.7,  2.8,  2.9,  17};
+  const RecordShape shape{3, 2, false, 2};
   const auto columns = recordColumns(shape);
   const auto words = test::loggedWords(record, shape);
   ASSERT_EQ(words.size(), expected.size());
@@ -178,11 +193,14 @@ TEST(RecordedInput, IsTheInputThatWasRecorded) {
   fillRecord(0.5, cycle.input, cycle.gains, cycle.output, cycle.tool_error, record);
   const RobotInput input = recordedInput(record, 3);
   EXPECT_EQ(input.q_measured, cycle.input.q_measured);
-  EXPECT_EQ(input.tactile.force_y_N, 2.1);
-  EXPECT_EQ(input.tactile.force_z_N, 2.2);
-  EXPECT_EQ(input.tactile.moment_y_Nm, 2.3);
-  EXPECT_EQ(input.tactile.moment_z_Nm, 2.4);
-  EXPECT_EQ(input.tactile.sequence, 4000000000u);
+  EXPECT_EQ(input.tactile[0].force_y_N, 2.1);
+  EXPECT_EQ(input.tactile[0].force_z_N, 2.2);
+  EXPECT_EQ(input.tactile[0].moment_y_Nm, 2.3);
+  EXPECT_EQ(input.tactile[0].moment_z_Nm, 2.4);
+  EXPECT_EQ(input.tactile[0].sequence, 4000000000u);
+  EXPECT_EQ(input.tactile[1].force_y_N, 2.6);
+  EXPECT_EQ(input.tactile[1].sequence, 17u);
+  EXPECT_EQ(input.tactile[2].sequence, 0u);
 }
 
 }  // namespace

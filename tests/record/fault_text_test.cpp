@@ -86,8 +86,8 @@ TEST_F(FaultText, AsJsonHasTheMembersOfTheContract) {
   const Json json = faultJson(forceTooLarge(), scene_);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_EQ(keys, (std::vector<std::string>{"name", "time_s", "joint", "bus", "value", "limit",
-                                            "unit", "description"}));
+  EXPECT_EQ(keys, (std::vector<std::string>{"name", "time_s", "joint", "bus", "tactile_module",
+                                            "value", "limit", "unit", "description"}));
   EXPECT_EQ(json.at("name"), "tactile_invalid");
   EXPECT_EQ(json.at("time_s"), 3.214);
   EXPECT_EQ(json.at("value"), 102.5);

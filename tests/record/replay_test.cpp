@@ -18,9 +18,9 @@ const RecordShape kShape{9, 3};
 RobotInput touch(int cycle) {
   RobotInput input;
   input.q_measured = test::crops9Controller().q_start;
-  input.tactile.force_y_N = std::max(0.0, 6.0 * std::sin(0.004 * (cycle - 100)));
-  input.tactile.moment_z_Nm = 0.2 * input.tactile.force_y_N;
-  input.tactile.sequence = static_cast<std::uint32_t>(cycle / 4);
+  input.tactile[0].force_y_N = std::max(0.0, 6.0 * std::sin(0.004 * (cycle - 100)));
+  input.tactile[0].moment_z_Nm = 0.2 * input.tactile[0].force_y_N;
+  input.tactile[0].sequence = static_cast<std::uint32_t>(cycle / 4);
   return input;
 }
 
@@ -107,8 +107,8 @@ TEST(Replay, TellsNegativeFromPositiveZero) {
 TEST(Replay, AChangedInputChangesTheOutputs) {
   const ControllerConfig config = test::crops9Controller(Variant::kNullSpace);
   auto records = record(config, 600);
-  records[400].tactile_force_y_N += 1e-9;
-  records[400].tactile_sequence += 1000;
+  records[400].tactile_force_y_N[0] += 1e-9;
+  records[400].tactile_sequence[0] += 1000;
   const ReplayComparison comparison = compare(config, records);
   ASSERT_TRUE(comparison.first());
   EXPECT_EQ(comparison.first()->cycle, 400);

@@ -37,7 +37,7 @@ TEST(RunSummary, FindsPeaksAndFinalValues) {
   const double stiffnesses[] = {100.0, 200.0, 300.0, 400.0};
   const double errors[] = {0.0, 0.03, 0.0, 0.04};
   for (int i = 0; i < 4; ++i) {
-    record.force_sensor_N = forces[i];
+    record.force_sensor_N[0] = forces[i];
     record.stiffness_N_per_m = stiffnesses[i];
     record.tool_error_m[0] = -0.6 * errors[i];
     record.tool_error_m[2] = 0.8 * errors[i];
@@ -121,6 +121,7 @@ Scene scene() {
           .plant = {},
           .robot_name = {},
           .joint_names = {},
+          .module_links = {"link4"},
           .sources = {},
           .overrides = {},
           .numbers = {}};
@@ -179,6 +180,7 @@ TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
   EXPECT_NE(text.find("\"tcp_error_max_m\": 5e-324"), std::string::npos);
   EXPECT_TRUE(json["tcp_error_final_m"].IsNull());
   EXPECT_EQ(json["contacts"][0]["peak_force_N"].as<double>(), 1.0 / 3.0);
+  EXPECT_EQ(json["contacts"][0]["tactile_module"].as<std::string>(), "link4");
   EXPECT_EQ(json["outcome"].as<std::string>(), "tactile_stale");
   EXPECT_EQ(json["fault"]["value"].as<double>(), 0.021);
 }

@@ -35,7 +35,7 @@ TEST(Ulog, KeepsEveryBitOfEveryShape) {
   for (int joints = 2; joints <= kMaxJoints; ++joints) {
     for (int task_size = 1; task_size <= kMaxTaskSize; ++task_size) {
       LogDescription description = smallDescription();
-      description.shape = {joints, task_size, task_size % 2 == 0};
+      description.shape = {joints, task_size, task_size % 2 == 0, 1 + joints % 8};
       const auto records = randomRecords(5, static_cast<unsigned>(joints * 10 + task_size));
       const auto log = readLog(writeLog(description, records));
       EXPECT_EQ(log.description.shape, description.shape);

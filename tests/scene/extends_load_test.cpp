@@ -42,7 +42,7 @@ TEST(Extends, MergesSectionsAndReplacesListsAndValues) {
 
 TEST(Extends, NullRemoves) {
   const Scene scene = loadOver("controller: ~\nstart: null\nsimulation: {obstacles: ~}\n");
-  EXPECT_FALSE(scene.controller.tactile_module);
+  EXPECT_TRUE(scene.controller.tactile_modules.empty());
   EXPECT_EQ(scene.controller.q_start, Vector3(0, 0.5, -0.5));
   EXPECT_TRUE(scene.plant.obstacles.empty());
 }

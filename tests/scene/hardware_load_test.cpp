@@ -69,12 +69,12 @@ TEST(HardwareLoad, PutsDrivesIntoTheOrderOfTheJoints) {
 
 TEST(HardwareLoad, PutsTheModuleInItsPlace) {
   const Scene scene = hardwareFiles().load();
-  const CanTactileConfig module = scene.hardware.value().tactile.value();
+  const CanTactileConfig module = scene.hardware.value().tactile_modules.at(0);
   EXPECT_EQ(module.bus, 1);
   EXPECT_EQ(module.first_id, 0x110u);
-  EXPECT_EQ(module.calibration, scene.plant.module.calibration);
-  EXPECT_EQ(module.counts_per_N, scene.plant.module.counts_per_N);
-  EXPECT_EQ(module.sample_period_s, 0.005);
+  EXPECT_EQ(module.channels.calibration, scene.plant.modules[0].channels.calibration);
+  EXPECT_EQ(module.channels.counts_per_N, scene.plant.modules[0].channels.counts_per_N);
+  EXPECT_EQ(module.channels.sample_period_s, 0.005);
   EXPECT_EQ(module.filter_cutoff_hz, 15.0);
   EXPECT_EQ(module.tare_samples, 20);
 }
@@ -82,7 +82,7 @@ TEST(HardwareLoad, PutsTheModuleInItsPlace) {
 TEST(HardwareLoad, FiltersInTheModuleUnlessTold) {
   SceneFiles files = hardwareFiles();
   files.robot = test::replaced(files.robot, "filter_in_daemon: true", "filter_in_daemon: false");
-  EXPECT_FALSE(files.load().hardware.value().tactile.value().filter_cutoff_hz);
+  EXPECT_FALSE(files.load().hardware.value().tactile_modules.at(0).filter_cutoff_hz);
 }
 
 TEST(HardwareLoad, PutsLinesAndRealTimeInTheirPlace) {
@@ -131,12 +131,12 @@ TEST(HardwareLoad, DefaultsEqualThoseOfTheStructs) {
   EXPECT_EQ(drive.sign, DriveConfig{}.sign);
   EXPECT_EQ(drive.max_following_error, DriveConfig{}.max_following_error);
   EXPECT_EQ(drive.tracking_gain_per_s, DriveConfig{}.tracking_gain_per_s);
-  const CanTactileConfig module = hardware.tactile.value();
+  const CanTactileConfig module = hardware.tactile_modules.at(0);
   const CanTactileConfig module_default;
   EXPECT_EQ(module.first_id, module_default.first_id);
-  EXPECT_EQ(module.counts_per_N, module_default.counts_per_N);
+  EXPECT_EQ(module.channels.counts_per_N, module_default.channels.counts_per_N);
   EXPECT_EQ(module.filter_cutoff_hz, module_default.filter_cutoff_hz);
-  EXPECT_EQ(module.sample_period_s, module_default.sample_period_s);
+  EXPECT_EQ(module.channels.sample_period_s, module_default.channels.sample_period_s);
   EXPECT_EQ(module.tare_samples, module_default.tare_samples);
   EXPECT_EQ(module.tare_max_offset_N, module_default.tare_max_offset_N);
   EXPECT_EQ(module.tare_max_spread_N, module_default.tare_max_spread_N);
@@ -162,7 +162,7 @@ TEST(HardwareLoad, LeavesOutTheBusOfAnUnreadModule) {
             (std::vector<std::string>{"can9", "can0", "can1"}));
   const HardwareConfig hardware =
       files.load({{"controller", "null"}, {"stiffness", "null"}}).hardware.value();
-  EXPECT_FALSE(hardware.tactile);
+  EXPECT_TRUE(hardware.tactile_modules.empty());
   EXPECT_EQ(interfaces(hardware), (std::vector<std::string>{"can0", "can1"}));
   EXPECT_EQ(hardware.drives[0].bus, 0);
   EXPECT_EQ(hardware.drives[1].bus, 0);
@@ -172,7 +172,7 @@ TEST(HardwareLoad, LeavesOutTheBusOfAnUnreadModule) {
 TEST(HardwareLoad, KeepsTheBusThatAnUnreadModuleShares) {
   const HardwareConfig hardware =
       hardwareFiles().load({{"controller", "null"}, {"stiffness", "null"}}).hardware.value();
-  EXPECT_FALSE(hardware.tactile);
+  EXPECT_TRUE(hardware.tactile_modules.empty());
   EXPECT_EQ(interfaces(hardware), (std::vector<std::string>{"can0", "can1"}));
 }
 
@@ -197,7 +197,7 @@ TEST(ShippedRobot, HasThreeDrivesABusAndTheModuleOnTheFourth) {
     EXPECT_EQ(hardware.drives[i].bus, i / 3);
     EXPECT_EQ(hardware.drives[i].node_id, i % 3 + 1);
   }
-  EXPECT_EQ(hardware.tactile.value().bus, 3);
+  EXPECT_EQ(hardware.tactile_modules.at(0).bus, 3);
   EXPECT_FALSE(hardware.gpio) << "a trial on vcan has no lines";
 }
 
@@ -218,7 +218,8 @@ TEST(ShippedRobot, WithLinesDiffersInItsLinesOnly) {
     EXPECT_EQ(lines.drives[i].offset, plain.drives[i].offset);
     EXPECT_EQ(lines.drives[i].max_following_error, plain.drives[i].max_following_error);
   }
-  EXPECT_EQ(lines.tactile.value().calibration, plain.tactile.value().calibration);
+  EXPECT_EQ(lines.tactile_modules.at(0).channels.calibration,
+            plain.tactile_modules.at(0).channels.calibration);
 }
 
 /// The shipped scene without contact, with drives moved to the first bus.

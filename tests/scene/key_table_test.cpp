@@ -82,7 +82,7 @@ std::vector<double> outside(const Range& range) {
 template <class Read>
 std::string readError(YamlNode root, const Read& read, const std::string& path, double value) {
   try {
-    applyOverride(root, {path, fmt::format("{}", value)});
+    applyOverride(root, {path, fmt::format("{}", value)}, path);
     NamedNumbers numbers;
     read(root, numbers);
   } catch (const InputError& error) {
@@ -97,6 +97,7 @@ void walkValues(const std::vector<KeySpec>& keys, const std::string& prefix, con
   for (const KeySpec& spec : keys) {
     const bool is_list = spec.type == ValueType::kSectionList;
     if (spec.target) visit(prefix + spec.key, spec);
+    if (!spec.same_as.empty()) continue;
     walkValues(spec.keys, prefix + spec.key + (is_list ? "[0]." : "."), visit);
   }
 }
@@ -134,8 +135,11 @@ std::string fullScene() {
 }
 
 std::string fullRobot() {
-  return test::replaced(test::kHardwareRobotText, "  brake: {line: 5}",
-                        "  enable: {line: 4}\n  brake: {line: 5}\n  heartbeat: {line: 6}");
+  const std::string robot =
+      test::replaced(test::kHardwareRobotText, "  brake: {line: 5}",
+                     "  enable: {line: 4}\n  brake: {line: 5}\n  heartbeat: {line: 6}");
+  return test::withModules(
+      robot, test::moduleEntry("cover", "  interface: can1\n  first_id: 0x110\n  tare: {}\n"));
 }
 
 TEST(KeyTable, NoNumberOutsideItsRangeIsRead) {
@@ -152,8 +156,8 @@ int countDefaults(const std::string& text, const std::vector<KeySpec>& keys, con
     if (spec.presence != Presence::kDefaulted) return;
     ++defaults;
     YamlNode given = root, absent = root;
-    applyOverride(given, {path, spec.default_value});
-    applyOverride(absent, {path, "~"});
+    applyOverride(given, {path, spec.default_value}, path);
+    applyOverride(absent, {path, "~"}, path);
     NamedNumbers given_numbers, absent_numbers;
     read(given, given_numbers);
     read(absent, absent_numbers);
@@ -185,8 +189,8 @@ TEST(KeyTable, DefaultsAreThoseOfTheConfigs) {
   EXPECT_EQ(shownDefault(sceneKeys(), "task.trajectory.line.displacement_m"), "[0, 0, 0]");
   EXPECT_EQ(shownDefault(sceneKeys(), "simulation.tactile_module.quantised"), "true");
   EXPECT_EQ(shownDefault(sceneKeys(), "log.min_free_bytes"), "1e8");
-  EXPECT_EQ(shownDefault(robotKeys(), "tactile_module.first_id"), "0x100");
-  EXPECT_EQ(shownDefault(robotKeys(), "tactile_module.counts_per_N"), "100000");
+  EXPECT_EQ(shownDefault(robotKeys(), "tactile_modules[0].first_id"), "0x100");
+  EXPECT_EQ(shownDefault(robotKeys(), "tactile_modules[0].counts_per_N"), "100000");
   EXPECT_EQ(shownDefault(robotKeys(), "real_time.cpu"), "-1");
 }
 

@@ -89,7 +89,7 @@ TEST(RobotWithoutModule, IsFineWithoutController) {
   SceneFiles files;
   files.robot.resize(files.robot.find("tactile_module:"));
   const Scene scene = files.load({{"controller", "null"}});
-  EXPECT_FALSE(scene.controller.tactile_module);
+  EXPECT_TRUE(scene.controller.tactile_modules.empty());
   EXPECT_FALSE(scene.controller.force_control);
 }
 

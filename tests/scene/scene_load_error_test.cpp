@@ -420,7 +420,8 @@ INSTANTIATE_TEST_SUITE_P(
                        "--set robot.tactile_module.counts_per_n:1:1: tactile_module.counts_per_n: ",
                        "unknown key", "'counts_per_N'"},
         BrokenOverride{"robot.tactile_module.counts_per_N", "-1",
-                       "--set robot.tactile_module.counts_per_N:1:1: tactile_module.counts_per_N: ",
+                       "--set robot.tactile_module.counts_per_N:1:1: "
+                       "tactile_module.counts_per_N: ",
                        "'-1' is out of range", "> 0"},
         BrokenOverride{"robot.home[7]", "1", "--set robot.home[7]:1:1: robot.home[7]: ",
                        "there is no entry 7", "below 3"},

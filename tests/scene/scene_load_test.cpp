@@ -71,10 +71,10 @@ TEST(SceneLoad, PutsThePlantInItsPlace) {
   const PlantConfig& plant = scene.plant;
   EXPECT_EQ(plant.drive_lag_s, 0.01);
   EXPECT_EQ(plant.robot_stiffness_N_per_m, 5000.0);
-  EXPECT_EQ(plant.cover_radius_m, 0.05);
-  EXPECT_EQ(plant.module.sample_period_s, 0.005);
-  EXPECT_EQ(plant.module.calibration(2, 6), -0.3);
-  EXPECT_EQ(plant.module.calibration(3, 5), -0.3);
+  EXPECT_EQ(plant.modules[0].cover_radius_m, 0.05);
+  EXPECT_EQ(plant.modules[0].channels.sample_period_s, 0.005);
+  EXPECT_EQ(plant.modules[0].channels.calibration(2, 6), -0.3);
+  EXPECT_EQ(plant.modules[0].channels.calibration(3, 5), -0.3);
   ASSERT_EQ(plant.obstacles.size(), 2u);
   EXPECT_EQ(plant.obstacles[0].stiffness_N_per_m, 60.0);
   EXPECT_EQ(plant.obstacles[0].vanishes_s, kNoLimit);
@@ -91,7 +91,7 @@ TEST(SceneLoad, SwingsObstaclesAndLosesSamples) {
   EXPECT_EQ(scene.plant.obstacles[1].swing.x_m, 0.0);
   EXPECT_EQ(scene.plant.obstacles[1].swing.y_m, 0.02);
   EXPECT_EQ(scene.plant.obstacles[1].swing.frequency_hz, 3.0);
-  EXPECT_EQ(scene.plant.module.lost_share, 0.25);
+  EXPECT_EQ(scene.plant.modules[0].lost_share, 0.25);
 }
 
 TEST(SceneLoad, LimitsTheLog) {
@@ -110,7 +110,7 @@ TEST(SceneLoad, LeavesOutWhatNoSectionNames) {
   EXPECT_EQ(scene.controller.weights, Vector3::Ones());
   EXPECT_EQ(scene.controller.task.size, 3);
   EXPECT_TRUE(scene.controller.task.trajectory.waypoints.empty());
-  EXPECT_FALSE(scene.controller.tactile_module);
+  EXPECT_TRUE(scene.controller.tactile_modules.empty());
   EXPECT_FALSE(scene.controller.force_control);
   EXPECT_FALSE(scene.controller.has_joint_limit_avoidance);
   EXPECT_EQ(stageNames(scene.controller),
@@ -120,7 +120,7 @@ TEST(SceneLoad, LeavesOutWhatNoSectionNames) {
 
 TEST(SceneLoad, MeasuresOnlyWithTheVariantNone) {
   const Scene scene = SceneFiles{}.load({{"controller.variant", "none"}});
-  EXPECT_TRUE(scene.controller.tactile_module);
+  EXPECT_FALSE(scene.controller.tactile_modules.empty());
   EXPECT_FALSE(scene.controller.force_control);
   EXPECT_EQ(stageNames(scene.controller),
             (std::vector<std::string>{"trajectory", "kinematics", "pseudoinverse", "tactile_module",
@@ -171,9 +171,11 @@ TEST(SceneLoad, AcceptsNumbersAsYamlSpellsThem) {
   EXPECT_EQ(SceneFiles{}.load({{"period_s", "1e-3"}}).period_s, 0.001);
   EXPECT_EQ(SceneFiles{}.load({{"period_s", ".001"}}).period_s, 0.001);
   EXPECT_EQ(SceneFiles{}.load({{"simulation.duration_s", "7."}}).duration_s, 7.0);
-  EXPECT_EQ(
-      SceneFiles{}.load({{"simulation.tactile_module.seed", "123456789012345"}}).plant.module.seed,
-      123456789012345u);
+  EXPECT_EQ(SceneFiles{}
+                .load({{"simulation.tactile_module.seed", "123456789012345"}})
+                .plant.modules[0]
+                .seed,
+            123456789012345u);
 }
 
 TEST(SceneLoad, AcceptsOnePlusSign) {
@@ -183,7 +185,7 @@ TEST(SceneLoad, AcceptsOnePlusSign) {
   const Scene scene = files.load({{"simulation.tactile_module.seed", "+7"}});
   EXPECT_EQ(scene.controller.gains.force.time_constant_s, 0.25);
   EXPECT_EQ(scene.controller.limits.upper[0], 0.5);
-  EXPECT_EQ(scene.plant.module.seed, 7u);
+  EXPECT_EQ(scene.plant.modules[0].seed, 7u);
 }
 
 TEST(SceneLoad, ReadsWindowsLineEndings) {
@@ -216,8 +218,8 @@ TEST(Override, ReachesTheRobot) {
   const Scene scene = files.load({{"robot.tactile_module.counts_per_N", "1e6"},
                                   {"robot.drives.joints[0].node_id", "3"},
                                   {"robot.drives.position_lag_s", "0.007"}});
-  EXPECT_EQ(scene.plant.module.counts_per_N, 1e6);
-  EXPECT_EQ(scene.hardware->tactile->counts_per_N, 1e6);
+  EXPECT_EQ(scene.plant.modules[0].channels.counts_per_N, 1e6);
+  EXPECT_EQ(scene.hardware->tactile_modules.at(0).channels.counts_per_N, 1e6);
   EXPECT_EQ(scene.hardware->drives[2].node_id, 3) << "of the joint roll, which comes last";
   EXPECT_EQ(scene.plant.drive_lag_s, 0.007);
   EXPECT_FALSE(files.load({{"robot.gpio", "~"}}).hardware->gpio);

@@ -42,16 +42,16 @@ TEST(UrdfLoad, TakesTypesAndAxes) {
 
 TEST(UrdfLoad, FindsTheCoverBesideTheChain) {
   const ControllerConfig config = SceneFiles{}.load().controller;
-  ASSERT_TRUE(config.tactile_module);
-  EXPECT_EQ(config.tactile_module->link.joint, 1);
-  EXPECT_EQ(config.tactile_module->link.X_JointFrame.p_AB, Vector3(0.05, 0, 0));
-  EXPECT_EQ(config.tactile_module->length_m, 0.4);
+  ASSERT_FALSE(config.tactile_modules.empty());
+  EXPECT_EQ(config.tactile_modules.front().link.joint, 1);
+  EXPECT_EQ(config.tactile_modules.front().link.X_JointFrame.p_AB, Vector3(0.05, 0, 0));
+  EXPECT_EQ(config.tactile_modules.front().length_m, 0.4);
 }
 
 TEST(UrdfLoad, PlacesACoverBehindAFixedJointOfTheChain) {
   SceneFiles files;
   files.robot = test::replaced(files.robot, "link: cover", "link: bend");
-  const AttachedFrame link = files.load().controller.tactile_module->link;
+  const AttachedFrame link = files.load().controller.tactile_modules.front().link;
   EXPECT_EQ(link.joint, 1);
   EXPECT_EQ(link.X_JointFrame.p_AB, Vector3(0.5, 0, 0));
   EXPECT_NEAR(link.X_JointFrame.R_AB(2, 1), 1.0, kTolerance);

@@ -86,14 +86,14 @@ class NoAllocation : public testing::TestWithParam<Variant> {};
 TEST_P(NoAllocation, InTheCycleOfTheReferenceRobotInContact) {
   const ControllerConfig config = test::crops9Controller(GetParam(), true);
   PlantConfig plant = test::crops9Plant(test::scenario2());
-  plant.module.quantised = true;
-  plant.module.noise_N = 0.02;
+  plant.modules[0].quantised = true;
+  plant.modules[0].noise_N = 0.02;
   test::ClosedLoop loop(config, plant, 0.001);
   double largest_N = 0.0;
   for (int cycle = 0; cycle < 9000; ++cycle) {
     AllocationGuard guard;
     loop.step();
-    largest_N = std::max(largest_N, loop.output().contact.force_sensor_N);
+    largest_N = std::max(largest_N, loop.output().sensed[0].force_N);
   }
   EXPECT_GT(largest_N, 1.25) << "no contact";
 }
@@ -131,8 +131,8 @@ TEST_P(NoAllocation, WhileAFaultBringsTheArmToRest) {
   for (int cycle = 0; cycle < 600; ++cycle) {
     RobotInput input = touches.next(state.q_desired);
     if (cycle == 400) {
-      ++input.tactile.sequence;
-      input.tactile.force_y_N = std::nan("");
+      ++input.tactile[0].sequence;
+      input.tactile[0].force_y_N = std::nan("");
     }
     if (cycle == 500) state.q_desired[0] = std::nan("");
     AllocationGuard guard;

@@ -68,7 +68,7 @@ TEST_P(FollowsReference, CycleByCycle) {
     const ReferenceRow& row = reference[cycle / 10];
     ASSERT_NEAR(row.t_s, cycle * kPeriod_s, 1e-9);
     force_difference_N =
-        std::max(force_difference_N, std::abs(output.contact.force_sensor_N - row.F_sen_N));
+        std::max(force_difference_N, std::abs(output.sensed[0].force_N - row.F_sen_N));
     joint_difference =
         std::max(joint_difference, (output.q_desired - row.q).lpNorm<Eigen::Infinity>());
     EXPECT_NEAR(output.contact.stiffness_N_per_m, row.stiffness_N_per_m, 1e-3) << row.t_s;

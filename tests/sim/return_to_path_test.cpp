@@ -44,9 +44,9 @@ ToolRun runTool(ClosedLoop& loop, double duration_s) {
     loop.step();
     const ControllerOutput& output = loop.output();
     run.largest_lag_m = std::max(run.largest_lag_m, output.error.norm());
-    run.peak_force_N = std::max(run.peak_force_N, output.contact.force_sensor_N);
+    run.peak_force_N = std::max(run.peak_force_N, output.sensed[0].force_N);
     const bool was_touching = is_touching;
-    is_touching = output.contact.force_sensor_N > (was_touching ? kLeft_N : kTouching_N);
+    is_touching = output.sensed[0].force_N > (was_touching ? kLeft_N : kTouching_N);
     run.contacts += is_touching && !was_touching;
     if (before.w.size() == 0) continue;
     const double speed_m_per_s = (output.w - before.w).norm() / kPeriod_s;
@@ -101,8 +101,7 @@ TEST_P(ReturnToPath, LeavesTheContactAsItIs) {
     const ToolRun run = runTool(capped_loop, duration_s);
     EXPECT_LE(run.peak_force_N, 1.01 * free.peak_force_N) << cap_m_per_s;
     EXPECT_LE(run.contacts, free.contacts) << cap_m_per_s;
-    EXPECT_NEAR(capped_loop.output().contact.force_sensor_N, loop.output().contact.force_sensor_N,
-                0.05)
+    EXPECT_NEAR(capped_loop.output().sensed[0].force_N, loop.output().sensed[0].force_N, 0.05)
         << cap_m_per_s;
   }
 }

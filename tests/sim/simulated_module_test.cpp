@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFullScale_N = 8388607.0 / 100000.0;
 
-SimulatedModuleConfig moduleConfig() { return test::crops9Plant({}).module; }
+SimulatedModuleConfig moduleConfig() { return test::crops9Plant({}).modules[0]; }
 
 Wrench4 wrenchOf(double x_m, double F_y, double F_z) { return {F_y, F_z, -x_m * F_z, x_m * F_y}; }
 
@@ -37,7 +37,7 @@ TEST(SimulatedModule, GivesTheContactBackThroughTwentyFourBits) {
         settle(module, wrenchOf(x_m, force_N * std::cos(angle), force_N * std::sin(angle)));
     ContactPointState contact;
     locateContact(sample, 0.38, contact);
-    const double quantum_N = 1.0 / config.counts_per_N;
+    const double quantum_N = 1.0 / config.channels.counts_per_N;
     EXPECT_NEAR(contact.force_N, force_N, 4.0 * quantum_N);
     EXPECT_NEAR(contact.position_m, x_m, 4.0 * 0.34 * quantum_N / force_N);
     EXPECT_NEAR(contact.direction.z(), std::sin(angle), 4.0 * quantum_N / force_N);
@@ -47,7 +47,7 @@ TEST(SimulatedModule, GivesTheContactBackThroughTwentyFourBits) {
 TEST(SimulatedModule, QuantisesEachChannel) {
   SimulatedModuleConfig config = moduleConfig();
   config.quantised = true;
-  config.counts_per_N = 10.0;
+  config.channels.counts_per_N = 10.0;
   SimulatedModule module(config);
   // 1.04 N in the middle of four cells: 2.6 counts each, which make 3.
   EXPECT_NEAR(settle(module, wrenchOf(0.19, 1.04, 0.0)).force_y_N, 1.2, 1e-12);
@@ -94,7 +94,7 @@ std::vector<Wrench4> noise(std::uint64_t seed, double noise_N, int count) {
   SimulatedModuleConfig config = moduleConfig();
   config.noise_N = noise_N;
   config.seed = seed;
-  config.sample_period_s = 0.001;
+  config.channels.sample_period_s = 0.001;
   SimulatedModule module(config);
   std::vector<Wrench4> samples;
   for (int i = 0; i < count; ++i) {
@@ -110,7 +110,7 @@ TEST(SimulatedModule, LosesItsShareOfSamplesAndHoldsTheOneBefore) {
   SimulatedModule module(config);
   constexpr int kSamples = 10000;
   const auto steps_a_sample =
-      static_cast<int>(std::lround(config.sample_period_s * config.filter_rate_hz));
+      static_cast<int>(std::lround(config.channels.sample_period_s * config.filter_rate_hz));
   TactileSample before;
   for (int i = 0; i < kSamples * steps_a_sample; ++i) {
     module.update(wrenchOf(0.1, 0.001 * i, 0.0));
@@ -141,7 +141,7 @@ TEST(SimulatedModule, NoiseHasTheStandardDeviationOfEachChannel) {
     covariance += sample * sample.transpose() / kCount;
     mean += sample / kCount;
   }
-  const Eigen::Matrix<double, 4, 8> C = moduleConfig().calibration;
+  const Eigen::Matrix<double, 4, 8> C = moduleConfig().channels.calibration;
   const Eigen::Matrix4d expected = kNoise_N * kNoise_N * C * C.transpose();
   EXPECT_LT((covariance - expected).norm(), 0.03 * expected.norm());
   EXPECT_LT(mean.norm(), 4.0 * std::sqrt(expected.trace() / kCount));

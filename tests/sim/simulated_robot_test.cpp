@@ -66,7 +66,7 @@ TEST(SimulatedRobot, FeelsNothingWithoutAModule) {
   RobotInput input;
   robot.write(JointVector::Zero(9));
   robot.read(input);
-  EXPECT_EQ(input.tactile.sequence, 0u);
+  EXPECT_EQ(input.tactile[0].sequence, 0u);
 }
 
 TEST(SimulatedRobot, RefusesPeriodsThatDoNotFitTheModule) {
@@ -89,8 +89,8 @@ TEST(SimulatedRobot, ModuleKeepsItsOwnTimeAtAnyPeriod) {
     for (int i = 0; i < std::lround(0.040 / period_s); ++i) robot.write(JointVector::Zero(9));
     RobotInput input;
     robot.read(input);
-    EXPECT_EQ(input.tactile.sequence, 10u) << period_s;
-    const double felt_N = std::hypot(input.tactile.force_y_N, input.tactile.force_z_N);
+    EXPECT_EQ(input.tactile[0].sequence, 10u) << period_s;
+    const double felt_N = std::hypot(input.tactile[0].force_y_N, input.tactile[0].force_z_N);
     ASSERT_GT(robot.trueForce_N(), 0.01);
     // scipy.signal.lfilter(*scipy.signal.butter(3, 15, fs=1000), numpy.ones(60))[36]
     EXPECT_NEAR(felt_N / robot.trueForce_N(), 0.9348575664699109, 1e-9) << period_s;
@@ -110,11 +110,10 @@ TEST_P(CyclePeriod, GivesTheResultOfOneMillisecond) {
     loop.runUntil(t_s);
     reference.runUntil(t_s);
     ASSERT_EQ(loop.output().fault, Fault::kNone);
-    EXPECT_NEAR(loop.output().contact.force_sensor_N, reference.output().contact.force_sensor_N,
-                0.05)
+    EXPECT_NEAR(loop.output().sensed[0].force_N, reference.output().sensed[0].force_N, 0.05)
         << "at " << t_s;
     EXPECT_LT((loop.robot().toolPosition() - reference.robot().toolPosition()).norm(), 1e-3);
-    largest_N = std::max(largest_N, loop.output().contact.force_sensor_N);
+    largest_N = std::max(largest_N, loop.output().sensed[0].force_N);
   }
   EXPECT_GT(largest_N, 5.0) << "no contact, nothing compared";
 }
@@ -145,8 +144,8 @@ TEST(SimulatedRobot, ObstaclesAppearAndVanishDuringTheRun) {
 TEST(SimulatedRobot, RunsRepeatToTheBit) {
   const ControllerConfig config = test::crops9Controller(Variant::kNullTask, true);
   PlantConfig plant = test::crops9Plant(test::scenario2());
-  plant.module.quantised = true;
-  plant.module.noise_N = 0.02;
+  plant.modules[0].quantised = true;
+  plant.modules[0].noise_N = 0.02;
   test::ClosedLoop first(config, plant, 0.001);
   test::ClosedLoop second(config, plant, 0.001);
   for (double t_s = 0.05; t_s < 10.0; t_s += 0.05) {
@@ -154,7 +153,7 @@ TEST(SimulatedRobot, RunsRepeatToTheBit) {
     second.runUntil(t_s);
     ASSERT_EQ(first.input().q_measured, second.input().q_measured);
     ASSERT_EQ(first.output().velocity, second.output().velocity);
-    ASSERT_EQ(first.input().tactile.force_y_N, second.input().tactile.force_y_N);
+    ASSERT_EQ(first.input().tactile[0].force_y_N, second.input().tactile[0].force_y_N);
   }
 }
 

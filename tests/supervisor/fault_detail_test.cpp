@@ -47,8 +47,9 @@ TEST(FaultDetails, OfAForceBeyondTheRange) {
   EXPECT_EQ(report.fault, Fault::kTactileInvalid);
   EXPECT_GT(report.detail.value, report.detail.limit);
   EXPECT_LT(report.detail.value, 1e4);
-  EXPECT_EQ(report.detail.limit,
-            test::shippedScene("scenario1_multi_space").controller.tactile_module->max_force_N);
+  EXPECT_EQ(
+      report.detail.limit,
+      test::shippedScene("scenario1_multi_space").controller.tactile_modules.front().max_force_N);
   EXPECT_STREQ(report.detail.unit, "N");
   EXPECT_EQ(report.joint, -1);
 }
@@ -111,8 +112,8 @@ TEST(FaultDetails, BeforeMotionHaveNoTime) {
   EXPECT_EQ(report.fault, Fault::kTareRefused);
   EXPECT_TRUE(std::isnan(report.time_s));
   EXPECT_GT(report.detail.value, report.detail.limit);
-  EXPECT_EQ(report.detail.limit,
-            test::shippedScene("scenario1_multi_space").hardware->tactile->tare_max_offset_N);
+  const Scene scene = test::shippedScene("scenario1_multi_space");
+  EXPECT_EQ(report.detail.limit, scene.hardware->tactile_modules.front().tare_max_offset_N);
 }
 
 TEST(FaultDetails, AreGoneOnceItIsCleared) {

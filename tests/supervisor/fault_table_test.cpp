@@ -107,7 +107,7 @@ void moveInContact(VirtualRobotCell& cell) {
   ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
   for (int i = 0; i < kContactCycles; ++i) cell.step();
   ASSERT_EQ(cell.cycle.report().mode, Mode::kRunning);
-  ASSERT_GT(cell.record().force_sensor_N, 1.0);
+  ASSERT_GT(cell.record().force_sensor_N[0], 1.0);
   ASSERT_GT(cell.largestSetpoint(), 0);
 }
 

@@ -50,9 +50,9 @@ inline ControllerConfig crops9Controller() {
 /// With the tactile module and a law; the paper's parameters are the defaults.
 inline ControllerConfig crops9Controller(Variant variant, bool estimated = false) {
   ControllerConfig config = crops9Controller();
-  config.tactile_module.emplace();
-  config.tactile_module->link.joint = 3;
-  config.tactile_module->length_m = 0.38;
+  config.tactile_modules.emplace_back();
+  config.tactile_modules.front().link.joint = 3;
+  config.tactile_modules.front().length_m = 0.38;
   config.force_control.emplace();
   config.force_control->variant = variant;
   config.force_control->has_estimator = estimated;
@@ -63,13 +63,14 @@ inline ControllerConfig crops9Controller(Variant variant, bool estimated = false
 inline PlantConfig crops9Plant(const std::vector<ObstacleConfig>& obstacles) {
   PlantConfig plant;
   plant.robot_stiffness_N_per_m = 7000.0;
-  plant.module.quantised = false;
+  plant.modules.emplace_back().quantised = false;
   for (int cell = 0; cell < 8; ++cell) {
     const double x_m = cell < 4 ? 0.04 : 0.34;
     const double sign = cell % 2 == 0 ? 1.0 : -1.0;
     const bool along_y = cell % 4 < 2;
-    plant.module.calibration.col(cell) = along_y ? Eigen::Vector4d(sign, 0.0, 0.0, sign * x_m)
-                                                 : Eigen::Vector4d(0.0, sign, -sign * x_m, 0.0);
+    plant.modules[0].channels.calibration.col(cell) =
+        along_y ? Eigen::Vector4d(sign, 0.0, 0.0, sign * x_m)
+                : Eigen::Vector4d(0.0, sign, -sign * x_m, 0.0);
   }
   plant.obstacles = obstacles;
   return plant;

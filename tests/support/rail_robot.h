@@ -29,9 +29,9 @@ inline ControllerConfig railController(Variant variant) {
   config.task.size = 1;
   config.gains.task.drift_gain_per_s = 0.0;
   config.weights = JointVector::Ones(2);
-  config.tactile_module.emplace();
-  config.tactile_module->link.joint = 0;
-  config.tactile_module->length_m = 1.0;
+  config.tactile_modules.emplace_back();
+  config.tactile_modules.front().link.joint = 0;
+  config.tactile_modules.front().length_m = 1.0;
   config.force_control.emplace();
   config.force_control->variant = variant;
   config.gains.force.contact_threshold_N = 0.0;
@@ -49,8 +49,8 @@ struct RailWorld {
   }
 
   RobotInput input(const ControllerState& state) const {
-    return {state.q_desired,
-            touchAt(0.5, -force_N(state.q_desired), 0.0, state.sample_sequence + 1)};
+    const std::uint32_t next = state.modules[0].sequence + 1;
+    return {state.q_desired, {touchAt(0.5, -force_N(state.q_desired), 0.0, next)}};
   }
 };
 

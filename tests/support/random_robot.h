@@ -61,9 +61,9 @@ inline ControllerConfig randomController(Random& random, int count, int task_siz
   config.task.components = randomComponents(random);
   config.task.size = task_size;
   config.weights = JointVector::Ones(count);
-  config.tactile_module.emplace();
-  config.tactile_module->link = randomFrame(random, random.integer(1, count - 1));
-  config.tactile_module->length_m = 0.4;
+  config.tactile_modules.emplace_back();
+  config.tactile_modules.front().link = randomFrame(random, random.integer(1, count - 1));
+  config.tactile_modules.front().length_m = 0.4;
   return config;
 }
 

@@ -97,6 +97,24 @@ inline std::string replaced(std::string text, std::string_view from, std::string
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+/// The module as an entry of the list tactile_modules, around another link and with more lines.
+inline std::string moduleEntry(const std::string& link, const std::string& more = "") {
+  std::string entry = "  - ";
+  for (const char c : replaced(kModuleText, "link: cover", "link: " + link).substr(2) + more) {
+    entry += c;
+    if (c == '\n') entry += "  ";
+  }
+  return entry.substr(0, entry.rfind('\n') + 1);
+}
+
+/// Of the only module the list of these.
+inline std::string withModules(const std::string& robot, const std::string& entries) {
+  const std::size_t from = robot.find("tactile_module:");
+  const std::size_t gpio = robot.find("gpio:");
+  const std::string after = gpio == std::string::npos ? "" : robot.substr(gpio);
+  return robot.substr(0, from) + "tactile_modules:\n" + entries + after;
+}
+
 struct SceneFiles {
   std::string scene = kSceneText, robot = kRobotText, urdf = kUrdfText;
 

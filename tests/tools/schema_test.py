@@ -156,8 +156,10 @@ class Case(unittest.TestCase):
         rests["task"]["trajectory"] = {"hold": {}}
         revolute_first = copy.deepcopy(robot)
         revolute_first["drives"]["joints"].append(revolute_first["drives"]["joints"].pop(0))
+        listed = copy.deepcopy(robot)
+        listed["tactile_modules"] = [listed.pop("tactile_module")]
         extending = scene | {"extends": str(CONFIG / "scenes/free_motion.yaml")}
-        self.trees = {"scene": [scene, stops, rests, extending], "robot": [robot, revolute_first]}
+        self.trees = {"scene": [scene, stops, rests, extending], "robot": [robot, revolute_first, listed]}
 
     def tree_with(self, row):
         """A whole file that has the key, as a copy, and the map that the key is in."""
@@ -315,7 +317,7 @@ class Keys(Case):
     def test_several_keys_each_once(self):
         rows = json.loads(output("keys", "--json", "damping", "first_id", "controller.damping"))
         self.assertEqual([row["key"] for row in rows],
-                         ["controller.damping", "tactile_module.first_id"])
+                         ["controller.damping", "tactile_modules[].first_id"])
         result = tactus("keys", "damping", "xyzzy")
         self.assertEqual((result.returncode, result.stdout), (1, ""))
         self.assertTrue(result.stderr.startswith("KEY:1:1: xyzzy: no such key"), result.stderr)

@@ -7,8 +7,8 @@ namespace tactus {
 /// Calls visit(name, index, value) for every number that a controller remembers from one cycle to
 /// the next; index is that of a joint or an axis, 0 for a single number. Each struct is taken apart
 /// as a whole, so that a member added to one of them does not compile before it is visited here.
-/// Left out are sample_sequence, which counts, what is no number, and
-/// what only spares computing it again.
+/// Of the tactile modules the first is visited, which laws act on. Left out are sequences, which
+/// count, what is no number, and what only spares computing it again.
 template <typename Visit>
 void visitNumbers(const ControllerState& state, const Visit& visit) {
   const auto list = [&visit](const char* name, const auto& values) {
@@ -22,15 +22,15 @@ void visitNumbers(const ControllerState& state, const Visit& visit) {
     list(direction_name, direction);
   };
   const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
-               sample_sequence, sample_age_s, sample_fault, sample_detail, contact_point, contact,
-               zones] = state;
+               modules, contact, zones] = state;
   visit("waited_s", 0, waited_s);
   visit("progress", 0, progress);
   visit("return_share", 0, return_share);
   list("q_desired", q_desired);
   list("velocity_before", velocity_before);
-  visit("sample_age_s", 0, sample_age_s);
-  point("force_N", "position_m", "direction", contact_point);
+  const auto& [sequence, age_s, sample_fault, detail, sensed_contact] = modules.front();
+  visit("sample_age_s", 0, age_s);
+  point("force_N", "position_m", "direction", sensed_contact);
 
   const auto& [held_point, push, has_push, transition, joint_space, estimator, approach, law, cut,
                is_resting] = contact;

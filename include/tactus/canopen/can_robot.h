@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,7 +22,7 @@ struct DrivesReport {
   int joint = -1;  ///< of that fault
 };
 
-/// The robot interface over CAN: one drive a joint and the tactile module, in frames. Knows no
+/// The robot interface over CAN: one drive a joint and the tactile modules, in frames. Knows no
 /// socket and no clock. A cycle: receive() for each bus, expect(), read(), command(), write(), then
 /// the outboxes.
 class CanRobot final : public Robot {
@@ -60,14 +59,12 @@ class CanRobot final : public Robot {
   bool hasPositions() const noexcept;
   /// Of all drives: frames of wrong size.
   long long malformedFrames() const noexcept;
-  /// nullptr on a robot without tactile module.
-  const TactileReceiver* tactile() const noexcept { return tactile_ ? &*tactile_ : nullptr; }
-  TactileReceiver* tactile() noexcept { return tactile_ ? &*tactile_ : nullptr; }
+  std::span<const TactileReceiver> tactileModules() const noexcept { return tactile_modules_; }
+  std::span<TactileReceiver> tactileModules() noexcept { return tactile_modules_; }
 
  private:
   std::vector<Drive> drives_;
-  std::optional<TactileReceiver> tactile_;
-  int tactile_bus_ = -1;
+  std::vector<TactileReceiver> tactile_modules_;
   std::vector<FrameBatch> outboxes_;  ///< one a bus
   std::vector<bool> has_drives_;      ///< one a bus
   CanFrame heartbeat_;

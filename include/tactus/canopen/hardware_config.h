@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tactus/math/types.h"
+#include "tactus/control/tactile_channels.h"
 
 /// What robot.yaml says of the machine between controller and arm. All of it is checked by the
 /// loader: indices point at something, numbers are finite and in range, no id is given twice.
@@ -47,16 +47,14 @@ struct CanopenConfig {
   double stop_deadline_s = 0.5;
 };
 
-/// The tactile module on the bus: frames first_id + k, k = 0..3, of two channels each.
+/// A tactile module on its bus: frames first_id + k, k = 0..3, of two channels each.
 struct CanTactileConfig {
   int bus = 0;
   std::uint32_t first_id = 0x100;
-  Eigen::Matrix<double, 4, 8> calibration = Eigen::Matrix<double, 4, 8>::Zero();
-  double counts_per_N = 100000.0;
+  TactileChannels channels;
   /// Cut-off of the daemon's 3rd-order Butterworth at the module's rate; absent: the module
   /// filters.
   std::optional<double> filter_cutoff_hz;
-  double sample_period_s = 0.004;
   int tare_samples = 50;           ///< averaged before activation
   double tare_max_offset_N = 2.0;  ///< of |F| in rest: more is a contact, or a fault
   double tare_max_spread_N = 0.2;  ///< of |F| while averaging
@@ -88,7 +86,7 @@ struct HardwareConfig {
   std::vector<BusConfig> buses;
   std::vector<DriveConfig> drives;  ///< one a joint, in the order of the joints
   CanopenConfig canopen;
-  std::optional<CanTactileConfig> tactile;
+  std::vector<CanTactileConfig> tactile_modules;
   std::optional<GpioConfig> gpio;
   RealTimeConfig real_time;
   double start_tolerance = 0.02;  ///< m or rad: how far the arm may be from the scene's start

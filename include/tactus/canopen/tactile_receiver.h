@@ -21,7 +21,7 @@ struct TactileCounters {
   std::uint32_t repeated = 0;    ///< frames that came twice, or of a sample not newer than the last
 };
 
-/// Assembles samples of the tactile module from its four frames, calibrates, tares and, where the
+/// Assembles samples of a tactile module from its four frames, calibrates, tares and, where the
 /// module does not, filters them. Knows no socket and no clock: time is counted in cycles.
 ///
 /// A sample is four frames of one sequence number, in any order; a frame of another new number
@@ -41,6 +41,8 @@ class TactileReceiver {
   /// period_s: of the cycle. Throws std::invalid_argument if the filter's cut-off is not below half
   /// the sample rate.
   TactileReceiver(const CanTactileConfig& config, double period_s);
+
+  int bus() const noexcept { return config_.bus; }
 
   /// A data frame of the module's bus; ids that are not its own are ignored.
   void receive(const CanFrame& frame) noexcept;

@@ -31,7 +31,7 @@ struct ApproachLimitState {
 // clang-format on
 class ApproachLimit {
  public:
-  /// config.force_control and config.tactile_module must be there.
+  /// config.force_control must be there, and one tactile module.
   explicit ApproachLimit(const ControllerConfig& config);
 
   ApproachLimitState initialState() const noexcept;

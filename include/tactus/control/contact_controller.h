@@ -13,14 +13,11 @@
 
 namespace tactus {
 
-/// What a controller reports of one cycle, in the paper's symbols; zero where a stage is absent.
+/// What the law reports of one cycle, in the paper's symbols; zero where a stage is absent.
 struct ContactReport {
-  double force_sensor_N = 0.0;                  ///< F_sen
-  double contact_position_m = 0.0;              ///< along the link
-  Vector3 contact_direction = Vector3::Zero();  ///< F^, unit force on the robot, module frame
-  double force_contact_N = 0.0;                 ///< F_p
-  double stiffness_N_per_m = 0.0;               ///< c
-  double stiffness_raw_N_per_m = 0.0;           ///< c_raw
+  double force_contact_N = 0.0;        ///< F_p
+  double stiffness_N_per_m = 0.0;      ///< c
+  double stiffness_raw_N_per_m = 0.0;  ///< c_raw
   double gamma = 0.0;
   double k_n = 0.0, k_j = 0.0, k_t = 0.0;  ///< (18), (19)
   double x_dot_eff_m_per_s = 0.0;          ///< (18)
@@ -54,12 +51,12 @@ struct CommandedMotion {
 /// the motion that the task asks for.
 class ContactController {
  public:
-  /// config.tactile_module and config.force_control must be there.
+  /// config.force_control must be there, and one tactile module: the laws answer one contact.
   ContactController(const ControllerConfig& config, const ScaledVector& inv_sqrt_weights);
 
   ContactControllerState initialState() const;
 
-  /// sensor: the newest contact point. Fills the report from force_contact_N on.
+  /// sensor: the newest contact point.
   void update(const Gains& gains, const TaskKinematics& kinematics, const ContactPointState& sensor,
               const CommandedMotion& commanded, double period_s, ContactControllerState& state,
               ContactReport& report, Motion& motion) const noexcept;

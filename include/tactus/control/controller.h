@@ -1,17 +1,17 @@
 #pragma once
 
-#include <cstdint>
+#include <array>
 #include <limits>
 #include <optional>
 
 #include "tactus/control/command_limiter.h"
 #include "tactus/control/contact_controller.h"
-#include "tactus/control/contact_point.h"
 #include "tactus/control/controller_config.h"
 #include "tactus/control/fault.h"
 #include "tactus/control/joint_limit_avoidance.h"
 #include "tactus/control/motion.h"
 #include "tactus/control/robot.h"
+#include "tactus/control/tactile_reading.h"
 
 namespace tactus {
 
@@ -22,6 +22,8 @@ struct ControllerOutput {
   TaskVector w, w_d, w_d_dot;  ///< of the desired configuration; m, rad, m/s, rad/s
   TaskVector error;            ///< w_d - w; of rotations the vector of R_d R^T
   double path_time_s = 0.0;    ///< of the reference: the task's time less the time it waited
+  int modules = 0;             ///< entries of `sensed` that count
+  std::array<ContactPointState, kMaxTactileModules> sensed;  ///< as each module says
   ContactReport contact;
   Fault fault = Fault::kNone;
   FaultDetail fault_detail;  ///< of the fault; set in its first cycle, then left alone
@@ -36,11 +38,7 @@ struct ControllerState {
   double waited_s = 0.0;        ///< how far the reference is behind the task's time
   double progress = 1.0;        ///< of the reference in the last cycle: 1 on time, 0 at rest
   double return_share = 1.0;    ///< of beta and more; grows from 0 after restart()
-  std::uint32_t sample_sequence = 0;
-  double sample_age_s = 0.0;
-  Fault sample_fault = Fault::kNone;  ///< of the newest sample
-  FaultDetail sample_detail;          ///< of that fault, or of a sample too old
-  ContactPointState contact_point;
+  std::array<TactileReading, kMaxTactileModules> modules;
   ContactControllerState contact;
   JointLimitZones zones;  ///< of the last gains
 };
@@ -76,17 +74,18 @@ class Controller {
   ControllerState initialState(const JointVector& q) const;
 
   /// For an arm that its drives stop by themselves: forgets the contact, and will return to its
-  /// path gently (see return_speed.h); remembers the sensor's newest sample with its age, and where
+  /// path gently (see return_speed.h); remembers the newest samples with their age, and where
   /// the path has got to.
   void restart(ControllerState& state) const noexcept;
   /// For an arm that stands at q, wherever it was commanded to be, m or rad.
   void place(const JointVector& q, ControllerState& state) const noexcept;
 
-  /// For a cycle in which the controller has nothing to do: only the sample is taken over, or ages.
-  void watchSensor(const RobotInput& input, double period_s, ControllerState& state) const noexcept;
-  /// Of the sample in this input, a period after the last cycle.
-  double sampleAge_s(const RobotInput& input, double period_s,
-                     const ControllerState& state) const noexcept;
+  /// For a cycle in which the controller has nothing to do: only samples are taken over, or age.
+  void watchSensors(const RobotInput& input, double period_s,
+                    ControllerState& state) const noexcept;
+  /// The age of a module's sample in this input, a period after the last cycle, and its limit.
+  FaultDetail sampleAge(int module, const RobotInput& input, double period_s,
+                        const ControllerState& state) const noexcept;
 
   /// For cycles that were missed: the drives kept the last command for as long, and the reference
   /// its progress.
@@ -121,8 +120,9 @@ class Controller {
                          PreparedCycle& prepared) const noexcept;
   void avoidJointLimits(const JointLimitAvoidanceGains& gains, const TaskKinematics& kinematics,
                         ControllerState& state, Motion& motion) const noexcept;
-  Fault readTactileModule(const RobotInput& input, double period_s,
-                          ControllerState& state) const noexcept;
+  int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
+  void sense(const RobotInput& input, double period_s, ControllerState& state,
+             ControllerOutput& output) const noexcept;
   FaultDetail notFinite(const Motion& motion) const noexcept;
   void limit(const Motion& motion, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "tactus/control/gains.h"
 #include "tactus/math/serial_chain.h"
@@ -71,7 +72,7 @@ struct ControllerConfig {
   TaskConfig task{};
   JointVector weights{};  ///< diagonal of W, > 0
   bool has_joint_limit_avoidance = false;
-  std::optional<TactileModuleConfig> tactile_module{};
+  std::vector<TactileModuleConfig> tactile_modules{};  ///< at most kMaxTactileModules
   double drive_lag_s = 0.005;  ///< nominal first-order lag of position; only null_limit asks
   std::optional<ForceControlConfig> force_control{};  ///< absent also for `variant: none`
   Gains gains{};  ///< no structure: what the first cycle is given, and all where nobody tunes

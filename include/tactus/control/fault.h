@@ -46,7 +46,8 @@ struct FaultDetail {
   double value = std::numeric_limits<double>::quiet_NaN();  ///< that was seen
   double limit = std::numeric_limits<double>::quiet_NaN();  ///< the largest allowed; NaN: none
   const char* unit = "";                                    ///< of both
-  int joint = -1;                                           ///< whose value; -1: nobody's
+  int joint = -1;                                           ///< whose value; -1: no joint's
+  int module = -1;                                          ///< likewise of a tactile module
 };
 
 /// One row of the fault table, which docs/safety.md and the manual print.

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "tactus/math/types.h"
 
 namespace tactus {
 
-/// One sample of the tactile module: what pushes on the cover, in the module's frame (x along the
+/// Of one robot; its tactile modules are numbered from 0, as robot.yaml lists them.
+inline constexpr int kMaxTactileModules = 8;
+
+/// One sample of a tactile module: what pushes on the cover, in the module's frame (x along the
 /// link). Forces along x are not felt.
 struct TactileSample {
   double force_y_N = 0.0;
@@ -19,7 +23,8 @@ struct TactileSample {
 /// What a cycle reads from the robot.
 struct RobotInput {
   JointVector q_measured;  ///< m or rad; logged, but no law uses it: the arm is position-controlled
-  TactileSample tactile;   ///< stays zero on a robot without tactile module
+  /// One a module; those that the robot does not have stay zero.
+  std::array<TactileSample, kMaxTactileModules> tactile;
 };
 
 /// The one seam between controller and robot: simulated or real. Called from the cycle only, hence

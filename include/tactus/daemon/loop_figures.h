@@ -27,8 +27,12 @@ struct LoopFigures {
   double cpu_ns_per_cycle = 0.0;          ///< of the loop's thread
   double process_cpu_ns_per_cycle = 0.0;  ///< of the whole daemon, log included
   std::vector<Bus> buses;
-  long long malformed_drive_frames = 0;    ///< of wrong size
-  std::optional<TactileCounters> tactile;  ///< of a robot with a tactile module on a bus
+  long long malformed_drive_frames = 0;  ///< of wrong size
+  struct TactileModule {
+    std::string link;
+    TactileCounters counters;
+  };
+  std::vector<TactileModule> tactile_modules;
 };
 
 /// The member "loop" of summary.json.

@@ -23,7 +23,7 @@ struct PlantCounters {
 };
 
 /// The robot as its buses see it: drives (CiA 402 slaves of our own making, apart from the master's
-/// code), tactile module and obstacles, in one world. Every bus takes its time: a frame lasts as
+/// code), tactile modules and obstacles, in one world. Every bus takes its time: a frame lasts as
 /// many bits as it has, the lowest id goes first, queues are short. Knows no socket and no clock:
 /// time is an argument, in ns since the plant was switched on.
 ///
@@ -33,7 +33,7 @@ struct PlantCounters {
 /// the moment the first drive was enabled.
 class Plant {
  public:
-  /// Throws std::invalid_argument if the period does not fit the tactile module's.
+  /// Throws std::invalid_argument if the period does not fit the tactile modules'.
   Plant(const ControllerConfig& robot, const PlantConfig& plant, const HardwareConfig& hardware,
         double period_s, std::vector<Trouble> troubles);
 
@@ -44,7 +44,8 @@ class Plant {
   void advance(std::int64_t t_ns) noexcept;
 
   /// Frames that have been on the bus since the last call, to be handed to the other side: of
-  /// drives and module, and error frames; not those of the other side. Replaces what `frames` held.
+  /// drives and modules, and error frames; not those of the other side. Replaces what `frames`
+  /// held.
   void take(int bus, FrameBatch& frames) noexcept;
 
   /// Replaces the script once a drive was enabled; its times count from now, t_ns.
@@ -76,6 +77,14 @@ class Plant {
     std::uint32_t id;
   };
 
+  /// A tactile module on its bus.
+  struct Module {
+    int bus;
+    std::uint32_t first_id;
+    int number;                         ///< on the bus, from 1
+    std::uint32_t sample_sequence = 0;  ///< of the sample that was sent last
+  };
+
   void step(std::int64_t t_ns) noexcept;
   void applyTroubles(std::int64_t t_ns) noexcept;
   void applyBusTroubles(int bus, std::int64_t t_ns) noexcept;
@@ -86,20 +95,19 @@ class Plant {
   void give(Link& link, const CanFrame& frame) noexcept;
   void collect(Node& node, std::int64_t t_ns) noexcept;
   void moveWorld(std::int64_t t_ns) noexcept;
-  void sendSample(std::int64_t t_ns) noexcept;
+  void sendSamples(std::int64_t t_ns) noexcept;
   void noticeEnabling(std::int64_t t_ns) noexcept;
 
   HardwareConfig hardware_;
   double period_s_;
   std::int64_t period_ns_;
   SimulatedRobot world_;
-  RobotInput seen_;  ///< what encoders and module see
+  RobotInput seen_;  ///< what encoders and modules see
   JointVector velocity_;
   TroubleScript script_;
   std::vector<Link> links_;   ///< one a bus
   std::vector<Node> drives_;  ///< one a joint
-  int module_number_ = 0;     ///< the tactile module's on its bus
-  std::uint32_t sample_sequence_ = 0;
+  std::vector<Module> modules_;
   std::int64_t now_ns_ = 0;
   std::int64_t next_move_ns_;
   std::int64_t next_trouble_ns_ = kNever_ns;

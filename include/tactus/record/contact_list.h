@@ -18,19 +18,20 @@ struct ContactSummary {
   /// end_s, when the filter did not yet show the release. A contact shorter than that never
   /// settles: its whole length.
   double settling_s = 0.0;
+  int module = 0;  ///< that felt it
 };
 
-/// Finds the contacts of a run. A contact starts when F_sen exceeds the contact threshold F_th;
-/// without force control, where nothing else says what a touch is, it started when F_sen last rose
-/// above 0.05 N. It ends when the mean of F_sen over 0.1 s is at most F_rel (at most F_th), which
-/// is above offset and noise of the sensor, and then end_s is the first cycle of these 0.1 s with
-/// at most F_rel; or with the last cycle. The threshold works one way only: an arm that comes to
-/// rest just below it is still touching. Memory is bounded: in a contact of more than 17 minutes at
-/// 1 kHz settling_s is known to 2e-6 of its length.
+/// Finds the contacts that one tactile module felt in a run. A contact starts when F_sen exceeds
+/// the contact threshold F_th; without force control, where nothing else says what a touch is, it
+/// started when F_sen last rose above 0.05 N. It ends when the mean of F_sen over 0.1 s is at most
+/// F_rel (at most F_th), which is above offset and noise of the sensor, and then end_s is the first
+/// cycle of these 0.1 s with at most F_rel; or with the last cycle. The threshold works one way
+/// only: an arm that comes to rest just below it is still touching. Memory is bounded: in a contact
+/// of more than 17 minutes at 1 kHz settling_s is known to 2e-6 of its length.
 class ContactList {
  public:
   /// `expected_cycles` is only used to allocate in advance.
-  ContactList(bool has_force_control, std::size_t expected_cycles);
+  ContactList(bool has_force_control, std::size_t expected_cycles, int module = 0);
 
   void add(const CycleRecord& record);
 
@@ -62,6 +63,7 @@ class ContactList {
   void clear();
 
   bool has_force_control_;
+  int module_;
   double threshold_N_ = 0.0, release_N_ = 0.0;  ///< of the newest record
   std::vector<ContactSummary> finished_;
   Present present_;

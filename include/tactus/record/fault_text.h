@@ -18,8 +18,8 @@ std::string describeFault(const FaultReport& report, const Scene& scene);
 /// "running", or "fault: drive_silent, drive 2 on can1 (joint j5), ...: no feedback ..." and so on.
 std::string describeMode(const ModeReport& report, const Scene& scene);
 
-/// The member "fault" of summary.json: name, time_s, joint, bus, value, limit, unit, description;
-/// null for what is not known, and as a whole without a fault.
+/// The member "fault" of summary.json: name, time_s, joint, bus, tactile_module, value, limit,
+/// unit, description; null for what is not known, and as a whole without a fault.
 Json faultJson(const FaultReport& report, const Scene& scene);
 
 }  // namespace tactus

@@ -17,6 +17,7 @@ enum class FieldShape : std::uint8_t {
   kScalar,
   kPerJoint,
   kPerTaskComponent,
+  kPerModule,   ///< a scalar for each tactile module
   kOfRotation,  ///< a scalar that only tasks with a rotation have
 };
 enum class FieldType : std::uint8_t { kDouble, kInt64, kUint64 };
@@ -37,15 +38,16 @@ struct RecordField {
 /// All fields, in the order of the CSV's columns and of CycleRecord's members.
 std::span<const RecordField> recordFields() noexcept;
 
-bool isArray(FieldShape shape) noexcept;
-
 /// How many entries the arrays of a record have.
 struct RecordShape {
   int joints = 0;
   int task_size = 0;
   bool has_rotation = false;  ///< of the task
+  int modules = 1;            ///< tactile; zeros for the one that a robot does not have
 
   std::size_t entries(const RecordField& field) const noexcept;
+  /// Whether the field is logged as an array, if only of one entry.
+  bool isArray(const RecordField& field) const noexcept;
   bool operator==(const RecordShape&) const = default;
 };
 
@@ -54,13 +56,14 @@ const char* typeName(FieldType type) noexcept;
 
 /// A column of the CSV: one word of a record.
 struct RecordColumn {
-  std::string name;        ///< "q_1" for the first entry of q
+  std::string name;        ///< "q_1" for the first entry of q; of a second module with "_2"
   std::string_view field;  ///< "q"
   FieldType type;
   FieldRole role;
   std::size_t offset;
 };
 
+/// What is of a second tactile module and of further ones comes after all else.
 std::vector<RecordColumn> recordColumns(const RecordShape& shape);
 
 /// A stretch of bytes that lies in one piece both in a CycleRecord and in a message of the log.

@@ -21,8 +21,8 @@ struct RotationError {
   double max_rad = 0.0, rms_rad = 0.0, final_rad = 0.0;
 };
 
-/// The figures of a run that its summary.json holds. Forces are the sensor's, F_sen; the tool's
-/// error is that of the measured arm.
+/// The figures of a run that its summary.json holds. Forces are the sensor's, F_sen, of several the
+/// largest; the tool's error is that of the measured arm.
 struct RunFigures {
   long long cycles = 0;
   double peak_force_N = 0.0;
@@ -36,7 +36,7 @@ struct RunFigures {
   long long joints_at_limit_cycles = 0;
   double stiffness_final_N_per_m = 0.0;
   double stiffness_at_peak_N_per_m = 0.0;  ///< in the (first) cycle of the peak force
-  std::vector<ContactSummary> contacts;
+  std::vector<ContactSummary> contacts;    ///< in the order of their start
   TimeFigures step_time_ns;
   FaultReport end;  ///< the fault that ended the run, for who runs it to fill in; none: as planned
 };
@@ -60,8 +60,9 @@ class RunSummary {
   void addJoints(const CycleRecord& record) noexcept;
 
   JointLimits limits_;
+  int modules_;  ///< of which a record has forces
   RunFigures figures_;
-  ContactList contacts_;
+  std::vector<ContactList> contacts_;  ///< one a tactile module
   double squared_error_sum_m2_ = 0.0, squared_rotation_sum_rad2_ = 0.0;
   Histogram step_times_;
 };

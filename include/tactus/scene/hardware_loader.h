@@ -15,6 +15,6 @@ std::optional<HardwareConfig> loadHardware(const YamlNode& root, const RobotConf
                                            const UrdfChain& chain);
 
 /// The same without the tactile module, and without buses that nothing else is on.
-HardwareConfig withoutTactileModule(const HardwareConfig& hardware);
+HardwareConfig withoutTactileModules(const HardwareConfig& hardware);
 
 }  // namespace tactus

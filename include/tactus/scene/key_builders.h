@@ -142,4 +142,14 @@ Row<S> sectionList(const std::string& key, Count count, const std::string& doc,
   return row;
 }
 
+/// A section in place of `list`, for its only entry.
+template <class S, class T>
+Row<S> onlyEntryOf(const std::string& list, const std::string& key, const std::string& doc,
+                   std::vector<T> S::*member, Table<T> rows) {
+  Row<S> row = sectionList(key, {1, 1}, doc, member, std::move(rows));
+  row.spec.type = ValueType::kSection;
+  row.spec.same_as = list;
+  return row;
+}
+
 }  // namespace tactus::keys

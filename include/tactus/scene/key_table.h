@@ -83,6 +83,7 @@ struct KeySpec {
   std::function<Target(void* owner)> target;  ///< of a value; makes it if it is optional
   std::function<void*(void* owner)> enter;    ///< of a section: makes it or a new entry of its list
   std::vector<KeySpec> keys;                  ///< of a section: rows of what `enter` returns
+  std::string same_as;  ///< of a section: the list that has its rows in its documents, too
 
   const char* numberNoun() const {
     return type == ValueType::kInteger ? "a whole number" : "a number";

@@ -35,10 +35,10 @@ struct DrivesSection {
 };
 
 struct TactileModuleSection {
-  std::string link;                   ///< name in the URDF
-  TactileModuleConfig config;         ///< without link
-  SimulatedModuleConfig electronics;  ///< without filter cut-off and imperfections
-  double cover_radius_m = 0.0;
+  std::string link;                 ///< name in the URDF
+  TactileModuleConfig config;       ///< without link
+  SimulatedModuleConfig simulated;  ///< cover and filter rate alone
+  TactileChannels channels;
   std::optional<std::string> interface;  ///< of its bus
   CanTactileConfig on_bus;               ///< id and tare alone
   bool filter_in_daemon = false;
@@ -53,14 +53,10 @@ struct RobotConfig {
   double stiffness_N_per_m = PlantConfig{}.robot_stiffness_N_per_m;
   std::optional<CanSection> can;
   DrivesSection drives;
-  std::optional<TactileModuleSection> tactile_module;
+  /// Of `tactile_modules`, or the one of `tactile_module`.
+  std::vector<TactileModuleSection> tactile_modules;
   std::optional<GpioConfig> gpio;
   RealTimeConfig real_time;
 };
-
-/// Those of its module; of a robot without one what they are by default.
-inline SimulatedModuleConfig electronicsOf(const RobotConfig& robot) {
-  return robot.tactile_module ? robot.tactile_module->electronics : SimulatedModuleConfig{};
-}
 
 }  // namespace tactus

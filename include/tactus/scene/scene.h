@@ -42,6 +42,7 @@ struct Scene {
   PlantConfig plant;
   std::string robot_name;  ///< as the URDF spells it
   std::vector<std::string> joint_names;
+  std::vector<std::string> module_links;  ///< of the tactile modules that the controller reads
   std::vector<SourceFile> sources;  ///< the scene first, then what it extends, the robot, the URDF
   std::vector<Override> overrides;
   /// Every number of scene and robot, defaults included, by dotted path: for the log's readers.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,13 +22,13 @@ struct UrdfChain {
   std::vector<std::string> joint_names;
   std::vector<Joint> joints;
   AttachedFrame tip;
-  std::optional<AttachedFrame> module_link;
+  std::vector<AttachedFrame> module_links;
   JointLimits limits;  ///< accelerations unlimited; positions of continuous joints too
 };
 
-/// Throws InputError. `module_link` is a link of the chain or one fixed to it, moved by at least
-/// one joint.
+/// Throws InputError. `module_links` are links of the chain or fixed to it, moved by at least one
+/// joint.
 UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
-                        const std::optional<NamedFrame>& module_link);
+                        const std::vector<NamedFrame>& module_links);
 
 }  // namespace tactus

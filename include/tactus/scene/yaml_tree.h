@@ -49,7 +49,7 @@ void mergeYaml(YamlNode& base, YamlNode overlay);
 /// Lays one value of the command line over a tree, e.g. `simulation.obstacles[0].x_m`; of the key,
 /// the tree has what follows its first `skipped` bytes. Missing maps on the way are made; list
 /// entries must exist. Throws InputError at `--set key:1:1`.
-void applyOverride(YamlNode& root, const Override& setting, std::size_t skipped = 0);
+void applyOverride(YamlNode& root, const Override& setting, std::string_view path);
 
 /// The value of a dotted path; null if it is absent or removed by `~`.
 const YamlNode* findGiven(const YamlNode& root, std::string_view path);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tactus/control/controller_config.h"
+#include "tactus/control/tactile_channels.h"
 
 namespace tactus {
 
@@ -15,9 +16,6 @@ struct FoamLayer {
   double until_force_N = 0.0;
 };
 
-/// A vertical line at (x, y) in the base frame that pushes on the cover of the tactile module,
-/// horizontally and without friction, wherever it crosses the cover: a latex band, or a profile
-/// behind foam.
 /// A motion of an obstacle around its place: way sin(2 pi frequency t), t since it appeared.
 struct Swing {
   double x_m = 0.0;
@@ -25,6 +23,9 @@ struct Swing {
   double frequency_hz = 0.0;
 };
 
+/// A vertical line at (x, y) in the base frame that pushes on the covers of the tactile modules,
+/// horizontally and without friction, wherever it crosses one: a latex band, or a profile behind
+/// foam.
 struct ObstacleConfig {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -35,14 +36,12 @@ struct ObstacleConfig {
   Swing swing{};
 };
 
-/// The electronics of a simulated tactile module.
+/// A simulated tactile module: its cover and its electronics.
 struct SimulatedModuleConfig {
+  double cover_radius_m = 0.06;
   double filter_cutoff_hz = 15.0;  ///< 3rd-order Butterworth
   double filter_rate_hz = 1000.0;  ///< rate at which the module filters
-  double sample_period_s = 0.004;  ///< a multiple of the filter's period
-  /// (F_y, F_z, M_y, M_z) in the module's frame from the eight channels in N; rank 4.
-  Eigen::Matrix<double, 4, 8> calibration = Eigen::Matrix<double, 4, 8>::Zero();
-  double counts_per_N = 100000.0;  ///< of the 24-bit channels
+  TactileChannels channels;
   bool quantised = true;
   bool filtered = true;     ///< false: a module that leaves the filter to its reader
   double noise_N = 0.0;     ///< standard deviation of one channel
@@ -51,10 +50,9 @@ struct SimulatedModuleConfig {
 };
 
 struct PlantConfig {
-  double drive_lag_s = 0.005;                 ///< first-order lag of position; 0: ideal drives
-  double robot_stiffness_N_per_m = kNoLimit;  ///< of the arm, in series with every obstacle
-  double cover_radius_m = 0.06;
-  SimulatedModuleConfig module;
+  double drive_lag_s = 0.005;                  ///< first-order lag of position; 0: ideal drives
+  double robot_stiffness_N_per_m = kNoLimit;   ///< of the arm, in series with every obstacle
+  std::vector<SimulatedModuleConfig> modules;  ///< in the order of those that the controller reads
   std::vector<ObstacleConfig> obstacles;
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "tactus/control/controller_config.h"
@@ -11,12 +10,13 @@
 namespace tactus {
 
 /// The robot interface over a simulated arm among obstacles. write() moves the world on by one
-/// period: drives integrate the setpoint and follow with their lag, obstacles push on the cover,
-/// the tactile module filters and samples.
+/// period: drives integrate the setpoint and follow with their lag, obstacles push on the covers,
+/// the tactile modules filter and sample.
 class SimulatedRobot final : public Robot {
  public:
-  /// Throws std::invalid_argument unless the period is a multiple or a whole part of the module's
-  /// filter period (1 / filter_rate_hz).
+  /// Throws std::invalid_argument unless the period is a multiple or a whole part of each module's
+  /// filter period (1 / filter_rate_hz), and `plant` has a module for each that the controller
+  /// reads.
   SimulatedRobot(const ControllerConfig& robot, const PlantConfig& plant, double period_s);
 
   void read(RobotInput& input) noexcept override;
@@ -24,32 +24,38 @@ class SimulatedRobot final : public Robot {
 
   /// The tool of the simulated arm, base frame, m.
   Vector3 toolPosition() const noexcept { return framePosition(pose_, chain_.tip()); }
-  /// Norm of the summed contact force before the module's filter, N.
-  double trueForce_N() const noexcept { return true_force_N_; }
-  /// Nullptr on a robot without tactile module.
-  const SimulatedModule* module() const noexcept { return module_ ? &*module_ : nullptr; }
+  int modules() const noexcept { return static_cast<int>(modules_.size()); }
+  const SimulatedModule& module(int i) const noexcept { return modules_[i].electronics; }
+  /// Norm of the summed contact force on a module's cover, before its filter, N; 0 without modules.
+  double trueForce_N(int module = 0) const noexcept {
+    return modules_.empty() ? 0.0 : modules_[module].true_force_N;
+  }
   /// Obstacles appear and vanish by a time that counts from now.
   void restartTime() noexcept { step_ = 0; }
 
  private:
+  struct Module {
+    AttachedFrame link;
+    double length_m, cover_radius_m;
+    SimulatedModule electronics;
+    std::vector<Obstacle> obstacles;  ///< as they meet this cover
+    int steps_a_filter_step = 1;
+    double true_force_N = 0.0;
+  };
+
   void moveArm(const JointVector& velocity_setpoint) noexcept;
-  Wrench4 contactWrench() noexcept;
+  Wrench4 contactWrench(Module& module) const noexcept;
 
   SerialChain chain_;
   JointLimits limits_;
-  std::optional<TactileModuleConfig> module_config_;
-  std::optional<SimulatedModule> module_;
-  std::vector<Obstacle> obstacles_;
-  double cover_radius_m_;
-  double step_s_;  ///< of the plant: the shorter of cycle and filter period
+  std::vector<Module> modules_;
+  double step_s_;  ///< of the plant: the shortest of cycle and filter periods
   int steps_a_cycle_;
-  int steps_a_filter_step_;
   double drive_share_;
   long step_ = 0;
   JointVector q_commanded_;
   JointVector q_;   ///< of the arm
   ChainPose pose_;  ///< at q_
-  double true_force_N_ = 0.0;
 };
 
 }  // namespace tactus

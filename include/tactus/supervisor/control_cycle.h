@@ -60,16 +60,19 @@ class ControlCycle {
   Fault judgeBuses(const CycleInput& input) noexcept;
   Fault judgeDrives() noexcept;
   Fault judgeTactile() noexcept;
+  Fault judgeModule(int module) noexcept;
   Fault judgeController() noexcept;
-  FaultDetail sampleAge() const noexcept;
   ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
   bool areConfigured() const noexcept;
   void rememberPlaces() noexcept;
   void coast(int missed_cycles) noexcept;
-  bool hasFreshSample() const noexcept;
+  int modules() const noexcept { return static_cast<int>(robot_.tactileModules().size()); }
+  FaultDetail sampleAge(int module) const noexcept;
+  bool hasFreshSample(int module) const noexcept;
+  bool isReady(int module) const noexcept;
   void begin() noexcept;
-  void startTare() noexcept;
-  void repeatRefusedTare() noexcept;
+  void startTares() noexcept;
+  void repeatRefusedTares() noexcept;
   void noteCulprit() noexcept;
   void control(const CycleInput& input, Mode before) noexcept;
   double time_s() const noexcept { return static_cast<double>(cycles_) * period_s_; }
@@ -93,7 +96,6 @@ class ControlCycle {
   double period_s_;
   int max_late_cycles_;
   bool has_enable_line_;
-  double max_sample_age_s_;
   ModeConfig mode_config_;
   BrakeConfig brake_config_;
   ModeState mode_;
@@ -102,8 +104,12 @@ class ControlCycle {
   ModeReport report_;
   ControllerState state_;
   PreparedCycle prepared_;
-  double age_at_start_s_ = 0.0;  ///< of the sample that the controller's state began with
-  std::uint32_t sequence_at_start_ = 0;
+  /// With which the controller's state began.
+  struct SampleAtStart {
+    std::uint32_t sequence = 0;
+    double age_s = 0.0;
+  };
+  std::array<SampleAtStart, kMaxTactileModules> samples_at_start_;
   RobotInput input_;
   ControllerOutput output_;
   bool is_started_ = false;  ///< the controller has a state

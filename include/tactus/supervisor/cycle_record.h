@@ -12,13 +12,16 @@ namespace tactus {
 
 /// Everything the log holds of one cycle, in the order of the columns of `tactus export`. Every
 /// member is made of 8-byte words, so that the record has no padding and is copied as it lies;
-/// of the arrays only as many entries count as the robot has joints and the task components.
-/// record_fields.h names the members; a member without an entry there is not logged, but gains.
+/// of the arrays only as many entries count as the robot has joints and tactile modules and the
+/// task components. record_fields.h names the members; a member without an entry there is not
+/// logged, but gains.
 struct CycleRecord {
   double t_s = 0.0;
-  double force_sensor_N = 0.0;
-  double contact_position_m = 0.0;
-  double contact_direction[3] = {};  ///< unit force on the robot, module frame
+  double force_sensor_N[kMaxTactileModules] = {};      ///< F_sen
+  double contact_position_m[kMaxTactileModules] = {};  ///< along the link
+  /// Unit force on the robot, module frame.
+  double contact_dir_x[kMaxTactileModules] = {}, contact_dir_y[kMaxTactileModules] = {},
+         contact_dir_z[kMaxTactileModules] = {};
   double force_contact_N = 0.0;
   double stiffness_N_per_m = 0.0;
   double stiffness_raw_N_per_m = 0.0;
@@ -33,9 +36,9 @@ struct CycleRecord {
   std::int64_t wake_latency_ns = 0;
   std::int64_t step_ns = 0;
   double q_measured[kMaxJoints] = {};
-  double tactile_force_y_N = 0.0, tactile_force_z_N = 0.0;
-  double tactile_moment_y_Nm = 0.0, tactile_moment_z_Nm = 0.0;
-  std::uint64_t tactile_sequence = 0;
+  double tactile_force_y_N[kMaxTactileModules] = {}, tactile_force_z_N[kMaxTactileModules] = {};
+  double tactile_moment_y_Nm[kMaxTactileModules] = {}, tactile_moment_z_Nm[kMaxTactileModules] = {};
+  std::uint64_t tactile_sequence[kMaxTactileModules] = {};
   double tool_error_m[3] = {};  ///< desired minus actual position of the measured arm, base frame
   double task_time_s = 0.0;     ///< the task's clock, which stands still while the arm holds
   std::uint64_t mode = static_cast<std::uint64_t>(Mode::kRunning);  ///< the number of a Mode
@@ -49,11 +52,12 @@ struct CycleRecord {
 
 static_assert(std::is_trivially_copyable_v<CycleRecord> && std::is_standard_layout_v<CycleRecord>);
 static_assert(sizeof(CycleRecord) ==
-              8 * (17 + 3 * kMaxJoints + 3 * kMaxTaskSize + 3 + 5 + 3 + 5 + 2) + sizeof(Gains));
+              8 * (12 + 10 * kMaxTactileModules + 3 * kMaxJoints + 3 * kMaxTaskSize + 13) +
+                  sizeof(Gains));
 
 /// Copies one cycle into a record; wake_latency_ns and step_ns are left to the caller, who alone
 /// knows a clock, and tool_rotation_error_rad. tool_error_m: see CycleRecord. Entries of arrays
-/// beyond the robot's joints and the task's components keep what they held.
+/// beyond the robot's joints and modules and the task's components keep what they held.
 void fillRecord(double t_s, const RobotInput& input, const Gains& gains,
                 const ControllerOutput& output, const Vector3& tool_error_m,
                 CycleRecord& record) noexcept;

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+#include "tactus/control/contact_point.h"
+#include "tactus/control/controller_config.h"
+#include "tactus/control/fault.h"
+#include "tactus/control/robot.h"
+
+namespace tactus {
+
+/// What is known of one tactile module.
+struct TactileReading {
+  std::uint32_t sequence = 0;  ///< of the newest sample
+  double age_s = 0.0;          ///< of that sample
+  Fault fault = Fault::kNone;  ///< of that sample; not of its age
+  FaultDetail detail;          ///< of that fault, or of a sample too old
+  ContactPointState contact;   ///< of the newest valid sample
+};
+
+/// A new sample is judged and located, an old one ages by a period. Returns kNone, kTactileInvalid
+/// or kTactileStale.
+Fault readSample(const TactileModuleConfig& module, const TactileSample& sample, double period_s,
+                 TactileReading& reading) noexcept;
+
+/// Of the sample a period after the last cycle, s.
+double sampleAge_s(const TactileSample& sample, double period_s,
+                   const TactileReading& reading) noexcept;
+
+}  // namespace tactus

@@ -1,0 +1,46 @@
+#include "tactus/control/tactile_reading.h"
+
+#include <cmath>
+#include <limits>
+
+namespace tactus {
+namespace {
+
+/// |F|, N; not finite if any reading is.
+double judgedForce_N(const TactileSample& sample) noexcept {
+  const bool is_finite = std::isfinite(sample.moment_y_Nm) && std::isfinite(sample.moment_z_Nm);
+  return is_finite ? std::hypot(sample.force_y_N, sample.force_z_N)
+                   : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+Fault readSample(const TactileModuleConfig& module, const TactileSample& sample, double period_s,
+                 TactileReading& reading) noexcept {
+  reading.contact.interval_s = 0.0;
+  if (sample.sequence == reading.sequence) {
+    reading.age_s += period_s;
+    if (reading.age_s <= module.max_sample_age_s) return reading.fault;
+    reading.detail = {reading.age_s, module.max_sample_age_s, "s"};
+    return Fault::kTactileStale;
+  }
+  reading.sequence = sample.sequence;
+  const double interval_s = reading.age_s + period_s;
+  reading.age_s = 0.0;
+  const bool is_valid = isValid(sample, module);
+  reading.fault = is_valid ? Fault::kNone : Fault::kTactileInvalid;
+  if (is_valid) {
+    locateContact(sample, module.length_m, reading.contact);
+    reading.contact.interval_s = interval_s;
+  } else {
+    reading.detail = {judgedForce_N(sample), module.max_force_N, "N"};
+  }
+  return reading.fault;
+}
+
+double sampleAge_s(const TactileSample& sample, double period_s,
+                   const TactileReading& reading) noexcept {
+  return sample.sequence == reading.sequence ? reading.age_s + period_s : 0.0;
+}
+
+}  // namespace tactus
