@@ -195,26 +195,31 @@ void Controller::coast(int missed_cycles, double period_s, ControllerState& stat
   state.sample_age_s += missed_cycles * period_s;
 }
 
-/// What the limits cut from the contact point's motion is told to the law, which must not ask for
-/// more and more of it.
 void Controller::limit(const Motion& motion, double period_s, ControllerState& state,
                        ControllerOutput& output) const noexcept {
   if (!mayMove(state)) output.velocity.setZero();
-  const JointVector wanted = output.velocity;
-  const bool finite =
-      limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
   state.contact.cut_m_per_s = 0.0;
-  if (contact_controller_ && mayMove(state) && !isEqual(wanted, output.velocity))
-    state.contact.cut_m_per_s =
-        std::max(0.0, retreat(motion.a, wanted) - retreat(motion.a, output.velocity));
-  if (!finite) {
-    state.fault = Fault::kCommandNotFinite;
-    output.fault_detail = notFinite(motion);
-  }
+  if (!limiter_.admits(state.q_desired, state.velocity_before, period_s, output.velocity))
+    cut(motion, period_s, state, output);
   output.fault = state.fault;
   output.q_desired = state.q_desired;
   state.velocity_before = output.velocity;
   passTime(period_s, state);
+}
+
+/// What the limits cut from the contact point's motion is told to the law, which must not ask for
+/// more and more of it.
+void Controller::cut(const Motion& motion, double period_s, ControllerState& state,
+                     ControllerOutput& output) const noexcept {
+  const JointVector wanted = output.velocity;
+  const bool finite =
+      limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
+  if (contact_controller_ && mayMove(state) && !isEqual(wanted, output.velocity))
+    state.contact.cut_m_per_s =
+        std::max(0.0, retreat(motion.a, wanted) - retreat(motion.a, output.velocity));
+  if (finite) return;
+  state.fault = Fault::kCommandNotFinite;
+  output.fault_detail = notFinite(motion);
 }
 
 FaultDetail Controller::notFinite(const Motion& motion) const noexcept {
@@ -265,10 +270,10 @@ void Controller::computeKinematics(double path_time_s, const ControllerState& st
     error.tail<3>() = rotationVector(reference.R_BaseTool * R_BaseTool.transpose());
     prepared.rotation_vector_d = rotationVector(reference.R_BaseTool);
   }
-  TaskJacobian J;
+  ScaledJacobian J;
   computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
-                     J);
-  kinematics.pseudoinverse.factorise(J, inv_sqrt_weights_);
+                     inv_sqrt_weights_, J);
+  kinematics.pseudoinverse.factorise(J, task.size);
   kinematics.error.resize(task.size);
   prepared.w.resize(task.size);
   prepared.w_d_dot.resize(task.size);

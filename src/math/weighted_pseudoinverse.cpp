@@ -15,13 +15,19 @@ using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen:
 
 }  // namespace
 
-/// Modified Gram-Schmidt, each column orthogonalised twice ("twice is enough"): Q is orthonormal to
-/// machine precision whatever the condition of J.
 void WeightedPseudoinverse::factorise(const TaskJacobian& J,
                                       const ScaledVector& inv_sqrt_weights) noexcept {
-  m_ = static_cast<int>(J.rows());
-  for (int j = 0; j < m_; ++j) {
-    ScaledVector column = scaled(J.row(j), inv_sqrt_weights);
+  ScaledJacobian J_scaled;
+  for (int j = 0; j < J.rows(); ++j) J_scaled.col(j) = scaled(J.row(j), inv_sqrt_weights);
+  factorise(J_scaled, static_cast<int>(J.rows()));
+}
+
+/// Modified Gram-Schmidt, each column orthogonalised twice ("twice is enough"): Q is orthonormal to
+/// machine precision whatever the condition of J.
+void WeightedPseudoinverse::factorise(const ScaledJacobian& J_scaled, int m) noexcept {
+  m_ = m;
+  for (int j = 0; j < m; ++j) {
+    ScaledVector column = J_scaled.col(j);
     double explained = 0.0;  // squared length of what the earlier columns take away
     for (int k = 0; k < j; ++k) {
       R_[k][j] = Q_.col(k).dot(column);

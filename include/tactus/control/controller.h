@@ -126,6 +126,8 @@ class Controller {
   FaultDetail notFinite(const Motion& motion) const noexcept;
   void limit(const Motion& motion, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
+  void cut(const Motion& motion, double period_s, ControllerState& state,
+           ControllerOutput& output) const noexcept;
   void passTime(double duration_s, ControllerState& state) const noexcept;
 
   ControllerConfig config_;

@@ -27,6 +27,9 @@ using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
 /// faster for six joints than loops that know the number.
 using ScaledVector = Eigen::Matrix<double, kMaxJoints, 1>;
 
+/// W^-1/2 J^T: a column a task component, each of them a scaled vector.
+using ScaledJacobian = Eigen::Matrix<double, kMaxJoints, kMaxTaskSize>;
+
 /// v^ = factor v, component by component, for any expression v of up to kMaxJoints entries.
 template <typename Derived>
 ScaledVector scaled(const Eigen::MatrixBase<Derived>& v, const ScaledVector& factor) noexcept {

@@ -22,6 +22,9 @@ class WeightedPseudoinverse {
   static constexpr double kDampingThreshold = 0.02;
   static constexpr double kMaxDamping = 0.05;
 
+  /// Of the first m columns of W^-1/2 J^T, 1 <= m <= 6 and no more than joints.
+  void factorise(const ScaledJacobian& J_scaled, int m) noexcept;
+
   /// J: m x n with 1 <= m <= 6, m <= n; inv_sqrt_weights: the diagonal of W^-1/2, positive for each
   /// joint and zero beyond.
   void factorise(const TaskJacobian& J, const ScaledVector& inv_sqrt_weights) noexcept;
