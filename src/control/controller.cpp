@@ -59,7 +59,7 @@ double judgedForce_N(const TactileSample& sample) noexcept {
 }
 
 /// How far the tool is from its reference, m.
-double lag_m(const TaskConfig& task, const TaskVector& error) noexcept {
+double lag_m(const TaskConfig& task, const PaddedTaskVector& error) noexcept {
   double squared = 0.0;
   for (int i = 0; i < task.size; ++i)
     if (task.components[i] < 3) squared += error[i] * error[i];
@@ -161,11 +161,12 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
                          ControllerOutput& output) const noexcept {
   const TaskKinematics& kinematics = prepared.kinematics;
   Motion& motion = prepared.motion;
-  output.w = prepared.w;
-  output.w_d = prepared.w + kinematics.error;
+  const int task_size = config_.task.size;
+  assign(prepared.w, task_size, output.w);
+  assign(prepared.w + kinematics.error, task_size, output.w_d);
   if (uses_orientation_) replaceRotation(config_.task, prepared.rotation_vector_d, output.w_d);
-  output.w_d_dot = prepared.w_d_dot;
-  output.error = kinematics.error;
+  assign(prepared.w_d_dot, task_size, output.w_d_dot);
+  assign(kinematics.error, task_size, output.error);
   state.progress = prepared.progress;
   output.contact = {};
   if (config_.tactile_module) {
@@ -274,9 +275,9 @@ void Controller::computeKinematics(double path_time_s, const ControllerState& st
   computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
                      inv_sqrt_weights_, J);
   kinematics.pseudoinverse.factorise(J, task.size);
-  kinematics.error.resize(task.size);
-  prepared.w.resize(task.size);
-  prepared.w_d_dot.resize(task.size);
+  kinematics.error.setZero();
+  prepared.w.setZero();
+  prepared.w_d_dot.setZero();
   for (int i = 0; i < task.size; ++i) {
     const int component = task.components[i];
     kinematics.error[i] = error[component];
@@ -294,9 +295,14 @@ void Controller::computeTaskMotion(const TaskGains& gains, const ControllerState
   } else {
     prepared.progress = 1.0;
   }
-  TaskVector correction = state.return_share * gains.drift_gain_per_s * kinematics.error;
-  limitReturnSpeed(gains, config_.task, state.contact.push, correction);
-  kinematics.y_eff = kinematics.pseudoinverse.solve(prepared.w_d_dot + correction);
+  PaddedTaskVector correction = state.return_share * gains.drift_gain_per_s * kinematics.error;
+  if (hasReturnSpeed(gains)) {
+    TaskVector limited = correction.head(config_.task.size);
+    limitReturnSpeed(gains, config_.task, state.contact.push, limited);
+    correction = paddedTask(limited);
+  }
+  kinematics.y_eff =
+      kinematics.pseudoinverse.solve(PaddedTaskVector(prepared.w_d_dot + correction));
 }
 
 Fault Controller::readTactileModule(const RobotInput& input, double period_s,

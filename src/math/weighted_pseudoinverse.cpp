@@ -81,8 +81,8 @@ void WeightedPseudoinverse::chooseDamping() noexcept {
   eigenvectors_.topLeftCorner(m_, m_) = solver.eigenvectors();
 }
 
-TaskVector WeightedPseudoinverse::solve(const TaskVector& w) const noexcept {
-  TaskVector y(m_);
+PaddedTaskVector WeightedPseudoinverse::solve(const PaddedTaskVector& w) const noexcept {
+  PaddedTaskVector y = PaddedTaskVector::Zero();
   if (!damped()) {
     for (int row = 0; row < m_; ++row) {
       double sum = w[row];
@@ -92,7 +92,7 @@ TaskVector WeightedPseudoinverse::solve(const TaskVector& w) const noexcept {
     return y;
   }
   // y = L^T (L L^T + lambda^2 I)^-1 w
-  TaskVector z = eigenvectors_.topLeftCorner(m_, m_).transpose().lazyProduct(w);
+  TaskVector z = eigenvectors_.topLeftCorner(m_, m_).transpose().lazyProduct(w.head(m_));
   z.array() /= damped_eigenvalues_.head(m_).array();
   const TaskVector x = eigenvectors_.topLeftCorner(m_, m_).lazyProduct(z);
   for (int row = 0; row < m_; ++row) {
@@ -102,20 +102,20 @@ TaskVector WeightedPseudoinverse::solve(const TaskVector& w) const noexcept {
   return y;
 }
 
-TaskVector WeightedPseudoinverse::taskVelocity(const TaskVector& y) const noexcept {
+TaskVector WeightedPseudoinverse::taskVelocity(const PaddedTaskVector& y) const noexcept {
   TaskVector w = TaskVector::Zero(m_);
   for (int k = 0; k < m_; ++k)
     for (int row = k; row < m_; ++row) w[row] += R_[k][row] * y[k];
   return w;
 }
 
-TaskVector WeightedPseudoinverse::project(const ScaledVector& v_scaled) const noexcept {
-  TaskVector y(m_);
+PaddedTaskVector WeightedPseudoinverse::project(const ScaledVector& v_scaled) const noexcept {
+  PaddedTaskVector y = PaddedTaskVector::Zero();
   for (int j = 0; j < m_; ++j) y[j] = Q_.col(j).dot(v_scaled);
   return y;
 }
 
-ScaledVector WeightedPseudoinverse::expand(const TaskVector& y) const noexcept {
+ScaledVector WeightedPseudoinverse::expand(const PaddedTaskVector& y) const noexcept {
   ScaledVector v_scaled = y[0] * Q_.col(0);
   for (int j = 1; j < m_; ++j) v_scaled += y[j] * Q_.col(j);
   return v_scaled;

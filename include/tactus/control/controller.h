@@ -57,7 +57,7 @@ struct PreparedCycle {
   JointLimitAvoidanceGains limit_gains;
   TaskKinematics kinematics;
   Motion motion;  ///< of task and joint limits, without contact
-  TaskVector w, w_d_dot;
+  PaddedTaskVector w, w_d_dot;
   Vector3 rotation_vector_d;  ///< of the reference; only for tasks with a rotation, rad
   double progress = 1.0;      ///< of the reference, by how far the tool lags
 };

@@ -18,6 +18,29 @@ using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kM
 /// One number a task component, in the order of the task's components; m or rad.
 using TaskVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxTaskSize, 1>;
 
+/// A task vector that fills its room, zero beyond the task's components: like ScaledVector faster
+/// than loops that know the number.
+using PaddedTaskVector = Eigen::Matrix<double, kMaxTaskSize, 1>;
+
+inline PaddedTaskVector paddedTask(const TaskVector& v) noexcept {
+  PaddedTaskVector result = PaddedTaskVector::Zero();
+  for (int i = 0; i < v.size(); ++i) result[i] = v[i];
+  return result;
+}
+
+/// result = the first `size` components of v; the rest of its room is written, too.
+inline void assign(const PaddedTaskVector& v, int size, TaskVector& result) noexcept {
+  result.resize(size);
+  PaddedTaskVector::Map(result.data()) = v;
+}
+
+/// a^T b of vectors with `size` components, added up in the order in which Eigen adds those of
+/// TaskVector, which for most tasks is told here without asking for the number.
+inline double dot(const PaddedTaskVector& a, const PaddedTaskVector& b, int size) noexcept {
+  if (size == 3) return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+  return a.head(size).dot(b.head(size));
+}
+
 /// Task components by joints; row-major, so that a row (one task component) is contiguous.
 using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor,
                                    kMaxTaskSize, kMaxJoints>;

@@ -30,17 +30,19 @@ class WeightedPseudoinverse {
   void factorise(const TaskJacobian& J, const ScaledVector& inv_sqrt_weights) noexcept;
 
   /// y = R^-T w (damped near singularities): J# w = W^-1/2 Q y.
-  TaskVector solve(const TaskVector& w) const noexcept;
+  PaddedTaskVector solve(const PaddedTaskVector& w) const noexcept;
+  PaddedTaskVector solve(const TaskVector& w) const noexcept { return solve(paddedTask(w)); }
 
   /// R^T y, the task velocity of the joint velocity W^-1/2 Q y.
-  TaskVector taskVelocity(const TaskVector& y) const noexcept;
+  TaskVector taskVelocity(const PaddedTaskVector& y) const noexcept;
 
   /// Q^T v for a scaled joint vector.
-  TaskVector project(const ScaledVector& v_scaled) const noexcept;
+  PaddedTaskVector project(const ScaledVector& v_scaled) const noexcept;
 
   /// Q y, scaled.
-  ScaledVector expand(const TaskVector& y) const noexcept;
+  ScaledVector expand(const PaddedTaskVector& y) const noexcept;
 
+  int taskSize() const noexcept { return m_; }
   bool damped() const noexcept { return damping_squared_ > 0.0; }
   double dampingSquared() const noexcept { return damping_squared_; }
 
