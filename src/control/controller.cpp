@@ -274,7 +274,7 @@ void Controller::computeKinematics(double path_time_s, const ControllerState& st
   ScaledJacobian J;
   computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
                      inv_sqrt_weights_, J);
-  kinematics.pseudoinverse.factorise(J, task.size);
+  kinematics.pseudoinverse.factorise(J, config_.chain.size(), task.size);
   kinematics.error.setZero();
   prepared.w.setZero();
   prepared.w_d_dot.setZero();

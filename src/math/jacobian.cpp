@@ -22,11 +22,12 @@ void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const V
   const JointPoints& axis = pose.axis_Base;
   const double x_Tip = p_BaseTip[0], y_Tip = p_BaseTip[1], z_Tip = p_BaseTip[2];
   for (int i = 0; i < joints; i += 2) {
-    const Pair scale = pairAt(&inv_sqrt_weights[i]);
-    const Pair a_x = pairAt(axis.x + i), a_y = pairAt(axis.y + i), a_z = pairAt(axis.z + i);
-    const Pair r_x = x_Tip - pairAt(pose.p_BaseJoint.x + i);
-    const Pair r_y = y_Tip - pairAt(pose.p_BaseJoint.y + i);
-    const Pair r_z = z_Tip - pairAt(pose.p_BaseJoint.z + i);
+    const Pair scale = alignedPairAt(&inv_sqrt_weights[i]);
+    const Pair a_x = alignedPairAt(axis.x + i), a_y = alignedPairAt(axis.y + i),
+               a_z = alignedPairAt(axis.z + i);
+    const Pair r_x = x_Tip - alignedPairAt(pose.p_BaseJoint.x + i);
+    const Pair r_y = y_Tip - alignedPairAt(pose.p_BaseJoint.y + i);
+    const Pair r_z = z_Tip - alignedPairAt(pose.p_BaseJoint.z + i);
     storePair(scale * (a_y * r_z - a_z * r_y), column[0] + i);
     storePair(scale * (a_z * r_x - a_x * r_z), column[1] + i);
     storePair(scale * (a_x * r_y - a_y * r_x), column[2] + i);
@@ -64,12 +65,12 @@ void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose
   const double p_x = p_BasePoint[0], p_y = p_BasePoint[1], p_z = p_BasePoint[2];
   const double f_x = f_Base[0], f_y = f_Base[1], f_z = f_Base[2];
   for (int i = 0; i < joints; i += 2) {
-    const Pair r_x = p_x - pairAt(pose.p_BaseJoint.x + i);
-    const Pair r_y = p_y - pairAt(pose.p_BaseJoint.y + i);
-    const Pair r_z = p_z - pairAt(pose.p_BaseJoint.z + i);
-    const Pair x = pairAt(axis.x + i) * (r_y * f_z - r_z * f_y);
-    const Pair y = pairAt(axis.y + i) * (r_z * f_x - r_x * f_z);
-    const Pair z = pairAt(axis.z + i) * (r_x * f_y - r_y * f_x);
+    const Pair r_x = p_x - alignedPairAt(pose.p_BaseJoint.x + i);
+    const Pair r_y = p_y - alignedPairAt(pose.p_BaseJoint.y + i);
+    const Pair r_z = p_z - alignedPairAt(pose.p_BaseJoint.z + i);
+    const Pair x = alignedPairAt(axis.x + i) * (r_y * f_z - r_z * f_y);
+    const Pair y = alignedPairAt(axis.y + i) * (r_z * f_x - r_x * f_z);
+    const Pair z = alignedPairAt(axis.z + i) * (r_x * f_y - r_y * f_x);
     storePair((x + y) + z, entries + i);
   }
   for (const int i : chain.prismaticJoints()) {

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <memory>
 
 namespace tactus {
 
@@ -13,6 +14,10 @@ inline Pair pairAt(const double* first) noexcept {
   Pair pair;
   std::memcpy(&pair, first, sizeof(pair));
   return pair;
+}
+
+inline Pair alignedPairAt(const double* first) noexcept {
+  return pairAt(std::assume_aligned<sizeof(Pair)>(first));
 }
 
 inline void storePair(Pair pair, double* first) noexcept {

@@ -22,8 +22,8 @@ class WeightedPseudoinverse {
   static constexpr double kDampingThreshold = 0.02;
   static constexpr double kMaxDamping = 0.05;
 
-  /// Of the first m columns of W^-1/2 J^T, 1 <= m <= 6 and no more than joints.
-  void factorise(const ScaledJacobian& J_scaled, int m) noexcept;
+  /// Of the first m columns of W^-1/2 J^T for so many joints, 1 <= m <= 6, m <= joints.
+  void factorise(const ScaledJacobian& J_scaled, int joints, int m) noexcept;
 
   /// J: m x n with 1 <= m <= 6, m <= n; inv_sqrt_weights: the diagonal of W^-1/2, positive for each
   /// joint and zero beyond.
@@ -47,10 +47,13 @@ class WeightedPseudoinverse {
   double dampingSquared() const noexcept { return damping_squared_; }
 
  private:
+  template <int kPairs>
+  void orthogonalise(const ScaledJacobian& J_scaled) noexcept;
   void chooseDamping() noexcept;
 
+  int joints_ = 0;
   int m_ = 0;
-  /// Orthonormal columns; zero where J has lost rank.
+  /// Orthonormal columns, of the robot's joints only; zero where J has lost rank.
   Eigen::Matrix<double, kMaxJoints, kMaxTaskSize> Q_;
   double R_[kMaxTaskSize][kMaxTaskSize];  ///< upper triangular, R_[row][column]
   double inv_diagonal_[kMaxTaskSize];     ///< 1 / R_ii, 0 where J has lost rank
