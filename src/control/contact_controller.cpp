@@ -37,8 +37,10 @@ void goOn(const Vector3& p_BaseContact, bool is_touching, ContactControllerState
 
 /// A contact as the joints see it.
 struct ContactController::Contact {
+  explicit Contact(const ScaledVector& a_of_motion) : a(a_of_motion) {}
+
   Vector3 p_Base;
-  const JointVector& a;  ///< J_p^T F^, in the motion
+  const ScaledVector& a;  ///< J_p^T F^, in the motion
   ContactSpace space;
 };
 
@@ -93,7 +95,7 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   if (approach_limit_) {
     const ContactSpace& space = contact.space;
     const double v_res = dot(space.a_task, motion.y, task_.size) +
-                         space.a_scaled.dot(motion.v_scaled) - space.k_n * u.u_n;
+                         dot(space.a_scaled, motion.v_scaled) - space.k_n * u.u_n;
     u.u_t = approach_limit_->excess(gains.force, input.F_p_N, v_res, state.approach) *
             invertRegularised(space.k_t, space.k_j);
   }
@@ -135,7 +137,8 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
   if (!has_estimator_ || state.estimator.stiffness_N_per_m == 0.0)
     state.estimator.stiffness_N_per_m = state.estimator.stiffness_raw_N_per_m = c_0;
   if (has_estimator_) {
-    const double approach_m_per_s = -contact.a.dot(commanded.velocity);  // (15)
+    const double approach_m_per_s =
+        -contact.a.head(commanded.velocity.size()).dot(commanded.velocity);  // (15)
     estimateStiffness(gains.estimator, input.F_p_N, approach_m_per_s, period_s, state.estimator);
   }
   input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
@@ -169,8 +172,8 @@ const ContactPointState& ContactController::follow(const Gains& gains,
 
 ContactController::Contact ContactController::locate(const TaskKinematics& kinematics,
                                                      const ContactPointState& point,
-                                                     JointVector& a) const noexcept {
-  Contact contact{Vector3(), a, {}};
+                                                     ScaledVector& a) const noexcept {
+  Contact contact(a);
   const Pose& X_JointModule = link_.X_JointFrame;
   const Vector3 p_JointContact = X_JointModule.p_AB + point.position_m * X_JointModule.R_AB.col(0);
   const Vector3 F_Joint = X_JointModule.R_AB.lazyProduct(point.direction);
@@ -213,7 +216,7 @@ void ContactController::passJointSpaceContact(const Gains& gains, const TaskKine
   JointSpaceTransitionState& transition = state.joint_space_transition;
   const ContactSpace& space = contact.space;
   const double x_free =
-      dot(space.a_task, motion.y, task_.size) + space.a_scaled.dot(motion.v_scaled);
+      dot(space.a_task, motion.y, task_.size) + dot(space.a_scaled, motion.v_scaled);
   PaddedTaskVector y_pull = kinematics.pseudoinverse.solve(pull(gains, kinematics.error));
   y_pull *=
       law_.speedShare(gains.force, kinematics.pseudoinverse.expand(y_pull), state.law.null_speed) *

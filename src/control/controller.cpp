@@ -25,7 +25,7 @@ bool mayMove(const ControllerState& state) {
 }
 
 /// a^T v; an array's dot product, without the choice of a way that costs as much.
-double retreat(const JointVector& a, const JointVector& velocity) noexcept {
+double retreat(const ScaledVector& a, const JointVector& velocity) noexcept {
   double sum = 0.0;
   const auto joints = static_cast<int>(velocity.size());
   for (int i = 0; i < joints; ++i) sum += a.data()[i] * velocity.data()[i];

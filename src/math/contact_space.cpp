@@ -4,14 +4,15 @@
 
 namespace tactus {
 
-void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const JointVector& a,
+void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const ScaledVector& a,
                          const ScaledVector& inv_sqrt_weights, const PaddedTaskVector& y_eff,
                          ContactSpace& contact) noexcept {
-  contact.a_scaled = scaled(a, inv_sqrt_weights);
+  contact.a_scaled = inv_sqrt_weights.cwiseProduct(a);
   contact.a_task = pseudoinverse.project(contact.a_scaled);
-  contact.k_j = contact.a_scaled.squaredNorm();
+  contact.k_j = dot(contact.a_scaled, contact.a_scaled);
   contact.k_t = dot(contact.a_task, contact.a_task, pseudoinverse.taskSize());
-  contact.k_n = (contact.a_scaled - pseudoinverse.expand(contact.a_task)).squaredNorm();
+  const ScaledVector a_null = contact.a_scaled - pseudoinverse.expand(contact.a_task);
+  contact.k_n = dot(a_null, a_null);
   contact.x_dot_eff_m_per_s = dot(contact.a_task, y_eff, pseudoinverse.taskSize());
 }
 

@@ -55,11 +55,9 @@ void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const V
 
 void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
                                  const Vector3& p_BasePoint, const Vector3& f_Base,
-                                 JointVector& result) noexcept {
+                                 ScaledVector& result) noexcept {
   const int joints = joint + 1;
-  result.resize(chain.size());
-  double* const entries = result.data();  // room for kMaxJoints
-  ScaledVector::Map(entries).setZero();
+  result.setZero();
   // As if all were revolute, two joints at a time: (axis x r) . f = axis . (r x f).
   const JointPoints& axis = pose.axis_Base;
   const double p_x = p_BasePoint[0], p_y = p_BasePoint[1], p_z = p_BasePoint[2];
@@ -71,13 +69,21 @@ void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose
     const Pair x = alignedPairAt(axis.x + i) * (r_y * f_z - r_z * f_y);
     const Pair y = alignedPairAt(axis.y + i) * (r_z * f_x - r_x * f_z);
     const Pair z = alignedPairAt(axis.z + i) * (r_x * f_y - r_y * f_x);
-    storePair((x + y) + z, entries + i);
+    storePair((x + y) + z, &result[i]);
   }
   for (const int i : chain.prismaticJoints()) {
     if (i > joint) break;
-    entries[i] = axis[i].dot(f_Base);
+    result[i] = axis[i].dot(f_Base);
   }
-  if (joints % 2 == 1) entries[joints] = 0.0;  // what the last pair had too many
+  if (joints % 2 == 1) result[joints] = 0.0;  // what the last pair had too many
+}
+
+void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
+                                 const Vector3& p_BasePoint, const Vector3& f_Base,
+                                 JointVector& result) noexcept {
+  ScaledVector padded;
+  applyPointJacobianTranspose(chain, pose, joint, p_BasePoint, f_Base, padded);
+  result = padded.head(chain.size());
 }
 
 }  // namespace tactus

@@ -79,7 +79,7 @@ class ContactController {
             ContactControllerState& state, ContactReport& report,
             ControlLawInput& input) const noexcept;
   Contact locate(const TaskKinematics& kinematics, const ContactPointState& point,
-                 JointVector& a) const noexcept;
+                 ScaledVector& a) const noexcept;
   void passContact(const ForceGains& gains, const Contact& contact, double period_s,
                    ContactControllerState& state, ContactReport& report,
                    ControlLawInput& input) const noexcept;

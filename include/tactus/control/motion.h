@@ -17,8 +17,8 @@ struct TaskKinematics {
 /// that goes through N or J# gathered in y.
 struct Motion {
   PaddedTaskVector y;
-  ScaledVector v_scaled = ScaledVector::Zero();
-  JointVector a;                ///< J_p^T F^ of the contact, m or m/rad; set by the law
+  ScaledVector v_scaled;
+  ScaledVector a;               ///< J_p^T F^ of the contact, m or m/rad; set by the law
   double limit_nearness = 0.0;  ///< s_max of the joint-limit cost, 0 to 1
 };
 

@@ -108,6 +108,9 @@ void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const V
 /// frame, m), which moves with `joint`. Joints beyond `joint` get zero. Equation (16) with f = F^.
 void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
                                  const Vector3& p_BasePoint, const Vector3& f_Base,
+                                 ScaledVector& result) noexcept;
+void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
+                                 const Vector3& p_BasePoint, const Vector3& f_Base,
                                  JointVector& result) noexcept;
 
 }  // namespace tactus

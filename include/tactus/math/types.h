@@ -61,6 +61,14 @@ ScaledVector scaled(const Eigen::MatrixBase<Derived>& v, const ScaledVector& fac
   return result;
 }
 
+/// a^T b. Every second pair of joints is added up in a row, and then both rows.
+inline double dot(const ScaledVector& a, const ScaledVector& b) noexcept {
+  using Four = Eigen::Vector4d;
+  Four rows = a.head<4>().cwiseProduct(b.head<4>());
+  for (int i = 4; i < kMaxJoints; i += 4) rows += a.segment<4>(i).cwiseProduct(b.segment<4>(i));
+  return (rows[0] + rows[2]) + (rows[1] + rows[3]);
+}
+
 /// A rigid pose: maps coordinates in frame B to frame A.
 struct Pose {
   Matrix3 R_AB = Matrix3::Identity();
