@@ -67,6 +67,7 @@ CommandLimiter::CommandLimiter(const JointLimits& limits) : limits_(limits) {
 bool CommandLimiter::admits(const JointVector& q, const JointVector& velocity_before,
                             double period_s, const JointVector& velocity) const noexcept {
   const int last = static_cast<int>(velocity.size()) - 2;
+  if (last < 0) return false;
   Pair refused = {};
   for (int i = 0; i <= last + 1; i += 2) {
     const int k = std::min(i, last);

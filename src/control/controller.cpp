@@ -203,8 +203,8 @@ void Controller::limit(const Motion& motion, double period_s, ControllerState& s
   if (!limiter_.admits(state.q_desired, state.velocity_before, period_s, output.velocity))
     cut(motion, period_s, state, output);
   output.fault = state.fault;
-  output.q_desired = state.q_desired;
-  state.velocity_before = output.velocity;
+  assign(state.q_desired, output.q_desired);
+  assign(output.velocity, state.velocity_before);
   passTime(period_s, state);
 }
 

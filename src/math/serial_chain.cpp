@@ -179,15 +179,6 @@ Pose framePose(const ChainPose& pose, const AttachedFrame& frame) noexcept {
   return Pose{pose.R_BaseJoint[frame.joint], pose.p_BaseJoint[frame.joint]} * frame.X_JointFrame;
 }
 
-Vector3 vectorInBase(const ChainPose& pose, int joint, const Vector3& v_Joint) noexcept {
-  return joint < 0 ? v_Joint : Vector3(pose.R_BaseJoint[joint].lazyProduct(v_Joint));
-}
-
-Vector3 pointInBase(const ChainPose& pose, int joint, const Vector3& p_JointPoint) noexcept {
-  if (joint < 0) return p_JointPoint;
-  return pose.p_BaseJoint[joint] + vectorInBase(pose, joint, p_JointPoint);
-}
-
 Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcept {
   return pointInBase(pose, frame.joint, frame.X_JointFrame.p_AB);
 }

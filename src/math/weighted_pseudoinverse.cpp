@@ -27,6 +27,7 @@ auto withPairs(int joints, Work work) {
   if (joints < 8) return work(std::integral_constant<int, 4>());
   if (joints < 10) return work(std::integral_constant<int, 5>());
   if (joints < 12) return work(std::integral_constant<int, 6>());
+  if (joints < 14) return work(std::integral_constant<int, 7>());
   return work(std::integral_constant<int, kMaxJoints / 2>());
 }
 

@@ -87,8 +87,13 @@ class SerialChain {
 Pose framePose(const ChainPose& pose, const AttachedFrame& frame) noexcept;
 
 /// A point (m) or a free vector given in the frame of `joint` (-1: the base), in the base frame.
-Vector3 pointInBase(const ChainPose& pose, int joint, const Vector3& p_JointPoint) noexcept;
-Vector3 vectorInBase(const ChainPose& pose, int joint, const Vector3& v_Joint) noexcept;
+inline Vector3 vectorInBase(const ChainPose& pose, int joint, const Vector3& v_Joint) noexcept {
+  return joint < 0 ? v_Joint : Vector3(pose.R_BaseJoint[joint].lazyProduct(v_Joint));
+}
+inline Vector3 pointInBase(const ChainPose& pose, int joint, const Vector3& p_JointPoint) noexcept {
+  if (joint < 0) return p_JointPoint;
+  return pose.p_BaseJoint[joint] + vectorInBase(pose, joint, p_JointPoint);
+}
 
 /// Position only, m: what framePose(pose, frame).p_AB would be.
 Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcept;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 /// Fixed-capacity types. A robot has 2 to kMaxJoints moving joints, known when it is loaded; the
 /// storage is always that of the largest one, so nothing in the cycle touches the heap.
@@ -17,6 +18,12 @@ using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kM
 
 /// One number a task component, in the order of the task's components; m or rad.
 using TaskVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxTaskSize, 1>;
+
+/// result = v, in fewer instructions than Eigen needs where it does not know the size.
+inline void assign(const JointVector& v, JointVector& result) noexcept {
+  result.resize(v.size());
+  std::copy_n(v.data(), v.size(), result.data());
+}
 
 /// A task vector that fills its room, zero beyond the task's components: like ScaledVector faster
 /// than loops that know the number.
