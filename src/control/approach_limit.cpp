@@ -9,9 +9,10 @@ namespace {
 constexpr double kNoMemory_N_per_m = 1e-3;
 
 /// -a^T (to - from): way towards the obstacle.
-double approach(const JointVector& a, const ScaledVector& from, const ScaledVector& to) {
+double approach(const ScaledVector& a, int joints, const ScaledVector& from,
+                const ScaledVector& to) {
   double way = 0.0;
-  for (int i = 0; i < a.size(); ++i) way += a[i] * (from[i] - to[i]);
+  for (int i = 0; i < joints; ++i) way += a[i] * (from[i] - to[i]);
   return way;
 }
 
@@ -33,19 +34,20 @@ void ApproachLimit::follow(const ForceGains& gains, const ContactPointState& sen
   smoother_.update(gains, sensor, X_BaseModule, state.smoother);
 }
 
-void ApproachLimit::estimate(const ForceGains& gains, const JointVector& a, double F_p_N,
-                             double period_s, ApproachLimitState& state) const noexcept {
+void ApproachLimit::estimate(const ForceGains& gains, const ScaledVector& a, int joints,
+                             double F_p_N, double period_s,
+                             ApproachLimitState& state) const noexcept {
   const ContactPointState& contact = state.smoother.contact;
   if (F_p_N <= 0.0) {
     forgetContact(gains, period_s, state.estimator);
   } else if (contact.isNew()) {
-    const double dx_m = approach(a, state.position.sensed_before, state.position.sensed);
+    const double dx_m = approach(a, joints, state.position.sensed_before, state.position.sensed);
     estimateInContact(gains, {F_p_N, dx_m, contact.interval_s, state.smoother.significant_N},
                       state.estimator);
   }
 }
 
-void ApproachLimit::observe(const ForceGains& gains, const JointVector& a, double F_p_N,
+void ApproachLimit::observe(const ForceGains& gains, const ScaledVector& a, double F_p_N,
                             const JointVector& q_desired, double period_s,
                             ApproachLimitState& state) const noexcept {
   position_.update(q_desired, state.smoother.contact.isNew(), period_s, state.position);
@@ -53,7 +55,8 @@ void ApproachLimit::observe(const ForceGains& gains, const JointVector& a, doubl
     state.estimator.stiffness_N_per_m = gains.assumed_stiffness_N_per_m;
     state.estimator.stiffness_raw_N_per_m = gains.assumed_stiffness_N_per_m;
   }
-  if (has_estimator_) estimate(gains, a, F_p_N, period_s, state);
+  const auto joints = static_cast<int>(q_desired.size());
+  if (has_estimator_) estimate(gains, a, joints, F_p_N, period_s, state);
   const double c = state.estimator.stiffness_N_per_m;
   if (F_p_N > 0.0) {
     state.memory_N_per_m = std::max(c, gains.min_approach_stiffness_N_per_m);
@@ -61,7 +64,7 @@ void ApproachLimit::observe(const ForceGains& gains, const JointVector& a, doubl
     state.memory_N_per_m -= state.fade.of(period_s, gains.time_constant_s) * state.memory_N_per_m;
     if (state.memory_N_per_m < kNoMemory_N_per_m) state.memory_N_per_m = 0.0;
   }
-  state.way_ahead_m = approach(a, state.position.sensed, state.position.commanded);
+  state.way_ahead_m = approach(a, joints, state.position.sensed, state.position.commanded);
 }
 
 double ApproachLimit::excess(const ForceGains& gains, double F_p_N, double v_res_m_per_s,

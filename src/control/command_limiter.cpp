@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/math/pair.h"
+
 namespace tactus {
 namespace {
 
@@ -58,6 +60,33 @@ double commonFactor(const JointVector& velocity, const Interval* intervals) {
 
 CommandLimiter::CommandLimiter(const JointLimits& limits) : limits_(limits) {
   limits_.max_acceleration = limits.max_acceleration.cwiseMin(kUnlimitedAcceleration);
+}
+
+/// Two joints at a time; an odd number's last two overlap with the two before. Every comparison
+/// with NaN is false, and infinity is beyond each change of velocity.
+bool CommandLimiter::admits(const JointVector& q, const JointVector& velocity_before,
+                            double period_s, const JointVector& velocity) const noexcept {
+  const int last = static_cast<int>(velocity.size()) - 2;
+  if (last < 0) return false;
+  Pair refused = {};
+  for (int i = 0; i <= last + 1; i += 2) {
+    const int k = std::min(i, last);
+    const Pair v = pairAt(velocity.data() + k);
+    const Pair before = pairAt(velocity_before.data() + k);
+    const Pair acceleration = pairAt(limits_.max_acceleration.data() + k);
+    const Pair change = acceleration * period_s;
+    const Pair speed = magnitude(v);
+    const PairMask reachable = (speed <= pairAt(limits_.max_velocity.data() + k)) &
+                               (v >= before - change) & (v <= before + change);
+    // Far from both limits, by the measure of brake().
+    const Pair place = pairAt(q.data() + k);
+    const Pair distance =
+        smaller(pairAt(limits_.upper.data() + k) - place, place - pairAt(limits_.lower.data() + k));
+    const Pair ample = speed + change;
+    const PairMask far = ample * ample <= (acceleration + acceleration) * distance;
+    refused += (reachable & far) ? Pair{0.0, 0.0} : Pair{1.0, 1.0};
+  }
+  return refused[0] + refused[1] == 0.0;
 }
 
 bool CommandLimiter::apply(const JointVector& q, const JointVector& velocity_before,

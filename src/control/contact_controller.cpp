@@ -37,8 +37,10 @@ void goOn(const Vector3& p_BaseContact, bool is_touching, ContactControllerState
 
 /// A contact as the joints see it.
 struct ContactController::Contact {
+  explicit Contact(const ScaledVector& a_of_motion) : a(a_of_motion) {}
+
   Vector3 p_Base;
-  JointVector a;  ///< J_p^T F^
+  const ScaledVector& a;  ///< J_p^T F^, in the motion
   ContactSpace space;
 };
 
@@ -70,7 +72,7 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
                                double period_s, ContactControllerState& state,
                                ContactReport& report, Motion& motion) const noexcept {
   const ContactPointState& point = follow(gains, sensor, kinematics, commanded, period_s, state);
-  const Contact contact = locate(kinematics, point);
+  const Contact contact = locate(kinematics, point, motion.a);
 
   ControlLawInput input;
   input.F_p_N = std::max(0.0, point.force_N - gains.force.contact_threshold_N);
@@ -92,8 +94,8 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   law_.update(gains.force, input, contact.space, period_s, state.law, u);
   if (approach_limit_) {
     const ContactSpace& space = contact.space;
-    const double v_res =
-        space.a_task.dot(motion.y) + space.a_scaled.dot(motion.v_scaled) - space.k_n * u.u_n;
+    const double v_res = dot(space.a_task, motion.y, task_.size) +
+                         dot(space.a_scaled, motion.v_scaled) - space.k_n * u.u_n;
     u.u_t = approach_limit_->excess(gains.force, input.F_p_N, v_res, state.approach) *
             invertRegularised(space.k_t, space.k_j);
   }
@@ -101,7 +103,6 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
   motion.y += (u.u_n - u.u_t) * contact.space.a_task;
   motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
-  motion.a = contact.a;
 
   if (is_multi_space_ && commanded.is_followed && hasReturnSpeed(gains.task)) {
     state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * contact.space.a_task);
@@ -136,7 +137,8 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
   if (!has_estimator_ || state.estimator.stiffness_N_per_m == 0.0)
     state.estimator.stiffness_N_per_m = state.estimator.stiffness_raw_N_per_m = c_0;
   if (has_estimator_) {
-    const double approach_m_per_s = -contact.a.dot(commanded.velocity);  // (15)
+    const double approach_m_per_s =
+        -contact.a.head(commanded.velocity.size()).dot(commanded.velocity);  // (15)
     estimateStiffness(gains.estimator, input.F_p_N, approach_m_per_s, period_s, state.estimator);
   }
   input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
@@ -168,17 +170,17 @@ const ContactPointState& ContactController::follow(const Gains& gains,
   return sensor;
 }
 
-ContactController::Contact ContactController::locate(
-    const TaskKinematics& kinematics, const ContactPointState& point) const noexcept {
-  Contact contact;
+ContactController::Contact ContactController::locate(const TaskKinematics& kinematics,
+                                                     const ContactPointState& point,
+                                                     ScaledVector& a) const noexcept {
+  Contact contact(a);
   const Pose& X_JointModule = link_.X_JointFrame;
   const Vector3 p_JointContact = X_JointModule.p_AB + point.position_m * X_JointModule.R_AB.col(0);
   const Vector3 F_Joint = X_JointModule.R_AB.lazyProduct(point.direction);
   contact.p_Base = pointInBase(kinematics.pose, link_.joint, p_JointContact);
   const Vector3 F_Base = vectorInBase(kinematics.pose, link_.joint, F_Joint);
-  applyPointJacobianTranspose(chain_, kinematics.pose, link_.joint, contact.p_Base, F_Base,
-                              contact.a);
-  computeContactSpace(kinematics.pseudoinverse, contact.a, inv_sqrt_weights_, kinematics.y_eff,
+  applyPointJacobianTranspose(chain_, kinematics.pose, link_.joint, contact.p_Base, F_Base, a);
+  computeContactSpace(kinematics.pseudoinverse, a, inv_sqrt_weights_, kinematics.y_eff,
                       contact.space);
   return contact;
 }
@@ -213,12 +215,13 @@ void ContactController::passJointSpaceContact(const Gains& gains, const TaskKine
                                               Motion& motion) const noexcept {
   JointSpaceTransitionState& transition = state.joint_space_transition;
   const ContactSpace& space = contact.space;
-  const double x_free = space.a_task.dot(motion.y) + space.a_scaled.dot(motion.v_scaled);
-  TaskVector y_pull = kinematics.pseudoinverse.solve(pull(gains, kinematics.error));
+  const double x_free =
+      dot(space.a_task, motion.y, task_.size) + dot(space.a_scaled, motion.v_scaled);
+  PaddedTaskVector y_pull = kinematics.pseudoinverse.solve(pull(gains, kinematics.error));
   y_pull *=
       law_.speedShare(gains.force, kinematics.pseudoinverse.expand(y_pull), state.law.null_speed) *
       (1.0 - motion.limit_nearness * motion.limit_nearness) * return_share;
-  const double x_pull = space.a_task.dot(y_pull);
+  const double x_pull = dot(space.a_task, y_pull, task_.size);
   const IntegralShare integral =
       passTransition(gains.force, {input.F_p_N, contact.p_Base, x_free}, period_s, transition);
   input.integral_decay = integral.decay;
@@ -229,7 +232,8 @@ void ContactController::passJointSpaceContact(const Gains& gains, const TaskKine
   report.x_dot_eff_m_per_s = x_free + transition.kappa * x_pull;
 }
 
-TaskVector ContactController::pull(const Gains& gains, const TaskVector& error) const noexcept {
+TaskVector ContactController::pull(const Gains& gains, const PaddedTaskVector& all) const noexcept {
+  const TaskVector error = all.head(task_.size);
   const TaskVector pull = gains.force.pull_gain_per_s * error;
   if (!hasReturnSpeed(gains.task)) return pull;
   TaskVector correction = gains.task.drift_gain_per_s * error;

@@ -25,7 +25,7 @@ bool mayMove(const ControllerState& state) {
 }
 
 /// a^T v; an array's dot product, without the choice of a way that costs as much.
-double retreat(const JointVector& a, const JointVector& velocity) noexcept {
+double retreat(const ScaledVector& a, const JointVector& velocity) noexcept {
   double sum = 0.0;
   const auto joints = static_cast<int>(velocity.size());
   for (int i = 0; i < joints; ++i) sum += a.data()[i] * velocity.data()[i];
@@ -52,7 +52,7 @@ void replaceRotation(const TaskConfig& task, const Vector3& rotation_vector,
 }
 
 /// How far the tool is from its reference, m.
-double lag_m(const TaskConfig& task, const TaskVector& error) noexcept {
+double lag_m(const TaskConfig& task, const PaddedTaskVector& error) noexcept {
   double squared = 0.0;
   for (int i = 0; i < task.size; ++i)
     if (task.components[i] < 3) squared += error[i] * error[i];
@@ -157,11 +157,12 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
                          ControllerOutput& output) const noexcept {
   const TaskKinematics& kinematics = prepared.kinematics;
   Motion& motion = prepared.motion;
-  output.w = prepared.w;
-  output.w_d = prepared.w + kinematics.error;
+  const int task_size = config_.task.size;
+  assign(prepared.w, task_size, output.w);
+  assign(prepared.w + kinematics.error, task_size, output.w_d);
   if (uses_orientation_) replaceRotation(config_.task, prepared.rotation_vector_d, output.w_d);
-  output.w_d_dot = prepared.w_d_dot;
-  output.error = kinematics.error;
+  assign(prepared.w_d_dot, task_size, output.w_d_dot);
+  assign(kinematics.error, task_size, output.error);
   state.progress = prepared.progress;
   output.contact = {};
   sense(input, period_s, state, output);
@@ -198,26 +199,31 @@ void Controller::coast(int missed_cycles, double period_s, ControllerState& stat
   for (int i = 0; i < modules(); ++i) state.modules[i].age_s += missed_cycles * period_s;
 }
 
-/// What the limits cut from the contact point's motion is told to the law, which must not ask for
-/// more and more of it.
 void Controller::limit(const Motion& motion, double period_s, ControllerState& state,
                        ControllerOutput& output) const noexcept {
   if (!mayMove(state)) output.velocity.setZero();
+  state.contact.cut_m_per_s = 0.0;
+  if (!limiter_.admits(state.q_desired, state.velocity_before, period_s, output.velocity))
+    cut(motion, period_s, state, output);
+  output.fault = state.fault;
+  assign(state.q_desired, output.q_desired);
+  assign(output.velocity, state.velocity_before);
+  passTime(period_s, state);
+}
+
+/// What the limits cut from the contact point's motion is told to the law, which must not ask for
+/// more and more of it.
+void Controller::cut(const Motion& motion, double period_s, ControllerState& state,
+                     ControllerOutput& output) const noexcept {
   const JointVector wanted = output.velocity;
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
-  state.contact.cut_m_per_s = 0.0;
   if (contact_controller_ && mayMove(state) && !isEqual(wanted, output.velocity))
     state.contact.cut_m_per_s =
         std::max(0.0, retreat(motion.a, wanted) - retreat(motion.a, output.velocity));
-  if (!finite) {
-    state.fault = Fault::kCommandNotFinite;
-    output.fault_detail = notFinite(motion);
-  }
-  output.fault = state.fault;
-  output.q_desired = state.q_desired;
-  state.velocity_before = output.velocity;
-  passTime(period_s, state);
+  if (finite) return;
+  state.fault = Fault::kCommandNotFinite;
+  output.fault_detail = notFinite(motion);
 }
 
 FaultDetail Controller::notFinite(const Motion& motion) const noexcept {
@@ -268,13 +274,13 @@ void Controller::computeKinematics(double path_time_s, const ControllerState& st
     error.tail<3>() = rotationVector(reference.R_BaseTool * R_BaseTool.transpose());
     prepared.rotation_vector_d = rotationVector(reference.R_BaseTool);
   }
-  TaskJacobian J;
+  ScaledJacobian J;
   computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
-                     J);
-  kinematics.pseudoinverse.factorise(J, inv_sqrt_weights_);
-  kinematics.error.resize(task.size);
-  prepared.w.resize(task.size);
-  prepared.w_d_dot.resize(task.size);
+                     inv_sqrt_weights_, J);
+  kinematics.pseudoinverse.factorise(J, config_.chain.size(), task.size);
+  kinematics.error.setZero();
+  prepared.w.setZero();
+  prepared.w_d_dot.setZero();
   for (int i = 0; i < task.size; ++i) {
     const int component = task.components[i];
     kinematics.error[i] = error[component];
@@ -292,9 +298,14 @@ void Controller::computeTaskMotion(const TaskGains& gains, const ControllerState
   } else {
     prepared.progress = 1.0;
   }
-  TaskVector correction = state.return_share * gains.drift_gain_per_s * kinematics.error;
-  limitReturnSpeed(gains, config_.task, state.contact.push, correction);
-  kinematics.y_eff = kinematics.pseudoinverse.solve(prepared.w_d_dot + correction);
+  PaddedTaskVector correction = state.return_share * gains.drift_gain_per_s * kinematics.error;
+  if (hasReturnSpeed(gains)) {
+    TaskVector limited = correction.head(config_.task.size);
+    limitReturnSpeed(gains, config_.task, state.contact.push, limited);
+    correction = paddedTask(limited);
+  }
+  kinematics.y_eff =
+      kinematics.pseudoinverse.solve(PaddedTaskVector(prepared.w_d_dot + correction));
 }
 
 }  // namespace tactus

@@ -4,15 +4,16 @@
 
 namespace tactus {
 
-void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const JointVector& a,
-                         const ScaledVector& inv_sqrt_weights, const TaskVector& y_eff,
+void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const ScaledVector& a,
+                         const ScaledVector& inv_sqrt_weights, const PaddedTaskVector& y_eff,
                          ContactSpace& contact) noexcept {
-  contact.a_scaled = scaled(a, inv_sqrt_weights);
+  contact.a_scaled = inv_sqrt_weights.cwiseProduct(a);
   contact.a_task = pseudoinverse.project(contact.a_scaled);
-  contact.k_j = contact.a_scaled.squaredNorm();
-  contact.k_t = contact.a_task.squaredNorm();
-  contact.k_n = (contact.a_scaled - pseudoinverse.expand(contact.a_task)).squaredNorm();
-  contact.x_dot_eff_m_per_s = contact.a_task.dot(y_eff);
+  contact.k_j = dot(contact.a_scaled, contact.a_scaled);
+  contact.k_t = dot(contact.a_task, contact.a_task, pseudoinverse.taskSize());
+  const ScaledVector a_null = contact.a_scaled - pseudoinverse.expand(contact.a_task);
+  contact.k_n = dot(a_null, a_null);
+  contact.x_dot_eff_m_per_s = dot(contact.a_task, y_eff, pseudoinverse.taskSize());
 }
 
 double invertRegularised(double k, double k_j) noexcept {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "tactus/math/pair.h"
 #include "tactus/math/rotation.h"
 #include "tactus/math/sin_cos.h"
 
@@ -26,13 +27,80 @@ int coordinateAxis(const Vector3& axis) {
   return -1;
 }
 
-/// R * Rot(e_K, angle): turns two columns in their plane.
-template <int K>
-void rotateAboutCoordinateAxis(double sine, double cosine, Matrix3& R) {
-  const Vector3 i = R.col((K + 1) % 3);
-  const Vector3 j = R.col((K + 2) % 3);
-  R.col((K + 1) % 3) = cosine * i + sine * j;
-  R.col((K + 2) % 3) = cosine * j - sine * i;
+/// 0, 1, 2 where a point lies on the x, y, z axis, -1 otherwise.
+int axisOf(const Vector3& p) {
+  for (int k = 0; k < 3; ++k) {
+    if (p[(k + 1) % 3] == 0.0 && p[(k + 2) % 3] == 0.0) return k;
+  }
+  return -1;
+}
+
+/// A vector whose first two numbers share a register.
+struct Column {
+  Pair xy;
+  double z;
+};
+
+inline Column operator*(double factor, Column v) { return {factor * v.xy, factor * v.z}; }
+inline Column operator+(Column a, Column b) { return {a.xy + b.xy, a.z + b.z}; }
+inline Column operator-(Column a, Column b) { return {a.xy - b.xy, a.z - b.z}; }
+
+inline Column column(const Vector3& v) { return {pairAt(v.data()), v[2]}; }
+
+inline void store(Column v, double* xyz) {
+  storePair(v.xy, xyz);
+  xyz[2] = v.z;
+}
+
+inline void store(Column v, int joint, JointPoints& points) {
+  points.x[joint] = v.xy[0];
+  points.y[joint] = v.xy[1];
+  points.z[joint] = v.z;
+}
+
+/// A rotation by its columns, apart from each other, so that they stay in registers.
+struct Columns {
+  Column x, y, z;
+};
+
+inline void store(Columns R, Matrix3& matrix) {
+  store(R.x, matrix.data());
+  store(R.y, matrix.data() + 3);
+  store(R.z, matrix.data() + 6);
+}
+
+/// Turns the axes i and j of a frame in their plane: R * Rot(k, angle).
+inline void turn(double sine, double cosine, Column& i, Column& j) {
+  const Column before = i;
+  i = cosine * before + sine * j;
+  j = cosine * j - sine * before;
+}
+
+Column generalProduct(Columns R, const Vector3& v) {
+  Matrix3 matrix;
+  store(R, matrix);
+  return column(matrix.lazyProduct(v));
+}
+
+/// R v, where v may lie on a coordinate axis: 0, 1, 2, or else -1.
+inline Column product(Columns R, const Vector3& v, int coordinate_axis) {
+  switch (coordinate_axis) {
+    case 0:
+      return v[0] * R.x;
+    case 1:
+      return v[1] * R.y;
+    case 2:
+      return v[2] * R.z;
+    default:
+      return generalProduct(R, v);
+  }
+}
+
+Columns product(Columns R, const Matrix3& rotation) {
+  Matrix3 matrix;
+  store(R, matrix);
+  const Matrix3 result = matrix.lazyProduct(rotation);
+  return {column(result.col(0)), column(result.col(1)), column(result.col(2))};
 }
 
 }  // namespace
@@ -52,49 +120,57 @@ SerialChain::SerialChain(const std::vector<Joint>& joints, const AttachedFrame& 
     prepared.type = joint.type;
     prepared.R_ParentJoint = joint.X_ParentJoint.R_AB;
     prepared.p_ParentJoint = joint.X_ParentJoint.p_AB;
+    prepared.origin_axis = axisOf(joint.X_ParentJoint.p_AB);
     prepared.origin_is_rotated = joint.X_ParentJoint.R_AB != Matrix3::Identity();
     prepared.axis = joint.axis.normalized();
     prepared.coordinate_axis = coordinateAxis(joint.axis);
     prepared.axis_sign = joint.axis.sum() < 0.0 ? -1.0 : 1.0;
+    if (joint.type == JointType::kPrismatic) prismatic_[prismatic_count_++] = i;
   }
+  while (first_revolute_ < size_ && type(first_revolute_) == JointType::kPrismatic)
+    ++first_revolute_;
 }
 
 void SerialChain::computePose(const JointVector& q, ChainPose& pose) const noexcept {
   double sine[kMaxJoints];
   double cosine[kMaxJoints];
-  sinCos(q.data(), size_, sine, cosine);
-  Matrix3 R = Matrix3::Identity();
-  Vector3 p = Vector3::Zero();
+  const int first = first_revolute_;
+  sinCos(q.data() + first, size_ - first, sine + first, cosine + first);
+  Columns R{{{1.0, 0.0}, 0.0}, {{0.0, 1.0}, 0.0}, {{0.0, 0.0}, 1.0}};
+  const Column zero{{0.0, 0.0}, 0.0};
+  Column p = zero;
   for (int i = 0; i < size_; ++i) {
     const PreparedJoint& joint = joints_[i];
-    p += R.lazyProduct(joint.p_ParentJoint);
-    if (joint.origin_is_rotated) R = R.lazyProduct(joint.R_ParentJoint).eval();
-    Vector3& axis = pose.axis_Base[i];
-    if (joint.coordinate_axis < 0) {
-      axis = R.lazyProduct(joint.axis);
-    } else {
-      axis = joint.axis_sign * R.col(joint.coordinate_axis);
+    p = p + product(R, joint.p_ParentJoint, joint.origin_axis);
+    if (joint.origin_is_rotated) R = product(R, joint.R_ParentJoint);
+    const bool revolute = joint.type == JointType::kRevolute;
+    Column axis;
+    switch (joint.coordinate_axis) {
+      case 0:
+        axis = joint.axis_sign * R.x;
+        if (revolute) turn(joint.axis_sign * sine[i], cosine[i], R.y, R.z);
+        break;
+      case 1:
+        axis = joint.axis_sign * R.y;
+        if (revolute) turn(joint.axis_sign * sine[i], cosine[i], R.z, R.x);
+        break;
+      case 2:
+        axis = joint.axis_sign * R.z;
+        if (revolute) turn(joint.axis_sign * sine[i], cosine[i], R.x, R.y);
+        break;
+      default:
+        axis = generalProduct(R, joint.axis);
+        // With the constant axis of the joint's own frame: with the one in R, errors would grow.
+        if (revolute) R = product(R, rotationMatrix(joint.axis, sine[i], cosine[i]));
     }
-    if (joint.type == JointType::kPrismatic) {
-      p += q[i] * axis;
-    } else {
-      switch (joint.coordinate_axis) {
-        case 0:
-          rotateAboutCoordinateAxis<0>(joint.axis_sign * sine[i], cosine[i], R);
-          break;
-        case 1:
-          rotateAboutCoordinateAxis<1>(joint.axis_sign * sine[i], cosine[i], R);
-          break;
-        case 2:
-          rotateAboutCoordinateAxis<2>(joint.axis_sign * sine[i], cosine[i], R);
-          break;
-        default:
-          // With the constant axis of the joint's own frame: with the one in R, errors would grow.
-          R = R.lazyProduct(rotationMatrix(joint.axis, sine[i], cosine[i])).eval();
-      }
-    }
-    pose.R_BaseJoint[i] = R;
-    pose.p_BaseJoint[i] = p;
+    if (!revolute) p = p + q[i] * axis;
+    store(R, pose.R_BaseJoint[i]);
+    store(p, i, pose.p_BaseJoint);
+    store(axis, i, pose.axis_Base);
+  }
+  if (size_ < kMaxJoints) {
+    store(zero, size_, pose.p_BaseJoint);
+    store(zero, size_, pose.axis_Base);
   }
 }
 
@@ -103,60 +179,8 @@ Pose framePose(const ChainPose& pose, const AttachedFrame& frame) noexcept {
   return Pose{pose.R_BaseJoint[frame.joint], pose.p_BaseJoint[frame.joint]} * frame.X_JointFrame;
 }
 
-Vector3 vectorInBase(const ChainPose& pose, int joint, const Vector3& v_Joint) noexcept {
-  return joint < 0 ? v_Joint : Vector3(pose.R_BaseJoint[joint].lazyProduct(v_Joint));
-}
-
-Vector3 pointInBase(const ChainPose& pose, int joint, const Vector3& p_JointPoint) noexcept {
-  if (joint < 0) return p_JointPoint;
-  return pose.p_BaseJoint[joint] + vectorInBase(pose, joint, p_JointPoint);
-}
-
 Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcept {
   return pointInBase(pose, frame.joint, frame.X_JointFrame.p_AB);
-}
-
-void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const Vector3& p_BaseTip,
-                        const int* components, int component_count, TaskJacobian& J) noexcept {
-  J.resize(component_count, chain.size());
-  double unselected[kMaxJoints];
-  double* row[6];  // where each of the six components goes
-  std::fill(row, row + 6, &unselected[0]);
-  bool has_rotation = false;
-  for (int i = 0; i < component_count; ++i) {
-    row[components[i]] = &J(i, 0);
-    has_rotation = has_rotation || components[i] >= 3;
-  }
-  const int joints = chain.tip().joint + 1;
-  for (int i = 0; i < joints; ++i) {
-    const Vector3& axis = pose.axis_Base[i];
-    const bool revolute = chain.type(i) == JointType::kRevolute;
-    const Vector3 linear = revolute ? axis.cross(p_BaseTip - pose.p_BaseJoint[i]) : axis;
-    row[0][i] = linear[0];
-    row[1][i] = linear[1];
-    row[2][i] = linear[2];
-  }
-  for (int i = 0; has_rotation && i < joints; ++i) {
-    const bool revolute = chain.type(i) == JointType::kRevolute;
-    for (int k = 0; k < 3; ++k) row[3 + k][i] = revolute ? pose.axis_Base[i][k] : 0.0;
-  }
-  if (joints < chain.size()) J.rightCols(chain.size() - joints).setZero();
-}
-
-void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
-                                 const Vector3& p_BasePoint, const Vector3& f_Base,
-                                 JointVector& result) noexcept {
-  result.resize(chain.size());
-  for (int i = 0; i < chain.size(); ++i) {
-    if (i > joint) {
-      result[i] = 0.0;
-    } else if (chain.type(i) == JointType::kPrismatic) {
-      result[i] = pose.axis_Base[i].dot(f_Base);
-    } else {
-      // (axis x r) . f = axis . (r x f)
-      result[i] = pose.axis_Base[i].dot((p_BasePoint - pose.p_BaseJoint[i]).cross(f_Base));
-    }
-  }
 }
 
 }  // namespace tactus

@@ -2,6 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <type_traits>
+
+#include "tactus/math/pair.h"
 
 namespace tactus {
 namespace {
@@ -13,33 +16,81 @@ constexpr double kRankTolerance = 1e-14;
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
                                   kMaxTaskSize, kMaxTaskSize>;
 
+template <int kPairs>
+using Lanes = Eigen::Matrix<double, 2 * kPairs, 1>;
+
+/// Calls work(n) with a number of pairs that holds so many joints and, if there is room, one that
+/// is zero: so that sums end at the same zero as over the whole room. The compiler knows n, so that
+/// nothing asks which joints there are.
+template <typename Work>
+auto withPairs(int joints, Work work) {
+  if (joints < 8) return work(std::integral_constant<int, 4>());
+  if (joints < 10) return work(std::integral_constant<int, 5>());
+  if (joints < 12) return work(std::integral_constant<int, 6>());
+  if (joints < 14) return work(std::integral_constant<int, 7>());
+  return work(std::integral_constant<int, kMaxJoints / 2>());
+}
+
+/// Sums of products, added up as a tree over the room of all joints: so the result does not depend
+/// on how many of them are left out for being zero.
+template <int kPairs, int kFirst = 0, int kWidth = kMaxJoints / 2>
+Pair productTree(const double* a, const double* b) {
+  if constexpr (kWidth == 1) {
+    return alignedPairAt(a + 2 * kFirst) * alignedPairAt(b + 2 * kFirst);
+  } else {
+    const Pair left = productTree<kPairs, kFirst, kWidth / 2>(a, b);
+    if constexpr (kFirst + kWidth / 2 >= kPairs)
+      return left;
+    else
+      return left + productTree<kPairs, kFirst + kWidth / 2, kWidth / 2>(a, b);
+  }
+}
+
+template <int kPairs>
+double dotOf(const double* a, const double* b) {
+  const Pair sums = productTree<kPairs>(a, b);
+  return sums[0] + sums[1];
+}
+
 }  // namespace
+
+void WeightedPseudoinverse::factorise(const TaskJacobian& J,
+                                      const ScaledVector& inv_sqrt_weights) noexcept {
+  ScaledJacobian J_scaled;
+  for (int j = 0; j < J.rows(); ++j) J_scaled.col(j) = scaled(J.row(j), inv_sqrt_weights);
+  factorise(J_scaled, static_cast<int>(J.cols()), static_cast<int>(J.rows()));
+}
+
+void WeightedPseudoinverse::factorise(const ScaledJacobian& J_scaled, int joints, int m) noexcept {
+  joints_ = joints;
+  m_ = m;
+  withPairs(joints, [&](auto pairs) { orthogonalise<pairs>(J_scaled); });
+  chooseDamping();
+}
 
 /// Modified Gram-Schmidt, each column orthogonalised twice ("twice is enough"): Q is orthonormal to
 /// machine precision whatever the condition of J.
-void WeightedPseudoinverse::factorise(const TaskJacobian& J,
-                                      const ScaledVector& inv_sqrt_weights) noexcept {
-  m_ = static_cast<int>(J.rows());
+template <int kPairs>
+void WeightedPseudoinverse::orthogonalise(const ScaledJacobian& J_scaled) noexcept {
   for (int j = 0; j < m_; ++j) {
-    ScaledVector column = scaled(J.row(j), inv_sqrt_weights);
+    Lanes<kPairs> column = J_scaled.col(j).head<2 * kPairs>();
     double explained = 0.0;  // squared length of what the earlier columns take away
     for (int k = 0; k < j; ++k) {
-      R_[k][j] = Q_.col(k).dot(column);
-      column -= R_[k][j] * Q_.col(k);
+      R_[k][j] = dotOf<kPairs>(Q_.col(k).data(), column.data());
+      column -= R_[k][j] * Q_.col(k).head<2 * kPairs>();
     }
     for (int k = 0; k < j; ++k) {
-      const double correction = Q_.col(k).dot(column);
+      const double correction = dotOf<kPairs>(Q_.col(k).data(), column.data());
       R_[k][j] += correction;
-      column -= correction * Q_.col(k);
+      column -= correction * Q_.col(k).head<2 * kPairs>();
       explained += R_[k][j] * R_[k][j];
     }
-    const double rest_squared = column.squaredNorm();
+    const double rest_squared = dotOf<kPairs>(column.data(), column.data());
     const bool independent = rest_squared > kRankTolerance * kRankTolerance * explained;
     R_[j][j] = independent ? std::sqrt(rest_squared) : 0.0;
     inv_diagonal_[j] = independent ? 1.0 / R_[j][j] : 0.0;
-    Q_.col(j) = inv_diagonal_[j] * column;
+    Q_.col(j).head<2 * kPairs>() = inv_diagonal_[j] * column;
   }
-  chooseDamping();
 }
 
 /// The singular values of R are those of J W^-1/2. 1 / |R^-1|_F is a lower bound of the smallest
@@ -75,8 +126,8 @@ void WeightedPseudoinverse::chooseDamping() noexcept {
   eigenvectors_.topLeftCorner(m_, m_) = solver.eigenvectors();
 }
 
-TaskVector WeightedPseudoinverse::solve(const TaskVector& w) const noexcept {
-  TaskVector y(m_);
+PaddedTaskVector WeightedPseudoinverse::solve(const PaddedTaskVector& w) const noexcept {
+  PaddedTaskVector y = PaddedTaskVector::Zero();
   if (!damped()) {
     for (int row = 0; row < m_; ++row) {
       double sum = w[row];
@@ -86,7 +137,7 @@ TaskVector WeightedPseudoinverse::solve(const TaskVector& w) const noexcept {
     return y;
   }
   // y = L^T (L L^T + lambda^2 I)^-1 w
-  TaskVector z = eigenvectors_.topLeftCorner(m_, m_).transpose().lazyProduct(w);
+  TaskVector z = eigenvectors_.topLeftCorner(m_, m_).transpose().lazyProduct(w.head(m_));
   z.array() /= damped_eigenvalues_.head(m_).array();
   const TaskVector x = eigenvectors_.topLeftCorner(m_, m_).lazyProduct(z);
   for (int row = 0; row < m_; ++row) {
@@ -96,23 +147,31 @@ TaskVector WeightedPseudoinverse::solve(const TaskVector& w) const noexcept {
   return y;
 }
 
-TaskVector WeightedPseudoinverse::taskVelocity(const TaskVector& y) const noexcept {
+TaskVector WeightedPseudoinverse::taskVelocity(const PaddedTaskVector& y) const noexcept {
   TaskVector w = TaskVector::Zero(m_);
   for (int k = 0; k < m_; ++k)
     for (int row = k; row < m_; ++row) w[row] += R_[k][row] * y[k];
   return w;
 }
 
-TaskVector WeightedPseudoinverse::project(const ScaledVector& v_scaled) const noexcept {
-  TaskVector y(m_);
-  for (int j = 0; j < m_; ++j) y[j] = Q_.col(j).dot(v_scaled);
-  return y;
+PaddedTaskVector WeightedPseudoinverse::project(const ScaledVector& v_scaled) const noexcept {
+  return withPairs(joints_, [&](auto pairs) {
+    PaddedTaskVector y = PaddedTaskVector::Zero();
+    for (int j = 0; j < m_; ++j) y[j] = dotOf<pairs>(Q_.col(j).data(), v_scaled.data());
+    return y;
+  });
 }
 
-ScaledVector WeightedPseudoinverse::expand(const TaskVector& y) const noexcept {
-  ScaledVector v_scaled = y[0] * Q_.col(0);
-  for (int j = 1; j < m_; ++j) v_scaled += y[j] * Q_.col(j);
-  return v_scaled;
+ScaledVector WeightedPseudoinverse::expand(const PaddedTaskVector& y) const noexcept {
+  return withPairs(joints_, [&](auto pairs) {
+    constexpr int kLanes = 2 * pairs;
+    Lanes<pairs> v = y[0] * Q_.col(0).template head<kLanes>();
+    for (int j = 1; j < m_; ++j) v += y[j] * Q_.col(j).template head<kLanes>();
+    ScaledVector v_scaled;
+    v_scaled.template head<kLanes>() = v;
+    v_scaled.template tail<kMaxJoints - kLanes>().setZero();
+    return v_scaled;
+  });
 }
 
 double smallestSingularValue(const TaskJacobian& J, const JointVector& weights) {

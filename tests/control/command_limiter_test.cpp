@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstdint>
+#include <limits>
+
 #include "support/random_limits.h"
 
 /// Single cycles of the last gate, without position limits in the way.
@@ -52,6 +56,30 @@ TEST(CommandLimiter, LeavesAdmissibleCommandsAloneToTheBit) {
     ASSERT_TRUE(CommandLimiter(c.limits).apply(c.q, c.before, c.period_s, v));
     ASSERT_EQ(v, wanted) << "case " << i;
   }
+}
+
+TEST(CommandLimiter, AdmitsAtAGlanceOnlyWhatItLeavesAlone) {
+  test::Random random(165);
+  const double odd[] = {std::numeric_limits<double>::quiet_NaN(), kNoLimit, -kNoLimit, -0.0};
+  int admitted = 0;
+  for (int i = 0; i < 50000; ++i) {
+    LimiterCase c(random);
+    JointVector wanted(c.n);
+    for (int k = 0; k < c.n; ++k) {
+      c.limits.lower[k] = random.chance(0.3) ? -kNoLimit : -random.logUniform(1e-3, 1e5);
+      c.limits.upper[k] = random.chance(0.3) ? kNoLimit : random.logUniform(1e-3, 1e5);
+      wanted[k] = random.uniform(std::max(-100.0, c.low(k)), std::min(100.0, c.high(k)));
+    }
+    if (random.chance(0.5)) wanted[random.integer(0, c.n - 1)] = odd[random.integer(0, 3)];
+    const CommandLimiter limiter(c.limits);
+    if (!limiter.admits(c.q, c.before, c.period_s, wanted)) continue;
+    ++admitted;
+    JointVector v = wanted;
+    ASSERT_TRUE(limiter.apply(c.q, c.before, c.period_s, v));
+    for (int k = 0; k < c.n; ++k)
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(v[k]), std::bit_cast<std::uint64_t>(wanted[k]));
+  }
+  EXPECT_GT(admitted, 1000);
 }
 
 TEST(CommandLimiter, LetsNothingInadmissibleThrough) {

@@ -105,7 +105,8 @@ TEST(Pseudoinverse, TurnsNoNumberIntoNoNumberAndEnds) {
       const ScaledVector inv_sqrt = test::inverseSquareRoot(pose.weights);
       WeightedPseudoinverse factors;
       factors.factorise(pose.J, inv_sqrt);
-      const ScaledVector q_dot = factors.expand(factors.solve(TaskVector::Ones(pose.m)));
+      const ScaledVector q_dot =
+          factors.expand(factors.solve(TaskVector(TaskVector::Ones(pose.m))));
       ASSERT_FALSE(q_dot.allFinite()) << "row " << row << " of " << pose.m;
     }
   }

@@ -59,7 +59,7 @@ TEST_F(PseudoinverseIdentities, TaskVelocityIsThatOfTheJoints) {
   test::Random random(32);
   forRandomCases([&](const IdentityCase& c, const Matrix&, const Matrix&) {
     const WeightedPseudoinverse& factors = c.inverse.factors;
-    const TaskVector y = random.vector<TaskVector>(c.m, -1.0, 1.0);
+    const PaddedTaskVector y = paddedTask(random.vector<TaskVector>(c.m, -1.0, 1.0));
     const ScaledVector inv_sqrt = test::inverseSquareRoot(c.weights);
     const Matrix q_dot = factors.expand(y).cwiseProduct(inv_sqrt).head(c.n);
     ASSERT_LT(relative(factors.taskVelocity(y) - c.J * q_dot, c.J * q_dot), kTolerance);

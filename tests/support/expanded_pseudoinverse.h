@@ -28,7 +28,8 @@ inline ExpandedPseudoinverse expandPseudoinverse(const TaskJacobian& J,
   ExpandedPseudoinverse result{{}, Matrix(n, m), Matrix(n, n)};
   result.factors.factorise(J, inv_sqrt);
   for (int i = 0; i < m; ++i) {
-    const ScaledVector column = result.factors.expand(result.factors.solve(TaskVector::Unit(m, i)));
+    const ScaledVector column =
+        result.factors.expand(result.factors.solve(TaskVector(TaskVector::Unit(m, i))));
     result.J_sharp.col(i) = column.cwiseProduct(inv_sqrt).head(n);
   }
   for (int i = 0; i < n; ++i) {

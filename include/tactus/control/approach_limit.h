@@ -41,7 +41,7 @@ class ApproachLimit {
               ApproachLimitState& state) const noexcept;
 
   /// a: J_p^T F^ of that contact; q_desired: at the start of the cycle.
-  void observe(const ForceGains& gains, const JointVector& a, double F_p_N,
+  void observe(const ForceGains& gains, const ScaledVector& a, double F_p_N,
                const JointVector& q_desired, double period_s,
                ApproachLimitState& state) const noexcept;
 
@@ -50,8 +50,8 @@ class ApproachLimit {
                 ApproachLimitState& state) const noexcept;
 
  private:
-  void estimate(const ForceGains& gains, const JointVector& a, double F_p_N, double period_s,
-                ApproachLimitState& state) const noexcept;
+  void estimate(const ForceGains& gains, const ScaledVector& a, int joints, double F_p_N,
+                double period_s, ApproachLimitState& state) const noexcept;
 
   bool has_estimator_;
   ContactSmoother smoother_;

@@ -21,6 +21,11 @@ class CommandLimiter {
   bool apply(const JointVector& q, const JointVector& velocity_before, double period_s,
              JointVector& velocity) const noexcept;
 
+  /// Whether apply() leaves `velocity` alone as far as can be seen at a glance, which is what it
+  /// does in most cycles; false: ask it.
+  bool admits(const JointVector& q, const JointVector& velocity_before, double period_s,
+              const JointVector& velocity) const noexcept;
+
  private:
   JointLimits limits_;
 };

@@ -75,7 +75,8 @@ class ContactController {
   void rest(const ForceGains& gains, const Contact& contact, double period_s,
             ContactControllerState& state, ContactReport& report,
             ControlLawInput& input) const noexcept;
-  Contact locate(const TaskKinematics& kinematics, const ContactPointState& point) const noexcept;
+  Contact locate(const TaskKinematics& kinematics, const ContactPointState& point,
+                 ScaledVector& a) const noexcept;
   void passContact(const ForceGains& gains, const Contact& contact, double period_s,
                    ContactControllerState& state, ContactReport& report,
                    ControlLawInput& input) const noexcept;
@@ -84,7 +85,7 @@ class ContactController {
                              ContactControllerState& state, ContactReport& report,
                              ControlLawInput& input, Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
-  TaskVector pull(const Gains& gains, const TaskVector& error) const noexcept;
+  TaskVector pull(const Gains& gains, const PaddedTaskVector& error) const noexcept;
 
   SerialChain chain_;
   AttachedFrame link_;

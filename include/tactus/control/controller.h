@@ -55,7 +55,7 @@ struct PreparedCycle {
   JointLimitAvoidanceGains limit_gains;
   TaskKinematics kinematics;
   Motion motion;  ///< of task and joint limits, without contact
-  TaskVector w, w_d_dot;
+  PaddedTaskVector w, w_d_dot;
   Vector3 rotation_vector_d;  ///< of the reference; only for tasks with a rotation, rad
   double progress = 1.0;      ///< of the reference, by how far the tool lags
 };
@@ -126,6 +126,8 @@ class Controller {
   FaultDetail notFinite(const Motion& motion) const noexcept;
   void limit(const Motion& motion, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
+  void cut(const Motion& motion, double period_s, ControllerState& state,
+           ControllerOutput& output) const noexcept;
   void passTime(double duration_s, ControllerState& state) const noexcept;
 
   ControllerConfig config_;

@@ -9,16 +9,16 @@ namespace tactus {
 struct TaskKinematics {
   ChainPose pose;
   WeightedPseudoinverse pseudoinverse;
-  TaskVector error;  ///< w_d - w, m or rad; of rotations the vector of R_d R^T
-  TaskVector y_eff;  ///< solve(w_dot_d,eff), (2)
+  PaddedTaskVector error;  ///< w_d - w, m or rad; of rotations the vector of R_d R^T
+  PaddedTaskVector y_eff;  ///< solve(w_dot_d,eff), (2)
 };
 
 /// The motion equation (1) as it comes together: q_dot = W^-1/2 (Q y + v_scaled), with everything
 /// that goes through N or J# gathered in y.
 struct Motion {
-  TaskVector y;
-  ScaledVector v_scaled = ScaledVector::Zero();
-  JointVector a;                ///< J_p^T F^ of the contact, m or m/rad; set by the law
+  PaddedTaskVector y;
+  ScaledVector v_scaled;
+  ScaledVector a;               ///< J_p^T F^ of the contact, m or m/rad; set by the law
   double limit_nearness = 0.0;  ///< s_max of the joint-limit cost, 0 to 1
 };
 

@@ -12,18 +12,25 @@ namespace tactus {
 /// With b, and not a, as the right factor k_n and k_t are squared lengths of orthogonal parts of
 /// W^-1/2 a: never negative, and k_n + k_t = k_j, for every W.
 struct ContactSpace {
-  JointVector a_scaled;  ///< W^-1/2 a
-  TaskVector a_task;     ///< Q^T W^-1/2 a, the part that the task space sees
+  ScaledVector a_scaled;    ///< W^-1/2 a
+  PaddedTaskVector a_task;  ///< Q^T W^-1/2 a, the part that the task space sees
   double k_n = 0.0;
   double k_j = 0.0;
   double k_t = 0.0;
   double x_dot_eff_m_per_s = 0.0;
 };
 
-/// y_eff: solve(w_dot_d,eff) of the pseudoinverse.
-void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const JointVector& a,
-                         const ScaledVector& inv_sqrt_weights, const TaskVector& y_eff,
+/// a: zero beyond the robot's joints; y_eff: solve(w_dot_d,eff) of the pseudoinverse.
+void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const ScaledVector& a,
+                         const ScaledVector& inv_sqrt_weights, const PaddedTaskVector& y_eff,
                          ContactSpace& contact) noexcept;
+
+inline void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const JointVector& a,
+                                const ScaledVector& inv_sqrt_weights, const PaddedTaskVector& y_eff,
+                                ContactSpace& contact) noexcept {
+  computeContactSpace(pseudoinverse, scaled(a, ScaledVector::Ones()), inv_sqrt_weights, y_eff,
+                      contact);
+}
 
 /// 1 / max(k, 1e-3 k_j, 1e-4 m^2): where a space hardly moves the contact point, its controller
 /// must not answer with unbounded speed.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "tactus/math/types.h"
@@ -25,11 +26,20 @@ struct AttachedFrame {
   Pose X_JointFrame;
 };
 
-/// Where every joint frame of a chain is, in the base frame; scratch of one configuration.
+/// A vector a joint, one component of all joints beside the other: what is computed of every joint
+/// takes two of them at a time.
+struct JointPoints {
+  alignas(16) double x[kMaxJoints], y[kMaxJoints], z[kMaxJoints];
+
+  Vector3 operator[](int joint) const noexcept { return {x[joint], y[joint], z[joint]}; }
+};
+
+/// Where every joint frame of a chain is, in the base frame; scratch of one configuration. An odd
+/// number of joints is followed by one that is zero.
 struct ChainPose {
   std::array<Matrix3, kMaxJoints> R_BaseJoint;
-  std::array<Vector3, kMaxJoints> p_BaseJoint;  ///< m
-  std::array<Vector3, kMaxJoints> axis_Base;    ///< unit joint axes
+  JointPoints p_BaseJoint;  ///< m
+  JointPoints axis_Base;    ///< unit joint axes
 };
 
 /// The moving joints between the base and the tool, base first. A const model: everything that
@@ -42,17 +52,22 @@ class SerialChain {
 
   int size() const noexcept { return size_; }
   JointType type(int joint) const noexcept { return joints_[joint].type; }
+  /// The joints that are prismatic, ascending.
+  std::span<const int> prismaticJoints() const noexcept {
+    return {prismatic_.data(), static_cast<std::size_t>(prismatic_count_)};
+  }
   const AttachedFrame& tip() const noexcept { return tip_; }
 
   /// Forward kinematics: the pose of every joint frame at q (size() entries, finite).
   void computePose(const JointVector& q, ChainPose& pose) const noexcept;
 
  private:
-  /// A joint prepared for the cycle: most axes are a coordinate axis and most origins are not
-  /// rotated, which saves two thirds of the work.
+  /// A joint prepared for the cycle: most axes are a coordinate axis, and most origins lie on one
+  /// and are not rotated, which saves two thirds of the work.
   struct PreparedJoint {
     JointType type;
     bool origin_is_rotated;
+    int origin_axis;  ///< 0, 1, 2 for an origin on the x, y, z axis of its parent; -1 for others
     int coordinate_axis;  ///< 0, 1, 2 for +-x, y, z; -1 for any other axis
     double axis_sign;
     Vector3 axis;
@@ -61,6 +76,9 @@ class SerialChain {
   };
 
   int size_;
+  int first_revolute_ = 0;  ///< the first joint whose sine is needed
+  int prismatic_count_ = 0;
+  std::array<int, kMaxJoints> prismatic_;
   std::array<PreparedJoint, kMaxJoints> joints_;
   AttachedFrame tip_;
 };
@@ -69,8 +87,13 @@ class SerialChain {
 Pose framePose(const ChainPose& pose, const AttachedFrame& frame) noexcept;
 
 /// A point (m) or a free vector given in the frame of `joint` (-1: the base), in the base frame.
-Vector3 pointInBase(const ChainPose& pose, int joint, const Vector3& p_JointPoint) noexcept;
-Vector3 vectorInBase(const ChainPose& pose, int joint, const Vector3& v_Joint) noexcept;
+inline Vector3 vectorInBase(const ChainPose& pose, int joint, const Vector3& v_Joint) noexcept {
+  return joint < 0 ? v_Joint : Vector3(pose.R_BaseJoint[joint].lazyProduct(v_Joint));
+}
+inline Vector3 pointInBase(const ChainPose& pose, int joint, const Vector3& p_JointPoint) noexcept {
+  if (joint < 0) return p_JointPoint;
+  return pose.p_BaseJoint[joint] + vectorInBase(pose, joint, p_JointPoint);
+}
 
 /// Position only, m: what framePose(pose, frame).p_AB would be.
 Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcept;
@@ -80,8 +103,17 @@ Vector3 framePosition(const ChainPose& pose, const AttachedFrame& frame) noexcep
 void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const Vector3& p_BaseTip,
                         const int* components, int component_count, TaskJacobian& J) noexcept;
 
+/// The same as W^-1/2 J^T, of which the first component_count columns are set. inv_sqrt_weights:
+/// the diagonal of W^-1/2.
+void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const Vector3& p_BaseTip,
+                        const int* components, int component_count,
+                        const ScaledVector& inv_sqrt_weights, ScaledJacobian& J) noexcept;
+
 /// J_p^T f: the joint-space image of a vector f (base frame) acting at the point p_BasePoint (base
 /// frame, m), which moves with `joint`. Joints beyond `joint` get zero. Equation (16) with f = F^.
+void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
+                                 const Vector3& p_BasePoint, const Vector3& f_Base,
+                                 ScaledVector& result) noexcept;
 void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
                                  const Vector3& p_BasePoint, const Vector3& f_Base,
                                  JointVector& result) noexcept;

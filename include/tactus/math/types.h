@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 /// Fixed-capacity types. A robot has 2 to kMaxJoints moving joints, known when it is loaded; the
 /// storage is always that of the largest one, so nothing in the cycle touches the heap.
@@ -18,6 +19,35 @@ using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kM
 /// One number a task component, in the order of the task's components; m or rad.
 using TaskVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxTaskSize, 1>;
 
+/// result = v, in fewer instructions than Eigen needs where it does not know the size.
+inline void assign(const JointVector& v, JointVector& result) noexcept {
+  result.resize(v.size());
+  std::copy_n(v.data(), v.size(), result.data());
+}
+
+/// A task vector that fills its room, zero beyond the task's components: like ScaledVector faster
+/// than loops that know the number.
+using PaddedTaskVector = Eigen::Matrix<double, kMaxTaskSize, 1>;
+
+inline PaddedTaskVector paddedTask(const TaskVector& v) noexcept {
+  PaddedTaskVector result = PaddedTaskVector::Zero();
+  for (int i = 0; i < v.size(); ++i) result[i] = v[i];
+  return result;
+}
+
+/// result = the first `size` components of v; the rest of its room is written, too.
+inline void assign(const PaddedTaskVector& v, int size, TaskVector& result) noexcept {
+  result.resize(size);
+  PaddedTaskVector::Map(result.data()) = v;
+}
+
+/// a^T b of vectors with `size` components, added up in the order in which Eigen adds those of
+/// TaskVector, which for most tasks is told here without asking for the number.
+inline double dot(const PaddedTaskVector& a, const PaddedTaskVector& b, int size) noexcept {
+  if (size == 3) return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+  return a.head(size).dot(b.head(size));
+}
+
 /// Task components by joints; row-major, so that a row (one task component) is contiguous.
 using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor,
                                    kMaxTaskSize, kMaxJoints>;
@@ -27,12 +57,23 @@ using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen
 /// faster for six joints than loops that know the number.
 using ScaledVector = Eigen::Matrix<double, kMaxJoints, 1>;
 
+/// W^-1/2 J^T: a column a task component, each of them a scaled vector.
+using ScaledJacobian = Eigen::Matrix<double, kMaxJoints, kMaxTaskSize>;
+
 /// v^ = factor v, component by component, for any expression v of up to kMaxJoints entries.
 template <typename Derived>
 ScaledVector scaled(const Eigen::MatrixBase<Derived>& v, const ScaledVector& factor) noexcept {
   ScaledVector result = ScaledVector::Zero();
   for (int i = 0; i < v.size(); ++i) result[i] = factor[i] * v[i];
   return result;
+}
+
+/// a^T b. Every second pair of joints is added up in a row, and then both rows.
+inline double dot(const ScaledVector& a, const ScaledVector& b) noexcept {
+  using Four = Eigen::Vector4d;
+  Four rows = a.head<4>().cwiseProduct(b.head<4>());
+  for (int i = 4; i < kMaxJoints; i += 4) rows += a.segment<4>(i).cwiseProduct(b.segment<4>(i));
+  return (rows[0] + rows[2]) + (rows[1] + rows[3]);
 }
 
 /// A rigid pose: maps coordinates in frame B to frame A.

@@ -22,30 +22,38 @@ class WeightedPseudoinverse {
   static constexpr double kDampingThreshold = 0.02;
   static constexpr double kMaxDamping = 0.05;
 
+  /// Of the first m columns of W^-1/2 J^T for so many joints, 1 <= m <= 6, m <= joints.
+  void factorise(const ScaledJacobian& J_scaled, int joints, int m) noexcept;
+
   /// J: m x n with 1 <= m <= 6, m <= n; inv_sqrt_weights: the diagonal of W^-1/2, positive for each
   /// joint and zero beyond.
   void factorise(const TaskJacobian& J, const ScaledVector& inv_sqrt_weights) noexcept;
 
   /// y = R^-T w (damped near singularities): J# w = W^-1/2 Q y.
-  TaskVector solve(const TaskVector& w) const noexcept;
+  PaddedTaskVector solve(const PaddedTaskVector& w) const noexcept;
+  PaddedTaskVector solve(const TaskVector& w) const noexcept { return solve(paddedTask(w)); }
 
   /// R^T y, the task velocity of the joint velocity W^-1/2 Q y.
-  TaskVector taskVelocity(const TaskVector& y) const noexcept;
+  TaskVector taskVelocity(const PaddedTaskVector& y) const noexcept;
 
   /// Q^T v for a scaled joint vector.
-  TaskVector project(const ScaledVector& v_scaled) const noexcept;
+  PaddedTaskVector project(const ScaledVector& v_scaled) const noexcept;
 
   /// Q y, scaled.
-  ScaledVector expand(const TaskVector& y) const noexcept;
+  ScaledVector expand(const PaddedTaskVector& y) const noexcept;
 
+  int taskSize() const noexcept { return m_; }
   bool damped() const noexcept { return damping_squared_ > 0.0; }
   double dampingSquared() const noexcept { return damping_squared_; }
 
  private:
+  template <int kPairs>
+  void orthogonalise(const ScaledJacobian& J_scaled) noexcept;
   void chooseDamping() noexcept;
 
+  int joints_ = 0;
   int m_ = 0;
-  /// Orthonormal columns; zero where J has lost rank.
+  /// Orthonormal columns, of the robot's joints only; zero where J has lost rank.
   Eigen::Matrix<double, kMaxJoints, kMaxTaskSize> Q_;
   double R_[kMaxTaskSize][kMaxTaskSize];  ///< upper triangular, R_[row][column]
   double inv_diagonal_[kMaxTaskSize];     ///< 1 / R_ii, 0 where J has lost rank
