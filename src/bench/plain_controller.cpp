@@ -8,12 +8,6 @@
 namespace tactus {
 namespace {
 
-Pose toolPose(const ControllerConfig& config) {
-  ChainPose pose;
-  config.chain.computePose(config.q_start, pose);
-  return framePose(pose, config.chain.tip());
-}
-
 ScaledVector padded(const Eigen::VectorXd& v) {
   ScaledVector result = ScaledVector::Zero();
   result.head(v.size()) = v;
@@ -27,7 +21,7 @@ PlainController::PlainController(const BenchRobot& robot,
     : config_(robot.config),
       kinematics_(std::move(kinematics)),
       ones_(padded(Eigen::VectorXd::Ones(config_.chain.size()))),
-      trajectory_(config_.task.trajectory, toolPose(config_)),
+      trajectory_(config_.task.trajectory, tipPose(config_.chain, config_.q_start)),
       limiter_(config_.limits),
       joint_limits_(config_.limits, ones_),
       zones_(joint_limits_.zones(config_.gains.joint_limit_avoidance)) {

@@ -33,6 +33,18 @@ void goOn(const Vector3& p_BaseContact, bool is_touching, ContactControllerState
   state.joint_space_transition.p_BaseLost = p_BaseContact;
 }
 
+void tell(const ControlLawInput& input, const ContactSpace& space, const ControlLawOutput& u,
+          ContactReport& report) noexcept {
+  report.force_contact_N = input.F_p_N;
+  report.stiffness_N_per_m = input.stiffness_N_per_m;
+  report.k_n = space.k_n;
+  report.k_j = space.k_j;
+  report.k_t = space.k_t;
+  report.u_n = u.u_n;
+  report.u_j = u.u_j;
+  report.u_t = u.u_t;
+}
+
 }  // namespace
 
 /// A contact as the joints see it.
@@ -112,14 +124,7 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
     state.has_push = false;
   }
 
-  report.force_contact_N = input.F_p_N;
-  report.stiffness_N_per_m = input.stiffness_N_per_m;
-  report.k_n = contact.space.k_n;
-  report.k_j = contact.space.k_j;
-  report.k_t = contact.space.k_t;
-  report.u_n = u.u_n;
-  report.u_j = u.u_j;
-  report.u_t = u.u_t;
+  tell(input, contact.space, u, report);
 }
 
 void ContactController::estimate(const ForceGains& gains, const Contact& contact,

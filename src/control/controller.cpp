@@ -14,12 +14,6 @@ namespace {
 /// All six components of a task: position or linear velocity, then rotation.
 using Twist = Eigen::Matrix<double, 6, 1>;
 
-Pose toolPose(const SerialChain& chain, const JointVector& q) {
-  ChainPose pose;
-  chain.computePose(q, pose);
-  return framePose(pose, chain.tip());
-}
-
 bool mayMove(const ControllerState& state) {
   return state.fault == Fault::kNone && !state.is_stopping;
 }
@@ -37,11 +31,6 @@ bool isEqual(const JointVector& a, const JointVector& b) noexcept {
   for (int i = 0; i < joints; ++i)
     if (a.data()[i] != b.data()[i]) return false;
   return true;
-}
-
-bool usesOrientation(const TaskConfig& task) {
-  return std::any_of(task.components.begin(), task.components.begin() + task.size,
-                     [](int component) { return component >= 3; });
 }
 
 /// The reference's rotation vector in place of a sum of two, which is no rotation.
@@ -63,9 +52,9 @@ double lag_m(const TaskConfig& task, const PaddedTaskVector& error) noexcept {
 
 Controller::Controller(const ControllerConfig& config)
     : config_(config),
-      trajectory_(config.task.trajectory, toolPose(config.chain, config.q_start)),
+      trajectory_(config.task.trajectory, tipPose(config.chain, config.q_start)),
       inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
-      uses_orientation_(usesOrientation(config.task)),
+      has_rotation_(config.task.hasRotation()),
       limiter_(config.limits) {
   if (config.has_joint_limit_avoidance)
     joint_limit_avoidance_.emplace(config.limits, inv_sqrt_weights_);
@@ -160,7 +149,7 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   const int task_size = config_.task.size;
   assign(prepared.w, task_size, output.w);
   assign(prepared.w + kinematics.error, task_size, output.w_d);
-  if (uses_orientation_) replaceRotation(config_.task, prepared.rotation_vector_d, output.w_d);
+  if (has_rotation_) replaceRotation(config_.task, prepared.rotation_vector_d, output.w_d);
   assign(prepared.w_d_dot, task_size, output.w_d_dot);
   assign(kinematics.error, task_size, output.error);
   state.progress = prepared.progress;
@@ -268,7 +257,7 @@ void Controller::computeKinematics(double path_time_s, const ControllerState& st
   w.head<3>() = framePosition(kinematics.pose, config_.chain.tip());
   error.head<3>() = reference.p_BaseTool - w.head<3>();
   w_d_dot << reference.v_BaseTool, reference.omega_BaseTool;
-  if (uses_orientation_) {
+  if (has_rotation_) {
     const Matrix3 R_BaseTool = framePose(kinematics.pose, config_.chain.tip()).R_AB;
     w.tail<3>() = rotationVector(R_BaseTool);
     error.tail<3>() = rotationVector(reference.R_BaseTool * R_BaseTool.transpose());

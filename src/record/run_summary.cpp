@@ -56,7 +56,7 @@ RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycl
   for (std::size_t i = 0; i < config.tactile_modules.size(); ++i) {
     contacts_.emplace_back(config.force_control.has_value(), expected_cycles, static_cast<int>(i));
   }
-  if (hasRotation(config.task)) figures_.tcp_rotation_error.emplace();
+  if (config.task.hasRotation()) figures_.tcp_rotation_error.emplace();
 }
 
 void RunSummary::add(const CycleRecord& record) {

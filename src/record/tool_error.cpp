@@ -6,15 +6,6 @@
 #include "tactus/math/rotation.h"
 
 namespace tactus {
-namespace {
-
-Pose toolPose(const SerialChain& chain, const JointVector& q) {
-  ChainPose pose;
-  chain.computePose(q, pose);
-  return framePose(pose, chain.tip());
-}
-
-}  // namespace
 
 Vector3 toolError(const TaskConfig& task, const TaskVector& w_d, const Vector3& p_BaseTool) {
   Vector3 error = Vector3::Zero();
@@ -34,21 +25,16 @@ void fillToolError(const ControllerConfig& config, CycleRecord& record) {
   Eigen::Map<Vector3>(record.tool_error_m) = toolError(config.task, w_d, p_BaseTool);
 }
 
-bool hasRotation(const TaskConfig& task) noexcept {
-  return std::any_of(task.components.begin(), task.components.begin() + task.size,
-                     [](int component) { return component >= 3; });
-}
-
 ToolRotationError::ToolRotationError(const ControllerConfig& config)
     : chain_(config.chain), task_(config.task) {
-  if (hasRotation(task_))
-    trajectory_.emplace(task_.trajectory, toolPose(config.chain, config.q_start));
+  if (task_.hasRotation())
+    trajectory_.emplace(task_.trajectory, tipPose(config.chain, config.q_start));
 }
 
 void ToolRotationError::fill(CycleRecord& record) const {
   if (!trajectory_) return;
   const JointVector q = Eigen::Map<const Eigen::VectorXd>(record.q_measured, chain_.size());
-  const Matrix3 R_BaseTool = toolPose(chain_, q).R_AB;
+  const Matrix3 R_BaseTool = tipPose(chain_, q).R_AB;
   const Matrix3 R_d = trajectory_->evaluate(record.path_time_s).R_BaseTool;
   const Vector3 error = rotationVector(R_d * R_BaseTool.transpose());
   double squared = 0.0;

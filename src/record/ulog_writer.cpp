@@ -131,7 +131,7 @@ LogDescription describeLog(const Scene& scene) {
   LogDescription description;
   const TaskConfig& task = scene.controller.task;
   const int modules = static_cast<int>(scene.controller.tactile_modules.size());
-  description.shape = {scene.controller.chain.size(), task.size, hasRotation(task),
+  description.shape = {scene.controller.chain.size(), task.size, task.hasRotation(),
                        std::max(1, modules)};
   description.infos = {{"ver_sw", TACTUS_VERSION},
                        {"scene", scene.name},

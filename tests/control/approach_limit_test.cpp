@@ -75,7 +75,7 @@ TEST(ApproachLimit, MemoryFadesAfterContactAndThenLimitsNothing) {
   const ApproachLimit limit(bareRail(0.1));
   ApproachLimitState state = limit.initialState();
   const JointVector q = JointVector::Zero(2);
-  const JointVector a{{-1.0, 0.0}};
+  const ScaledVector a = -ScaledVector::Unit(0);
   EXPECT_EQ(limit.excess(kGains, 0.0, -1e9, state), 0.0) << "before the first contact";
   limit.observe(kGains, a, 1.0, q, kPeriod_s, state);
   EXPECT_EQ(state.memory_N_per_m, kC_N_per_m);
@@ -91,7 +91,7 @@ TEST(ApproachLimit, SofterContactIsApproachedNoFasterThanTheFloorAllows) {
   config.gains.force.assumed_stiffness_N_per_m = 20.0;
   const ApproachLimit limit(config);
   ApproachLimitState state = limit.initialState();
-  limit.observe(config.gains.force, JointVector{{-1.0, 0.0}}, 1.0, JointVector::Zero(2), kPeriod_s,
+  limit.observe(config.gains.force, -ScaledVector::Unit(0), 1.0, JointVector::Zero(2), kPeriod_s,
                 state);
   EXPECT_EQ(state.memory_N_per_m, 300.0);
 }

@@ -81,7 +81,7 @@ TEST(ContactSpace, HasNoNullSpaceWithoutRedundancy) {
     const test::ExpandedPseudoinverse inverse = test::expandPseudoinverse(J, weights);
     ContactSpace space;
     computeContactSpace(inverse.factors, random.vector(n, -1.0, 1.0),
-                        test::inverseSquareRoot(weights), TaskVector::Zero(n), space);
+                        test::inverseSquareRoot(weights), PaddedTaskVector::Zero(), space);
     EXPECT_LT(space.k_n, 1e-25 * space.k_j);
     EXPECT_NEAR(space.k_t, space.k_j, 1e-12 * space.k_j);
   }

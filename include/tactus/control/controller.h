@@ -133,7 +133,7 @@ class Controller {
   ControllerConfig config_;
   Trajectory trajectory_;
   ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
-  bool uses_orientation_;
+  bool has_rotation_;
   CommandLimiter limiter_;
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
   std::optional<ContactController> contact_controller_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -39,6 +40,11 @@ struct TaskConfig {
   std::array<int, kMaxTaskSize> components{};  ///< 0..5: x, y, z, rx, ry, rz of the tool
   int size = 0;
   TrajectoryConfig trajectory;
+
+  bool hasRotation() const noexcept {
+    return std::any_of(components.begin(), components.begin() + size,
+                       [](int component) { return component >= 3; });
+  }
 };
 
 struct TactileModuleConfig {

@@ -86,6 +86,13 @@ class SerialChain {
 /// Pose of an attached frame in the base frame.
 Pose framePose(const ChainPose& pose, const AttachedFrame& frame) noexcept;
 
+/// Of the tip with the joints at q, m or rad, in the base frame.
+inline Pose tipPose(const SerialChain& chain, const JointVector& q) noexcept {
+  ChainPose pose;
+  chain.computePose(q, pose);
+  return framePose(pose, chain.tip());
+}
+
 /// A point (m) or a free vector given in the frame of `joint` (-1: the base), in the base frame.
 inline Vector3 vectorInBase(const ChainPose& pose, int joint, const Vector3& v_Joint) noexcept {
   return joint < 0 ? v_Joint : Vector3(pose.R_BaseJoint[joint].lazyProduct(v_Joint));
