@@ -66,14 +66,15 @@ LoopRun runWithPeriod(const Scene& original, double period_s) {
   // A sample that is not new is a period old at once: no fault by that alone.
   for (TactileModuleConfig& module : scene.controller.tactile_modules)
     module.max_sample_age_s = std::max(module.max_sample_age_s, 1.5 * period_s);
+  const auto modules = static_cast<int>(scene.controller.tactile_modules.size());
   LoopRun run;
   run.period_s = period_s;
   std::vector<ForceSample> samples;
   const SimulationResult result = simulate(scene, [&](const CycleRecord& record) {
-    samples.push_back({record.t_s, record.force_sensor_N[0]});
+    samples.push_back({record.t_s, largestForce_N(record, modules)});
     const double next_s = static_cast<double>(run.force_N.size()) * kTraceStep_s;
     if (record.t_s < next_s - 0.5 * scene.period_s) return;
-    run.force_N.push_back(record.force_sensor_N[0]);
+    run.force_N.push_back(largestForce_N(record, modules));
     run.tool_error_m.push_back(Eigen::Map<const Vector3>(record.tool_error_m).norm());
   });
   run.figures = result.figures;

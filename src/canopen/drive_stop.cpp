@@ -9,13 +9,16 @@ namespace tactus {
 namespace {
 
 constexpr int kStopPeriod_cycles = 5;  ///< between NMT stop commands
+constexpr int kHearing_cycles = 3;     ///< until feedback tells of a command
 
 }  // namespace
 
+/// What it did meanwhile is heard in the next cycles, which therefore remain.
 void Drive::coast(int missed_cycles) noexcept {
   const auto pass = [&](int& cycles) {
     const long long passed = static_cast<long long>(cycles) + missed_cycles;
-    if (cycles > 0) cycles = static_cast<int>(std::min<long long>(passed, stop_deadline_cycles_));
+    const long long latest = stop_deadline_cycles_ - kHearing_cycles;
+    if (cycles > 0) cycles = std::max(cycles, static_cast<int>(std::min(passed, latest)));
   };
   pass(quick_stop_cycles_);
   pass(ignored_cycles_);

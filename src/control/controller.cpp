@@ -241,7 +241,8 @@ void Controller::avoidJointLimits(const JointLimitAvoidanceGains& gains,
   if (!isSame(state.zones.gains, gains)) state.zones = joint_limit_avoidance_->zones(gains);
   const JointLimitCost cost = joint_limit_avoidance_->evaluate(state.zones, state.q_desired);
   motion.limit_nearness = cost.nearness;
-  motion.v_scaled = -state.return_share * cost.gradient;
+  motion.v_scaled = -cost.gradient;
+  if (state.return_share < 1.0) capWayOut(state.return_share, inv_sqrt_weights_, motion.v_scaled);
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 

@@ -35,4 +35,13 @@ void limitReturnSpeed(const TaskGains& gains, const TaskConfig& task, const Task
     limitPart(task, false, gains.max_return_speed_rad_per_s, push, correction);
 }
 
+void capWayOut(double share, const ScaledVector& inv_sqrt_weights,
+               ScaledVector& v_scaled) noexcept {
+  const double cap = kFirstWayOut / (1.0 - share);
+  for (int i = 0; i < kMaxJoints; ++i) {
+    const double most = cap / inv_sqrt_weights[i];
+    v_scaled[i] = std::clamp(v_scaled[i], -most, most);
+  }
+}
+
 }  // namespace tactus

@@ -33,9 +33,9 @@ std::string describeDrive(const FaultReport& report, const Scene& scene) {
 }
 
 std::string describePlace(const FaultReport& report, const Scene& scene) {
-  const bool is_prismatic = scene.controller.chain.type(report.joint) == JointType::kPrismatic;
+  const char* const unit = unitOf(scene.controller.chain.type(report.joint));
   return fmt::format("joint {} is at {:.6g} {}, expected within {:g} of {:.6g}",
-                     scene.joint_names[report.joint], report.q_measured, is_prismatic ? "m" : "rad",
+                     scene.joint_names[report.joint], report.q_measured, unit,
                      scene.hardware->start_tolerance, report.q_expected);
 }
 

@@ -22,7 +22,7 @@ and
 .BR tactusd (8).
 What it does not name does not exist in the run: without
 .B controller
-the tactile module is not even read.
+no tactile module is even read.
 .PP
 A scene that
 .B extends

@@ -134,9 +134,17 @@ void addRequired(const Keys& keys, Json& schema) {
   if (!required.empty()) schema["required"] = required;
 }
 
+void addNotBoth(const std::string& key, const std::string& other, Json& schema) {
+  const Json given = {{"not", {{"type", "null"}}}};
+  schema["not"] = {{"required", {key, other}}, {"properties", {{key, given}, {other, given}}}};
+}
+
 void addSection(const Keys& keys, Completeness completeness, Json& schema) {
   Json& properties = schema["properties"] = Json::object();
   for (const KeySpec& spec : keys) properties[spec.key] = keySchema(spec, completeness);
+  for (const KeySpec& spec : keys) {
+    if (!spec.same_as.empty()) addNotBoth(spec.key, spec.same_as, schema);
+  }
   schema["additionalProperties"] = false;
   if (completeness == Completeness::kComplete) addRequired(keys, schema);
 }

@@ -45,6 +45,7 @@ LoadedRobot loadRobot(const SourceFile& file, const SceneSettings& settings, Sou
   for (const Override& setting : settings.overrides) {
     if (!setting.key.starts_with(kRobotPrefix)) continue;
     const std::string_view path = std::string_view(setting.key).substr(kRobotPrefix.size());
+    dropOtherSpelling(root, path);
     applyOverride(root, setting, modulePathIn(root, path));
   }
   RobotConfig config = readRobotConfig(root, numbers);

@@ -196,9 +196,26 @@ void checkPeriodOfModule(const Checked& c, std::size_t index) {
   }
 }
 
+/// The simulation steps by the shortest of all periods, of which the others are multiples.
+void checkFilterPeriods(const Checked& c) {
+  const std::vector<TactileModuleSection>& modules = c.robot.config.tactile_modules;
+  double shortest_s = c.scene.period_s;
+  for (const TactileModuleSection& module : modules)
+    shortest_s = std::min(shortest_s, 1.0 / module.simulated.filter_rate_hz);
+  for (std::size_t i = 0; i < modules.size(); ++i) {
+    const double filter_rate_hz = modules[i].simulated.filter_rate_hz;
+    if (fitsModule(shortest_s, filter_rate_hz)) continue;
+    const std::string key = moduleKey(c.robot.root, i) + ".filter_rate_hz";
+    failAt(locate(c.robot.root, key), key,
+           fmt::format("{} Hz does not fit the other modules", filter_rate_hz),
+           fmt::format("expected {} Hz over a whole number", 1.0 / shortest_s));
+  }
+}
+
 void checkPeriod(const Checked& c) {
   if (!c.scene.controller) return;
   for (std::size_t i = 0; i < c.robot.config.tactile_modules.size(); ++i) checkPeriodOfModule(c, i);
+  checkFilterPeriods(c);
 }
 
 void checkGains(const Checked& c) {

@@ -125,7 +125,7 @@ Table<ForceGains> responseLimitKeys() {
 Row<SceneConfig> controllerSection() {
   const Table<ForceGains> gains = join(responseKeys(), responseLimitKeys());
   return optional(
-      group<SceneConfig>("controller", "force control; absent: the tactile module is not even read",
+      group<SceneConfig>("controller", "force control; absent: no tactile module is even read",
                          join(inside(&SceneConfig::controller, {variantRow(), orderRow()}),
                               inside(&SceneConfig::gains, inside(&Gains::force, gains))),
                          [](SceneConfig& scene) { scene.controller.emplace(); }));

@@ -88,7 +88,7 @@ Row<SimulationSection> moduleSection() {
   const Table<SimulationSection> cutoff = {number("filter_cutoff_hz", "Hz", within(0.1, 1e5),
                                                   "of its filter; absent: as robot.yaml says",
                                                   &SimulationSection::filter_cutoff_hz)};
-  return group("tactile_module", "imperfections of the simulated tactile module",
+  return group("tactile_module", "imperfections of the simulated tactile modules",
                join(cutoff, inside(&SimulationSection::module, imperfectionKeys())));
 }
 

@@ -54,11 +54,22 @@ std::string moduleKey(const YamlNode& root, std::size_t module) {
 }
 
 std::string modulePathIn(const YamlNode& root, std::string_view path) {
-  const std::string_view key = path.substr(0, path.find('.'));
-  const bool is_first = (key == kModule && findGiven(root, kModules)) ||
-                        (key == kFirstModule && findGiven(root, kModule));
-  if (!is_first) return std::string(path);
-  return moduleKey(root, 0) + std::string(path.substr(key.size()));
+  const std::size_t dot = path.find('.');
+  if (dot == std::string_view::npos) return std::string(path);
+  const std::string_view key = path.substr(0, dot);
+  const bool is_only = findGiven(root, kModule) != nullptr;
+  if (is_only && key.starts_with(kModules) && key != kFirstModule) {
+    const std::string name(key);
+    failAt(locate(root, kModule), name, "the robot has one module", "expected tactile_modules[0]");
+  }
+  const bool is_first =
+      (key == kModule && findGiven(root, kModules)) || (key == kFirstModule && is_only);
+  return is_first ? moduleKey(root, 0) + std::string(path.substr(dot)) : std::string(path);
+}
+
+void dropOtherSpelling(YamlNode& root, std::string_view path) {
+  const std::string_view other = path == kModule ? kModules : path == kModules ? kModule : "";
+  std::erase_if(root.entries, [&](const YamlEntry& entry) { return entry.key == other; });
 }
 
 void checkModules(const YamlNode& root, const std::vector<TactileModuleSection>& modules) {

@@ -55,8 +55,7 @@ BrakeConfig brakeConfig(const HardwareConfig& hardware, double period_s) {
 
 std::array<const char*, kMaxJoints> jointUnits(const SerialChain& chain) {
   std::array<const char*, kMaxJoints> units{};
-  for (int joint = 0; joint < chain.size(); ++joint)
-    units[joint] = chain.type(joint) == JointType::kPrismatic ? "m" : "rad";
+  for (int joint = 0; joint < chain.size(); ++joint) units[joint] = unitOf(chain.type(joint));
   return units;
 }
 

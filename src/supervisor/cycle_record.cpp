@@ -1,5 +1,6 @@
 #include "tactus/supervisor/cycle_record.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace tactus {
@@ -58,6 +59,10 @@ void fillRecord(double t_s, const RobotInput& input, const Gains& gains,
   copy(tool_error_m, record.tool_error_m);
   record.path_time_s = output.path_time_s;
   record.gains = gains;
+}
+
+double largestForce_N(const CycleRecord& record, int modules) noexcept {
+  return *std::max_element(record.force_sensor_N, record.force_sensor_N + std::max(1, modules));
 }
 
 RobotInput recordedInput(const CycleRecord& record, int joints) noexcept {

@@ -8,7 +8,7 @@ namespace {
 using enum Mode;
 
 constexpr std::array<ModeTransition, kModeTransitionCount> kTransitions = {{
-    {kBoot, kReady, "drives configured, module tared"},
+    {kBoot, kReady, "drives configured, modules tared"},
     {kBoot, kFault, "fault, or not configured in time"},
     {kBoot, kOff, "stop requested"},
     {kReady, kEnabling, "enable line on, or none"},
@@ -135,7 +135,9 @@ bool isLegal(Mode from, Mode to) noexcept {
 
 void updateMode(const ModeConfig& config, const ModeInput& input, ModeState& state) noexcept {
   note(state, input.fault);
-  const long long cycles = 1LL + input.missed_cycles + state.cycles_in_mode;
+  // Stops have deadlines of time; all else waits for what is heard in cycles that are there.
+  const bool is_stop = state.mode == kStopping || state.mode == kFault;
+  const long long cycles = 1LL + (is_stop ? input.missed_cycles : 0) + state.cycles_in_mode;
   state.cycles_in_mode = static_cast<int>(std::min<long long>(cycles, kMaxCyclesInMode));
   switch (state.mode) {
     case kBoot:

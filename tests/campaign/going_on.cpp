@@ -89,7 +89,7 @@ void GoingOnJudge::look(const Look& look) {
     is_calm.push_back(true);
     newest.clear();
   }
-  if (now.mode == Mode::kRunning) newest.push_back(speedOf(now));
+  if (now.mode == Mode::kRunning && now.is_calm) newest.push_back(speedOf(now));
   if (newest.size() > kBefore_ms) newest.pop_front();
   if (all.empty() || all.back().end_ms != 0) return;
   is_calm.back() = is_calm.back() && now.is_calm;

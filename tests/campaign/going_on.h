@@ -34,8 +34,8 @@ struct GoingOnJudge {
 /// Complains of what was faster than in the same run without a trouble, in which nobody leans on
 /// the arm in the last stop; or, where a hand is there beyond the stop, that leans on it then, too.
 /// Two runs that went apart before the stop, as where an arm meets the band a little elsewhere,
-/// cannot be compared: there nothing may be faster than just before the stop. Adds the cycles that
-/// this takes.
+/// cannot be compared: there it may be as fast as just before the stop, if nothing but hands was at
+/// work then. Adds the cycles that this takes.
 void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& judge,
                     std::vector<Violation>& found, long long& cycles);
 

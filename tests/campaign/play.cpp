@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace tactus::campaign {
 namespace {
@@ -9,6 +10,9 @@ namespace {
 constexpr int kLateFrame_ms = 50;    ///< after a trouble of frames
 constexpr int kStaleSample_ms = 32;  ///< until the module is seen to say nothing
 constexpr int kSilent_ms = 10;       ///< and a drive
+
+/// Also one that pats: it hides nothing.
+bool isHand(const Injection& x) { return std::string_view(x.kind->name).ends_with("hand"); }
 
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
 
@@ -165,7 +169,8 @@ int Play::shownSince_ms(const Injection& x, int t_ms) const {
   int since_ms = x.from_ms;
   if (x.kind->where != InjectionKind::Where::kTactile) return since_ms;
   for (const Injection& other : injections_) {
-    if (other.kind->where == x.kind->where && !other.isAtWork(t_ms) && other.from_ms <= t_ms)
+    const bool hides = other.kind->where == x.kind->where && !isHand(other);
+    if (hides && !other.isAtWork(t_ms) && other.from_ms <= t_ms)
       since_ms = std::max(since_ms, other.until_ms);
   }
   return since_ms;

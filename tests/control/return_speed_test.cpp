@@ -178,26 +178,26 @@ TEST(ReturnSpeed, RisesGentlyOutOfAJointLimitsZone) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     PushedArm arm(seed, 0.0);
     arm.config.task.trajectory = {};
+    arm.config.weights.setOnes();
     arm.config.has_joint_limit_avoidance = true;
+    arm.config.gains.joint_limit_avoidance.gradient_at_limit = 20.0;
     arm.config.limits.upper = arm.config.q_start.array() + 0.01;
     arm.config.limits.lower = arm.config.q_start.array() - 1.0;
+    arm.config.limits.max_acceleration.setConstant(1e6);
     const Controller controller(arm.config);
-    const auto speeds = [&](ControllerState state) {
+    const auto speedAfter = [&](ControllerState state, int cycles) {
       ControllerOutput output;
-      std::vector<double> all;
-      for (int i = 0; i < 3000; ++i) {
+      for (int i = 0; i <= cycles; ++i)
         controller.update({}, controller.initialGains(), 0.0, 1e-3, state, output);
-        all.push_back(output.velocity.norm());
-      }
-      return all;
+      return output.velocity.norm();
     };
     ControllerState let_go = controller.initialState();
     controller.restart(let_go);
-    const std::vector<double> gentle = speeds(let_go), held = speeds(controller.initialState());
-    ASSERT_GT(held.front(), 1e-4);
-    EXPECT_EQ(gentle.front(), 0.0);
-    EXPECT_LT(gentle[100], 0.1 * held.front());
-    EXPECT_LE(*std::ranges::max_element(gentle), *std::ranges::max_element(held));
+    const double gentle = kFirstWayOut * std::sqrt(arm.config.chain.size());
+    ASSERT_GT(speedAfter(controller.initialState(), 0), 2.0 * gentle);
+    EXPECT_LE(speedAfter(let_go, 0), gentle);
+    EXPECT_GT(speedAfter(let_go, 0), 0.0);
+    EXPECT_LE(speedAfter(let_go, 1000), 2.1 * gentle);
   }
 }
 

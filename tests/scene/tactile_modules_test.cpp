@@ -73,6 +73,35 @@ TEST(TactileModules, AreSetByEitherSpelling) {
   EXPECT_EQ(second.plant.modules[1].channels.counts_per_N, 2e5);
 }
 
+TEST(TactileModules, AreReplacedAsAWhole) {
+  const std::string modules =
+      "[{link: link3, length_m: 0.1, cover_radius_m: 0.04, calibration: "
+      "[[1, 0, 0, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0, 0, 0], "
+      "[0, 0, 1, 0, 0, 0, 0, 0], [0, 0, 0, 1, 0, 0, 0, 0]]}]";
+  const Override list{"robot.tactile_modules", modules};
+  EXPECT_EQ(SceneFiles{}.load({list}).module_links, std::vector<std::string>{"link3"});
+  EXPECT_EQ(twoModules().load({list}).module_links, std::vector<std::string>{"link3"});
+  for (const SceneFiles& files : {SceneFiles{}, twoModules()}) {
+    const Scene scene = files.load({{"robot.tactile_module", "~"}, {"controller", "~"}});
+    EXPECT_TRUE(scene.controller.tactile_modules.empty());
+    EXPECT_TRUE(scene.plant.modules.empty());
+  }
+  test::expectError(loadError(SceneFiles{}.sources(), {{"robot.tactile_modules[1].link", "link3"}}),
+                    {"", "no second one", "robot.yaml:8:3: tactile_modules[1]: ",
+                     "the robot has one module", "tactile_modules[0]"});
+}
+
+TEST(TactileModules, HaveFilterPeriodsThatFitEachOther) {
+  const auto filesWith = [](const std::string& first_hz, const std::string& second_hz) {
+    return filesOf(moduleEntry("cover", "  filter_rate_hz: " + first_hz + "\n") +
+                   moduleEntry("link3", "  filter_rate_hz: " + second_hz + "\n"));
+  };
+  EXPECT_EQ(loadError(filesWith("1000", "2000").sources()), "");
+  test::expectError(loadError(filesWith("2000", "3000").sources()),
+                    {"", "2000 and 3000", "robot.yaml:17:21: tactile_modules[0].filter_rate_hz: ",
+                     "2000 Hz does not fit the other modules", "3000 Hz over a whole number"});
+}
+
 TEST(TactileModules, OfEachBusCount) {
   const Scene scene = twoModulesOnBuses("  interface: can1\n  first_id: 0x110\n",
                                         "  interface: can0\n  first_id: 0x110\n")
@@ -87,6 +116,14 @@ TEST(TactileModules, OfEachBusCount) {
 }
 
 std::string errorOf(const SceneFiles& files) { return loadError(files.sources()); }
+
+TEST(TactileModules, OfOneBusCountTogether) {
+  const Scene scene = twoModulesOnBuses("  interface: can1\n  first_id: 0x110\n",
+                                        "  interface: can1\n  first_id: 0x114\n")
+                          .load();
+  const std::vector<BusLoadTerm> terms = busLoads(scene.hardware.value(), 0.001)[1].terms;
+  EXPECT_EQ(std::ranges::count(terms, std::string("tactile module"), &BusLoadTerm::name), 2);
+}
 
 TEST(TactileModules, ThatDoNotFitAreRefused) {
   const std::string one = moduleEntry("cover");

@@ -97,6 +97,33 @@ TEST(SimulatedRobot, ModuleKeepsItsOwnTimeAtAnyPeriod) {
   }
 }
 
+TEST(SimulatedRobot, EveryModuleFeelsWhatItsOwnCoverMeets) {
+  ControllerConfig config = test::crops9Controller(Variant::kNone);
+  config.tactile_modules.resize(3, config.tactile_modules.front());
+  config.tactile_modules[2].link.joint = 0;  // out of reach
+  std::vector<ObstacleConfig> obstacles = test::scenario1();
+  obstacles[0].x_m = 0.55;
+  obstacles[0].y_m = -0.15;
+  PlantConfig plant = test::crops9Plant(obstacles);
+  plant.modules.resize(3, plant.modules.front());
+  plant.modules[1].cover_radius_m -= 0.01;
+  SimulatedRobot robot(config, plant, 0.001);
+  for (int i = 0; i < 400; ++i) robot.write(JointVector::Zero(9));
+  RobotInput input;
+  robot.read(input);
+  EXPECT_GT(robot.trueForce_N(1), 0.01);
+  EXPECT_GT(robot.trueForce_N(0), 1.1 * robot.trueForce_N(1)) << "it is thicker";
+  EXPECT_EQ(robot.trueForce_N(2), 0.0);
+  for (int module = 0; module < 3; ++module) {
+    const TactileSample& sample = input.tactile[module];
+    EXPECT_EQ(sample.sequence, 100u);
+    EXPECT_NEAR(std::hypot(sample.force_y_N, sample.force_z_N), robot.trueForce_N(module), 1e-3);
+  }
+  EXPECT_EQ(input.tactile[3].sequence, 0u);
+  plant.modules.resize(2);
+  EXPECT_THROW(SimulatedRobot(config, plant, 0.001), std::invalid_argument);
+}
+
 class CyclePeriod : public testing::TestWithParam<std::tuple<double, Variant>> {};
 
 TEST_P(CyclePeriod, GivesTheResultOfOneMillisecond) {

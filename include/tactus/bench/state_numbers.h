@@ -4,91 +4,109 @@
 
 namespace tactus {
 
-/// Calls visit(name, index, value) for every number that a controller remembers from one cycle to
-/// the next; index is that of a joint or an axis, 0 for a single number. Each struct is taken apart
-/// as a whole, so that a member added to one of them does not compile before it is visited here.
-/// Of the tactile modules the first is visited, which laws act on. Left out are sequences, which
-/// count, what is no number, and what only spares computing it again.
+/// Visits what the structs of a controller's state hold, each taken apart as a whole, so that a
+/// member added to one of them does not compile before it is visited here.
 template <typename Visit>
-void visitNumbers(const ControllerState& state, const Visit& visit) {
-  const auto list = [&visit](const char* name, const auto& values) {
+struct StateVisitor {
+  const Visit& visit;
+
+  template <typename Values>
+  void list(const char* name, const Values& values) const {
     for (Eigen::Index i = 0; i < values.size(); ++i) visit(name, static_cast<int>(i), values[i]);
-  };
-  const auto point = [&](const char* force, const char* position, const char* direction_name,
-                         const ContactPointState& contact) {
+  }
+
+  void point(const char* force, const char* position, const char* direction_name,
+             const ContactPointState& contact) const {
     const auto& [force_N, position_m, direction, interval_s] = contact;
     visit(force, 0, force_N);
     visit(position, 0, position_m);
     list(direction_name, direction);
-  };
-  const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
-               modules, contact, zones] = state;
-  visit("waited_s", 0, waited_s);
-  visit("progress", 0, progress);
-  visit("return_share", 0, return_share);
-  list("q_desired", q_desired);
-  list("velocity_before", velocity_before);
-  const auto& [sequence, age_s, sample_fault, detail, sensed_contact] = modules.front();
-  visit("sample_age_s", 0, age_s);
-  point("force_N", "position_m", "direction", sensed_contact);
+  }
 
-  const auto& [held_point, push, has_push, transition, joint_space, estimator, approach, law, cut,
-               is_resting] = contact;
-  point("held.force_N", "held.position_m", "held.direction", held_point);
-  list("push", push);
-  visit("cut", 0, cut);
-  const auto& [touched, p_lost, gamma] = transition;
-  list("transition.p_lost", p_lost);
-  visit("transition.gamma", 0, gamma);
+  void all(const ControllerState& state) const {
+    const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
+                 modules, contact, zones] = state;
+    visit("waited_s", 0, waited_s);
+    visit("progress", 0, progress);
+    visit("return_share", 0, return_share);
+    list("q_desired", q_desired);
+    list("velocity_before", velocity_before);
+    const auto& [sequence, age_s, sample_fault, detail, sensed_contact] = modules.front();
+    visit("sample_age_s", 0, age_s);
+    point("force_N", "position_m", "direction", sensed_contact);
+    answer(contact);
+  }
 
-  const auto& [touching, joint_gamma, kappa, has_rested, joint_p_lost, joint_contact, response,
-               fade] = joint_space;
-  visit("joint_space.gamma", 0, joint_gamma);
-  visit("joint_space.kappa", 0, kappa);
-  list("joint_space.p_lost", joint_p_lost);
-  point("joint_space.force_N", "joint_space.position_m", "joint_space.direction", joint_contact);
+  void answer(const ContactControllerState& contact) const {
+    const auto& [held_point, push, has_push, transition, joint_space, estimator, approach, law, cut,
+                 is_resting] = contact;
+    point("held.force_N", "held.position_m", "held.direction", held_point);
+    list("push", push);
+    visit("cut", 0, cut);
+    const auto& [touched, p_lost, gamma] = transition;
+    list("transition.p_lost", p_lost);
+    visit("transition.gamma", 0, gamma);
 
-  const auto& [stiffness, stiffness_raw, x_int_m, v_prev, F_prev, filter] = estimator;
-  visit("estimator.stiffness", 0, stiffness);
-  visit("estimator.stiffness_raw", 0, stiffness_raw);
-  visit("estimator.x_int", 0, x_int_m);
-  visit("estimator.v_prev", 0, v_prev);
-  visit("estimator.F_prev", 0, F_prev);
+    const auto& [touching, joint_gamma, kappa, has_rested, joint_p_lost, joint_contact, response,
+                 fade] = joint_space;
+    visit("joint_space.gamma", 0, joint_gamma);
+    visit("joint_space.kappa", 0, kappa);
+    list("joint_space.p_lost", joint_p_lost);
+    point("joint_space.force_N", "joint_space.position_m", "joint_space.direction", joint_contact);
 
-  const auto& [smoother, position, approach_estimator, memory, way_ahead, is_limiting,
-               memory_fade] = approach;
-  const auto& [significant, before, two_before, peak, weight, X_BaseModule, smooth, ringing,
-               smoothing] = smoother;
-  visit("smoother.significant", 0, significant);
-  list("smoother.force_before", before);
-  list("smoother.force_two_before", two_before);
-  visit("smoother.peak", 0, peak);
-  visit("smoother.weight", 0, weight);
-  list("smoother.R_BaseModule", X_BaseModule.R_AB.reshaped());
-  list("smoother.p_BaseModule", X_BaseModule.p_AB);
-  point("smoother.force_N", "smoother.position_m", "smoother.direction", smooth);
-  const auto& [has_started, origin, commanded, lagged, s0, s1, s2, sensed, sensed_before,
-               drive_lag] = position;
-  list("sensed.origin", origin);
-  list("sensed.commanded", commanded);
-  list("sensed.lagged", lagged);
-  list("sensed.s0", s0);
-  list("sensed.s1", s1);
-  list("sensed.s2", s2);
-  list("sensed.sensed", sensed);
-  list("sensed.sensed_before", sensed_before);
-  const auto& [c, r, x_m, F_ref, F_before, falling, forgetting] = approach_estimator;
-  visit("approach.c", 0, c);
-  visit("approach.r", 0, r);
-  visit("approach.x", 0, x_m);
-  visit("approach.F_ref", 0, F_ref);
-  visit("approach.F_before", 0, F_before);
-  visit("approach.memory", 0, memory);
-  visit("approach.way_ahead", 0, way_ahead);
+    const auto& [stiffness, stiffness_raw, x_int_m, v_prev, F_prev, filter] = estimator;
+    visit("estimator.stiffness", 0, stiffness);
+    visit("estimator.stiffness_raw", 0, stiffness_raw);
+    visit("estimator.x_int", 0, x_int_m);
+    visit("estimator.v_prev", 0, v_prev);
+    visit("estimator.F_prev", 0, F_prev);
+    const auto& [V, It, null_speed] = law;
+    visit("law.V", 0, V);
+    visit("law.It", 0, It);
+    limit(approach);
+  }
 
-  const auto& [V, It, null_speed] = law;
-  visit("law.V", 0, V);
-  visit("law.It", 0, It);
+  void limit(const ApproachLimitState& approach) const {
+    const auto& [smoother, position, approach_estimator, memory, way_ahead, is_limiting,
+                 memory_fade] = approach;
+    const auto& [significant, before, two_before, peak, weight, X_BaseModule, smooth, ringing,
+                 smoothing] = smoother;
+    visit("smoother.significant", 0, significant);
+    list("smoother.force_before", before);
+    list("smoother.force_two_before", two_before);
+    visit("smoother.peak", 0, peak);
+    visit("smoother.weight", 0, weight);
+    list("smoother.R_BaseModule", X_BaseModule.R_AB.reshaped());
+    list("smoother.p_BaseModule", X_BaseModule.p_AB);
+    point("smoother.force_N", "smoother.position_m", "smoother.direction", smooth);
+    const auto& [has_started, origin, commanded, lagged, s0, s1, s2, sensed, sensed_before,
+                 drive_lag] = position;
+    list("sensed.origin", origin);
+    list("sensed.commanded", commanded);
+    list("sensed.lagged", lagged);
+    list("sensed.s0", s0);
+    list("sensed.s1", s1);
+    list("sensed.s2", s2);
+    list("sensed.sensed", sensed);
+    list("sensed.sensed_before", sensed_before);
+    const auto& [c, r, x_m, F_ref, F_before, falling, forgetting] = approach_estimator;
+    visit("approach.c", 0, c);
+    visit("approach.r", 0, r);
+    visit("approach.x", 0, x_m);
+    visit("approach.F_ref", 0, F_ref);
+    visit("approach.F_before", 0, F_before);
+    visit("approach.memory", 0, memory);
+    visit("approach.way_ahead", 0, way_ahead);
+  }
+};
+
+/// Calls visit(name, index, value) for every number that a controller remembers from one cycle to
+/// the next; index is that of a joint or an axis, 0 for a single number.
+/// Of the tactile modules the first is visited, which laws act on. Left out are sequences, which
+/// count, what is no number, and what only spares computing it again.
+template <typename Visit>
+void visitNumbers(const ControllerState& state, const Visit& visit) {
+  StateVisitor<Visit>{visit}.all(state);
 }
 
 }  // namespace tactus

@@ -10,6 +10,11 @@ namespace tactus {
 
 enum class JointType { kPrismatic, kRevolute };
 
+/// Of a joint's position.
+inline const char* unitOf(JointType type) noexcept {
+  return type == JointType::kPrismatic ? "m" : "rad";
+}
+
 /// One moving joint of a robot description. At q = 0 the joint frame lies at X_ParentJoint in the
 /// frame of the previous moving joint (of the base for the first); q moves it along or about
 /// `axis`.

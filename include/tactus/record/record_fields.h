@@ -35,7 +35,7 @@ struct RecordField {
   bool may_be_absent = false;  ///< from logs of older versions
 };
 
-/// All fields, in the order of the CSV's columns and of CycleRecord's members.
+/// All fields, in the order of CycleRecord's members, and of the CSV's columns for one module.
 std::span<const RecordField> recordFields() noexcept;
 
 /// How many entries the arrays of a record have.

@@ -14,7 +14,7 @@ namespace tactus {
 std::optional<HardwareConfig> loadHardware(const YamlNode& root, const RobotConfig& config,
                                            const UrdfChain& chain);
 
-/// The same without the tactile module, and without buses that nothing else is on.
+/// The same without tactile modules, and without buses that nothing else is on.
 HardwareConfig withoutTactileModules(const HardwareConfig& hardware);
 
 }  // namespace tactus

@@ -14,8 +14,8 @@ namespace tactus {
 /// the tactile modules filter and sample.
 class SimulatedRobot final : public Robot {
  public:
-  /// Throws std::invalid_argument unless the period is a multiple or a whole part of each module's
-  /// filter period (1 / filter_rate_hz), and `plant` has a module for each that the controller
+  /// Throws std::invalid_argument unless period and filter periods (1 / filter_rate_hz) are
+  /// multiples of the shortest of them, and `plant` has a module for each that the controller
   /// reads.
   SimulatedRobot(const ControllerConfig& robot, const PlantConfig& plant, double period_s);
 

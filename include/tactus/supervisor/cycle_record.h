@@ -62,6 +62,9 @@ void fillRecord(double t_s, const RobotInput& input, const Gains& gains,
                 const ControllerOutput& output, const Vector3& tool_error_m,
                 CycleRecord& record) noexcept;
 
+/// F_sen of the module that feels most, of so many; 0 without one.
+double largestForce_N(const CycleRecord& record, int modules) noexcept;
+
 /// The controller's input of a logged cycle; `joints` entries of q_measured.
 RobotInput recordedInput(const CycleRecord& record, int joints) noexcept;
 

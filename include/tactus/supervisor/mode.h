@@ -39,11 +39,11 @@ struct ModeInput {
   bool stop_requested = false;   ///< by the user: end at rest
   bool has_enable_line = false;  ///< without one, movement is enabled from the start
   bool enable = true;            ///< state of that line
-  bool are_configured = false;   ///< drives configured, module tared, samples coming
+  bool are_configured = false;   ///< drives configured, modules tared, samples coming
   bool are_enabled = false;      ///< every drive follows setpoints
   bool are_disabled = true;      ///< no drive that can be reached has power
   bool is_at_rest = true;        ///< the commanded velocity is zero
-  int missed_cycles = 0;         ///< just before this one; time limits go on in them
+  int missed_cycles = 0;         ///< just before this one; deadlines of a stop go on in them
 };
 
 /// Far beyond every time limit, and below where a count would overflow: an arm may run for months.
