@@ -14,6 +14,9 @@ namespace {
 /// and drives may need a cycle more.
 constexpr int kSettledCycles = 3;
 
+/// Feedback of two cycles in one, where the first was late; more is another's.
+constexpr int kMostPeriodsHeard = 2;
+
 bool isWithoutPower(DriveState state) noexcept {
   return state == DriveState::kNotReady || state == DriveState::kSwitchOnDisabled ||
          state == DriveState::kReadyToSwitchOn || state == DriveState::kFault;
@@ -53,7 +56,9 @@ void Drive::receive(const CanFrame& frame) noexcept {
 void Drive::receiveFeedback(const CanFrame& frame) noexcept {
   const auto feedback = decodeFeedback(frame, config_.node_id);
   if (!feedback) ++malformed_frames_;
-  if (feedback) feedback_ = feedback;
+  if (!feedback) return;
+  feedback_ = feedback;
+  periods_heard_ = std::min(periods_heard_ + 1, kMostPeriodsHeard);
 }
 
 void Drive::receiveHeartbeat(const CanFrame& frame) noexcept {

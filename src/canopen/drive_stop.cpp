@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "tactus/canopen/canopen.h"
 #include "tactus/canopen/drive.h"
@@ -22,6 +23,7 @@ void Drive::coast(int missed_cycles) noexcept {
   };
   pass(quick_stop_cycles_);
   pass(ignored_cycles_);
+  rest_watch_.restart();  // nobody knows how far it has come in which time
 }
 
 void Drive::release(FrameBatch& out) const noexcept {
@@ -64,6 +66,7 @@ void Drive::watchStop(DriveGoal goal) noexcept {
                        state_ == DriveState::kOperationEnabled;
   ignored_cycles_ = ignores ? std::min(ignored_cycles_, stop_deadline_cycles_) + 1 : 0;
   if (ignored_cycles_ > stop_deadline_cycles_) fail(Fault::kDriveStateLost);
+  const int periods = std::exchange(periods_heard_, 0);
   if (goal != DriveGoal::kQuickStop) {
     rest_watch_.restart();
     quick_stop_cycles_ = cut_off_cycles_ = 0;
@@ -73,7 +76,7 @@ void Drive::watchStop(DriveGoal goal) noexcept {
   // What it did while nobody heard of it shows as a jump, which is no motion on.
   const bool is_unheard = cycles_without_feedback_ > kMaxSilentCycles || !report_.has_position;
   if (is_unheard) rest_watch_.restart();
-  if (!is_unheard && rest_watch_.update(report_.position)) report_.is_moving_on = true;
+  if (!is_unheard && rest_watch_.update(report_.position, periods)) report_.is_moving_on = true;
   quick_stop_cycles_ = std::min(quick_stop_cycles_, stop_deadline_cycles_) + 1;
   const bool is_late = quick_stop_cycles_ > stop_deadline_cycles_ || report_.is_moving_on;
   if (is_late && !report_.is_off) report_.is_cut_off = true;

@@ -8,14 +8,15 @@ namespace tactus {
 
 RestWatch::RestWatch(double period_s) : window_cycles_(cyclesCovering(kWindow_s, period_s)) {}
 
-bool RestWatch::update(double position) noexcept {
-  if (cycles_ == 0) begin_ = position;
-  if (cycles_++ < window_cycles_) return false;
-  const double way = std::abs(position - begin_);
+bool RestWatch::update(double position, int periods) noexcept {
+  cycles_ += periods;
+  if (has_begun_ && cycles_ < window_cycles_) return false;
+  const double way = has_begun_ ? std::abs(position - begin_) * window_cycles_ / cycles_ : 0.0;
   const bool moves_on = windows_ > 0 && way > kMoved && way > way_before_ - kSlowing;
   way_before_ = way;
-  windows_ = 1;
-  cycles_ = 1;
+  windows_ = has_begun_ ? 1 : 0;
+  has_begun_ = true;
+  cycles_ = 0;
   begin_ = position;
   return moves_on;
 }

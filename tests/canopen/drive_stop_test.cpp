@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 
 #include "support/drive_rig.h"
 
@@ -58,10 +59,29 @@ TEST(DriveStop, OneThatSlowsDownIsLeftToIt) {
     double speed = std::min(2.0, 0.45 * deceleration);
     double q = 0.0;
     for (int i = 0; i < 490; ++i) {
-      EXPECT_FALSE(watch.update(q)) << deceleration << " " << i;
+      EXPECT_FALSE(watch.update(q, 1)) << deceleration << " " << i;
       q += 0.001 * speed;
       speed = std::max(0.0, speed - 0.001 * deceleration);
     }
+  }
+}
+
+/// Feedback that now comes before the cycle reads and now after it is of another time, not faster.
+TEST(DriveStop, OneThatMovesOnIsSeenAlsoWhereItsFeedbackJitters) {
+  std::mt19937 random(7);
+  for (int run = 0; run < 100; ++run) {
+    RestWatch watch(0.001);
+    int sent = 0, heard = 0, cycles = 0;
+    bool moves_on = false;
+    for (; !moves_on && cycles < 200; ++cycles) {
+      ++sent;
+      const int late = random() % 3 == 0 ? 1 : 0;
+      const int periods = std::max(0, sent - late - heard);
+      heard += periods;
+      moves_on = watch.update(1e-3 * heard, periods);  // 1 rad/s
+    }
+    EXPECT_GE(cycles, 100);
+    EXPECT_LE(cycles, 104);
   }
 }
 

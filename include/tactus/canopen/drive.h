@@ -147,6 +147,7 @@ class Drive {
   DriveReport report_;
   Phase phase_ = Phase::kUnconfigured;
   std::optional<DriveFeedback> feedback_;  ///< that has come since the last cycle
+  int periods_heard_ = 0;                  ///< since then: each SYNC is answered once
   std::optional<DriveState> state_;        ///< none: a status word that the standard does not know
   bool is_operational_ = false;            ///< by its last heartbeat
   int starting_cycles_ = 0;                ///< since NMT start

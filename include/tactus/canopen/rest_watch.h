@@ -14,13 +14,19 @@ class RestWatch {
 
   explicit RestWatch(double period_s);
 
-  void restart() noexcept { windows_ = cycles_ = 0; }
+  void restart() noexcept {
+    has_begun_ = false;
+    windows_ = 0;
+  }
 
-  /// Once a cycle; position: m or rad, finite. True: it moves on.
-  bool update(double position) noexcept;
+  /// Once a cycle; position: m or rad, finite, as it was so many periods after that of the call
+  /// before: feedback that comes a little late is of one period less, and the next of one more.
+  /// True: it moves on.
+  bool update(double position, int periods) noexcept;
 
  private:
   int window_cycles_;
+  bool has_begun_ = false;
   int cycles_ = 0;   ///< of the present window
   int windows_ = 0;  ///< that have ended, as many as matter
   double begin_ = 0.0;
