@@ -12,9 +12,9 @@ bool RestWatch::update(double position, int periods) noexcept {
   cycles_ += periods;
   if (has_begun_ && cycles_ < window_cycles_) return false;
   const double way = has_begun_ ? std::abs(position - begin_) * window_cycles_ / cycles_ : 0.0;
-  const bool moves_on = windows_ > 0 && way > kMoved && way > way_before_ - kSlowing;
+  const bool moves_on = has_way_before_ && way > kMoved && way > way_before_ - kSlowing;
   way_before_ = way;
-  windows_ = has_begun_ ? 1 : 0;
+  has_way_before_ = has_begun_;
   has_begun_ = true;
   cycles_ = 0;
   begin_ = position;

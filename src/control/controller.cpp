@@ -40,14 +40,6 @@ void replaceRotation(const TaskConfig& task, const Vector3& rotation_vector,
     if (task.components[i] >= 3) w[i] = rotation_vector[task.components[i] - 3];
 }
 
-/// How far the tool is from its reference, m.
-double lag_m(const TaskConfig& task, const PaddedTaskVector& error) noexcept {
-  double squared = 0.0;
-  for (int i = 0; i < task.size; ++i)
-    if (task.components[i] < 3) squared += error[i] * error[i];
-  return std::sqrt(squared);
-}
-
 }  // namespace
 
 Controller::Controller(const ControllerConfig& config)
@@ -283,7 +275,8 @@ void Controller::computeTaskMotion(const TaskGains& gains, const ControllerState
                                    PreparedCycle& prepared) const noexcept {
   TaskKinematics& kinematics = prepared.kinematics;
   if (gains.wait_beyond_m < kNoLimit) {
-    prepared.progress = pathProgress(lag_m(config_.task, kinematics.error), gains.wait_beyond_m);
+    prepared.progress =
+        pathProgress(toolLag_m(config_.task, kinematics.error), gains.wait_beyond_m);
     prepared.w_d_dot *= prepared.progress;
   } else {
     prepared.progress = 1.0;

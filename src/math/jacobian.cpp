@@ -78,12 +78,4 @@ void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose
   if (joints % 2 == 1) result[joints] = 0.0;  // what the last pair had too many
 }
 
-void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
-                                 const Vector3& p_BasePoint, const Vector3& f_Base,
-                                 JointVector& result) noexcept {
-  ScaledVector padded;
-  applyPointJacobianTranspose(chain, pose, joint, p_BasePoint, f_Base, padded);
-  result = padded.head(chain.size());
-}
-
 }  // namespace tactus

@@ -51,10 +51,11 @@ void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
 }  // namespace
 
 RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
-    : limits_(config.limits), modules_(static_cast<int>(config.tactile_modules.size())) {
-  for (int i = 0; i < modules_; ++i) {
-    contacts_.emplace_back(config.force_control.has_value(),
-                           expected_cycles / static_cast<std::size_t>(modules_), i);
+    : limits_(config.limits) {
+  const std::size_t modules = config.tactile_modules.size();
+  for (std::size_t i = 0; i < modules; ++i) {
+    contacts_.emplace_back(config.force_control.has_value(), expected_cycles / modules,
+                           static_cast<int>(i));
   }
   if (config.task.hasRotation()) figures_.tcp_rotation_error.emplace();
 }
@@ -66,7 +67,7 @@ void RunSummary::add(const CycleRecord& record) {
 
 void RunSummary::addFigures(const CycleRecord& record) noexcept {
   ++figures_.cycles;
-  const double force_N = largestForce_N(record, modules_);
+  const double force_N = largestForce_N(record, static_cast<int>(contacts_.size()));
   if (force_N > figures_.peak_force_N) {
     figures_.peak_force_N = force_N;
     figures_.stiffness_at_peak_N_per_m = record.stiffness_N_per_m;

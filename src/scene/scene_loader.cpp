@@ -119,7 +119,7 @@ PlantConfig makePlant(const SimulationSection& simulation, const RobotConfig& ro
   return plant;
 }
 
-std::vector<std::string> moduleLinks(const SceneConfig& config, const RobotConfig& robot) {
+std::vector<std::string> linksThatAreRead(const SceneConfig& config, const RobotConfig& robot) {
   std::vector<std::string> links;
   if (!config.controller) return links;
   for (const TactileModuleSection& module : robot.tactile_modules) links.push_back(module.link);
@@ -174,7 +174,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
               .plant = makePlant(config.simulation, robot.config),
               .robot_name = robot.chain.robot_name,
               .joint_names = robot.chain.joint_names,
-              .module_links = moduleLinks(config, robot.config),
+              .module_links = linksThatAreRead(config, robot.config),
               .sources = reader.files(),
               .overrides = overrides,
               .numbers = std::move(numbers),

@@ -58,18 +58,25 @@ TEST(Gains, ThatChangeLeaveNothingOfTheOldOnesBehind) {
   }
 }
 
+/// Where a controller is after some cycles of a touch, in N, with the default gains.
+template <typename Force>
+ControllerState stateAfter(const Controller& controller, int cycles, const Force& force_N) {
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  for (int i = 0; i < cycles; ++i) {
+    const RobotInput input{state.q_desired, test::touchAt(0.2, force_N(i), 0.4, i + 1)};
+    controller.update(input, Gains{}, 1e-3 * i, 1e-3, state, output);
+  }
+  return state;
+}
+
 /// Below the threshold the law holds on to the contact that it lost.
 TEST(Gains, AReturnSpeedThatComesFindsTheLostContact) {
   test::Random random(403);
   const Controller controller(test::fullController(random, 7, Variant::kNullSpace));
-  ControllerState state = controller.initialState();
+  ControllerState state = stateAfter(controller, 500, [](int i) { return i < 480 ? 8.0 : 0.5; });
   Gains gains;
   ControllerOutput output;
-  for (int i = 0; i < 500; ++i) {
-    const double force_N = i < 480 ? 8.0 : 0.5;
-    const RobotInput input{state.q_desired, test::touchAt(0.2, force_N, 0.4, i + 1)};
-    controller.update(input, gains, 1e-3 * i, 1e-3, state, output);
-  }
   const RobotInput input{state.q_desired, test::touchAt(0.2, 0.5, 0.4, 500)};
   ControllerState with_speed = state;
   ControllerOutput expected;
@@ -84,13 +91,9 @@ TEST(Gains, AReturnSpeedThatComesFindsTheLostContact) {
 TEST(Gains, ThatChangeDoSoInTheSameCycle) {
   test::Random random(402);
   const Controller controller(test::fullController(random, 7, Variant::kNullTask));
-  ControllerState state = controller.initialState();
+  const ControllerState state = stateAfter(controller, 700, [](int) { return 8.0; });
   Gains gains;
   ControllerOutput output;
-  for (int i = 0; i < 700; ++i) {
-    const RobotInput input{state.q_desired, test::touchAt(0.2, 8.0, 0.4, i + 1)};
-    controller.update(input, gains, 1e-3 * i, 1e-3, state, output);
-  }
   for (double* const gain : {&gains.task.drift_gain_per_s, &gains.force.time_constant_s,
                              &gains.force.damping, &gains.force.contact_threshold_N,
                              &gains.force.activation_force_N, &gains.joint_limit_avoidance.gain}) {

@@ -19,8 +19,8 @@ struct RandomContact {
         a(random.vector(n, -1.0, 1.0)),
         w_eff(random.vector<TaskVector>(m, -1.0, 1.0)),
         inverse(test::expandPseudoinverse(J, weights)) {
-    computeContactSpace(inverse.factors, a, test::inverseSquareRoot(weights),
-                        inverse.factors.solve(w_eff), space);
+    computeContactSpace(inverse.factors, scaled(a, ScaledVector::Ones()),
+                        test::inverseSquareRoot(weights), inverse.factors.solve(w_eff), space);
   }
 
   int n, m;
@@ -80,7 +80,7 @@ TEST(ContactSpace, HasNoNullSpaceWithoutRedundancy) {
         test::randomJacobian(random, test::randomSpectrum(random, n, 0.05, 5.0), weights);
     const test::ExpandedPseudoinverse inverse = test::expandPseudoinverse(J, weights);
     ContactSpace space;
-    computeContactSpace(inverse.factors, random.vector(n, -1.0, 1.0),
+    computeContactSpace(inverse.factors, scaled(random.vector(n, -1.0, 1.0), ScaledVector::Ones()),
                         test::inverseSquareRoot(weights), PaddedTaskVector::Zero(), space);
     EXPECT_LT(space.k_n, 1e-25 * space.k_j);
     EXPECT_NEAR(space.k_t, space.k_j, 1e-12 * space.k_j);

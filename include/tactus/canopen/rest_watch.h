@@ -14,10 +14,7 @@ class RestWatch {
 
   explicit RestWatch(double period_s);
 
-  void restart() noexcept {
-    has_begun_ = false;
-    windows_ = 0;
-  }
+  void restart() noexcept { has_begun_ = has_way_before_ = false; }
 
   /// Once a cycle; position: m or rad, finite, as it was so many periods after that of the call
   /// before: feedback that comes a little late is of one period less, and the next of one more.
@@ -27,8 +24,8 @@ class RestWatch {
  private:
   int window_cycles_;
   bool has_begun_ = false;
-  int cycles_ = 0;   ///< of the present window
-  int windows_ = 0;  ///< that have ended, as many as matter
+  bool has_way_before_ = false;  ///< a window has ended
+  int cycles_ = 0;               ///< of the present window
   double begin_ = 0.0;
   double way_before_ = 0.0;
 };

@@ -25,13 +25,6 @@ void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const Scale
                          const ScaledVector& inv_sqrt_weights, const PaddedTaskVector& y_eff,
                          ContactSpace& contact) noexcept;
 
-inline void computeContactSpace(const WeightedPseudoinverse& pseudoinverse, const JointVector& a,
-                                const ScaledVector& inv_sqrt_weights, const PaddedTaskVector& y_eff,
-                                ContactSpace& contact) noexcept {
-  computeContactSpace(pseudoinverse, scaled(a, ScaledVector::Ones()), inv_sqrt_weights, y_eff,
-                      contact);
-}
-
 /// 1 / max(k, 1e-3 k_j, 1e-4 m^2): where a space hardly moves the contact point, its controller
 /// must not answer with unbounded speed.
 double invertRegularised(double k, double k_j) noexcept;

@@ -126,8 +126,5 @@ void computeTipJacobian(const SerialChain& chain, const ChainPose& pose, const V
 void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
                                  const Vector3& p_BasePoint, const Vector3& f_Base,
                                  ScaledVector& result) noexcept;
-void applyPointJacobianTranspose(const SerialChain& chain, const ChainPose& pose, int joint,
-                                 const Vector3& p_BasePoint, const Vector3& f_Base,
-                                 JointVector& result) noexcept;
 
 }  // namespace tactus

@@ -60,7 +60,6 @@ class RunSummary {
   void addJoints(const CycleRecord& record) noexcept;
 
   JointLimits limits_;
-  int modules_;  ///< of which a record has forces
   RunFigures figures_;
   std::vector<ContactList> contacts_;  ///< one a tactile module
   double squared_error_sum_m2_ = 0.0, squared_rotation_sum_rad2_ = 0.0;
