@@ -143,12 +143,15 @@ void ControlCycle::repeatRefusedTares() noexcept {
 
 void ControlCycle::rememberPlaces() noexcept {
   if (!is_started_) return;
-  if (isCommanding(mode_.mode)) places_.command(output_.q_desired, output_.velocity);
+  // A start that was broken off has commanded nothing: its drives may never have held the arm.
+  const bool is_at_rest = mode_.mode == Mode::kStopping && output_.velocity.isZero(0.0);
+  const bool is_commanding = isCommanding(mode_.mode) && !is_at_rest;
+  if (is_commanding) places_.command(output_.q_desired, output_.velocity);
   for (int joint = 0; joint < places_.commanded().size(); ++joint) {
     const DriveReport& drive = robot_.drive(joint);
     const bool is_let_go = drive.is_off || drive.is_cut_off || mode_.mode == Mode::kBoot;
     places_.observe(joint, input_.q_measured[joint], robot_.isHolding(joint),
-                    is_let_go && !isCommanding(mode_.mode));
+                    is_let_go && !is_commanding);
   }
 }
 

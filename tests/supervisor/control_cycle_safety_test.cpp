@@ -126,7 +126,7 @@ TEST(ControlCycleSafety, DrivesThatStaySwitchedOnAreNotOffAndHoldNoBrakeOpen) {
   expectFaultUntilCutOff(cell);
 }
 
-/// As if somebody had pushed joint 4 on bus 1, while drives were off: 1e7 counts a rad.
+/// As if somebody had pushed joint 4 on bus 1, while drives were off: 1e6 counts a rad.
 void pushAway(VirtualRobotCell& cell, int counts) {
   cell.on_frame = [counts](int bus, CanFrame& frame) {
     if (bus != 1 || frame.id != 0x182) return;
@@ -170,6 +170,32 @@ TEST(ControlCycleSafety, AnArmThatIsPushedAwayWhileItWaitsDoesNotStart) {
     ASSERT_EQ(cell.largestSetpoint(), 0) << i;
   }
   EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart);
+}
+
+/// A limp joint is pushed slowly while the enable line flickers. Each attempt finds it hardly
+/// farther than the one before, but none of them ever held it.
+TEST(ControlCycleSafety, AnArmThatCreepsThroughStartsThatAreBrokenOffDoesNotStart) {
+  VirtualRobotCell cell(withBrakeAndEnable());
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  for (int i = 0; i < 1000; ++i) cell.step();
+  cell.input.lines.emergency_stop = true;
+  for (int i = 0; i < 500; ++i) cell.step();
+  cell.input.lines.emergency_stop = false;
+  cell.switchEnable();
+  cell.step();
+  cell.input.lines.enable = false;
+  ASSERT_TRUE(cell.runUntil(Mode::kReady, 4000));
+  for (int i = 0; i < 200; ++i) {
+    pushAway(cell, 1000 * i);
+    cell.input.lines.enable = i % 4 < 2;
+    cell.step();
+  }
+  for (int i = 0; i < 2000; ++i) {
+    cell.input.lines.enable = i >= 100;
+    cell.step();
+    ASSERT_EQ(cell.largestSetpoint(), 0) << i;
+  }
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart) << faultName(cell.cycle.report().fault);
 }
 
 TEST(ControlCycleSafety, NeverStartsBlind) {
