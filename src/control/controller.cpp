@@ -66,6 +66,10 @@ ControllerState Controller::initialState(const JointVector& q) const {
 }
 
 void Controller::restart(ControllerState& state) const noexcept {
+  if (joint_limit_avoidance_) {
+    state.way_out_before = -joint_limit_avoidance_->evaluate(state.zones, state.q_desired).gradient;
+    softenWayOut(state.return_share, state.way_out_added, state.way_out_before);
+  }
   state.return_share = 0.0;
   if (contact_controller_) state.contact = contact_controller_->initialState();
 }
@@ -74,6 +78,9 @@ void Controller::place(const JointVector& q, ControllerState& state) const noexc
   state.q_desired = q.cwiseMax(config_.limits.lower).cwiseMin(config_.limits.upper);
   state.velocity_before = JointVector::Zero(config_.chain.size());
   state.fault = Fault::kNone;
+  if (!joint_limit_avoidance_) return;
+  const JointLimitCost cost = joint_limit_avoidance_->evaluate(state.zones, state.q_desired);
+  state.way_out_added = -cost.gradient - state.way_out_before;
 }
 
 void Controller::watchSensors(const RobotInput& input, double period_s,
@@ -234,7 +241,8 @@ void Controller::avoidJointLimits(const JointLimitAvoidanceGains& gains,
   const JointLimitCost cost = joint_limit_avoidance_->evaluate(state.zones, state.q_desired);
   motion.limit_nearness = cost.nearness;
   motion.v_scaled = -cost.gradient;
-  if (state.return_share < 1.0) capWayOut(state.return_share, inv_sqrt_weights_, motion.v_scaled);
+  if (state.return_share < 1.0)
+    softenWayOut(state.return_share, state.way_out_added, motion.v_scaled);
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 

@@ -35,12 +35,10 @@ void limitReturnSpeed(const TaskGains& gains, const TaskConfig& task, const Task
     limitPart(task, false, gains.max_return_speed_rad_per_s, push, correction);
 }
 
-void capWayOut(double share, const ScaledVector& inv_sqrt_weights,
-               ScaledVector& v_scaled) noexcept {
-  const double cap = kFirstWayOut / (1.0 - share);
+void softenWayOut(double share, const ScaledVector& added, ScaledVector& way_out) noexcept {
   for (int i = 0; i < kMaxJoints; ++i) {
-    const double most = cap / inv_sqrt_weights[i];
-    v_scaled[i] = std::clamp(v_scaled[i], -most, most);
+    const double softened = way_out[i] - (1.0 - share) * added[i];
+    way_out[i] = std::clamp(softened, std::min(0.0, way_out[i]), std::max(0.0, way_out[i]));
   }
 }
 

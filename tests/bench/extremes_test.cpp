@@ -113,7 +113,8 @@ TEST(Extremes, WatchEveryNumberOfTheState) {
     found[value] = name;
     ++count;
   });
-  EXPECT_EQ(count, 9 + 9 + 3 + 1 + 5 + 5 + 1 + 4 + 5 + 5 + 5 + (26 + 7 * kMaxJoints + 5 + 2) + 2);
+  EXPECT_EQ(count, 9 + 9 + 2 * kMaxJoints + 3 + 1 + 5 + 5 + 1 + 4 + 5 + 5 + 5 +
+                       (26 + 7 * kMaxJoints + 5 + 2) + 2);
   EXPECT_EQ(found[7.0], "law.It");
   EXPECT_EQ(found[8.0], "joint_space.direction");
 }

@@ -25,10 +25,12 @@ struct StateVisitor {
 
   void all(const ControllerState& state) const {
     const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
-                 modules, contact, zones] = state;
+                 way_out_before, way_out_added, modules, contact, zones] = state;
     visit("waited_s", 0, waited_s);
     visit("progress", 0, progress);
     visit("return_share", 0, return_share);
+    list("way_out_before", way_out_before);
+    list("way_out_added", way_out_added);
     list("q_desired", q_desired);
     list("velocity_before", velocity_before);
     const auto& [sequence, age_s, sample_fault, detail, sensed_contact] = modules.front();

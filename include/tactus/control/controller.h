@@ -38,6 +38,9 @@ struct ControllerState {
   double waited_s = 0.0;        ///< how far the reference is behind the task's time
   double progress = 1.0;        ///< of the reference in the last cycle: 1 on time, 0 at rest
   double return_share = 1.0;    ///< of beta and more; grows from 0 after restart()
+  /// Out of joint limits' zones, as Motion::v_scaled: before the last restart(), and what came to
+  /// it by the place where the arm stands since.
+  ScaledVector way_out_before = ScaledVector::Zero(), way_out_added = ScaledVector::Zero();
   std::array<TactileReading, kMaxTactileModules> modules;
   ContactControllerState contact;
   JointLimitZones zones;  ///< of the last gains

@@ -7,16 +7,13 @@ namespace tactus {
 /// An arm that its drives had let go may stand beside its path where it goes on, or nearer to a
 /// joint limit, and beta e or the way out of the limit's zone at once would be a jump. So beta and
 /// joint space's pull grow linearly within this time: with beta = 5/s an error e makes at most
-/// 1.0 e /s, and not 5. The way out is not scaled, for it may hold a contact's push off, but
-/// capped.
+/// 1.0 e /s, and not 5. Of the way out only what the stop added grows from zero: the rest may hold
+/// a contact's push off, and so must whatever the arm meets deeper in the zone.
 inline constexpr double kReturnRise_s = 2.0;
 
-/// Of each joint's way out of a limit's zone where an arm goes on, m/s or rad/s.
-inline constexpr double kFirstWayOut = 0.2;
-
-/// Caps the joint velocities W^-1/2 v_scaled to kFirstWayOut / (1 - share), with the share of
-/// kReturnRise_s that is over, below 1.
-void capWayOut(double share, const ScaledVector& inv_sqrt_weights, ScaledVector& v_scaled) noexcept;
+/// Takes (1 - share) of what the stop added from a way out, with the share of kReturnRise_s that is
+/// over. The way out is never more than the law's, nor against it.
+void softenWayOut(double share, const ScaledVector& added, ScaledVector& way_out) noexcept;
 
 inline bool hasReturnSpeed(const TaskGains& gains) noexcept {
   return gains.max_return_speed_m_per_s < kNoLimit || gains.max_return_speed_rad_per_s < kNoLimit;
