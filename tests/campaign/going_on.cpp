@@ -5,11 +5,13 @@
 #include <algorithm>
 
 #include "campaign/play.h"
+#include "campaign/user.h"
 
 namespace tactus::campaign {
 namespace {
 
 constexpr double kMaxPeakMore = 0.25;  ///< than without a trouble, m/s or rad/s
+constexpr double kHandShare = 0.25;    ///< more than that, by a hand that leans on
 constexpr int kBefore_ms = 200;
 
 struct Peaks {
@@ -49,11 +51,41 @@ Peaks undisturbedPeaks(const Stage& stage, const Plan& plan, const std::vector<G
   return peaks;
 }
 
+/// The peak after a hold where the line stays on: all else that befell the arm before is the same.
+double peakWithoutTheHold(const Stage& stage, const Plan& plan, const GoingOn& hold,
+                          long long& cycles) {
+  Play play(stage, plan);
+  User user(plan);
+  double peak = 0.0;
+  while (play.now_ms() <= hold.end_ms) {
+    const int t_ms = play.now_ms() + 1;
+    CycleInput input = play.input();
+    if (!user.act(play.now_ms(), play.now().mode, input)) break;
+    if (t_ms >= hold.stop_ms && t_ms <= hold.return_ms) input.lines.enable = true;
+    play.step(input);
+    ++cycles;
+    if (t_ms >= hold.return_ms) peak = std::max(peak, speedOf(play.now()));
+  }
+  return peak;
+}
+
 /// What `one` may have come to, if the undisturbed run came to this.
 double allowedPeak(const GoingOn& one, const Peaks& undisturbed) {
   const bool went_apart = one.before > undisturbed.before + kMaxPeakMore;
   const double peak = went_apart ? std::max(one.before, undisturbed.after) : undisturbed.after;
-  return peak + kMaxPeakMore;
+  return peak + (one.has_hand ? std::max(kMaxPeakMore, kHandShare * peak) : kMaxPeakMore);
+}
+
+double allowedPeak(const Stage& stage, const Plan& plan, const std::vector<GoingOn>& stops,
+                   long long& cycles) {
+  const GoingOn& one = stops.back();
+  double allowed = allowedPeak(one, undisturbedPeaks(stage, plan, stops, false, cycles));
+  if (one.peak > allowed && one.has_hand)
+    allowed =
+        std::max(allowed, allowedPeak(one, undisturbedPeaks(stage, plan, stops, true, cycles)));
+  if (one.peak > allowed && one.is_hold)
+    allowed = std::max(allowed, peakWithoutTheHold(stage, plan, one, cycles) + kMaxPeakMore);
+  return allowed;
 }
 
 }  // namespace
@@ -65,10 +97,7 @@ void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& ju
     if (!judge.is_calm[i] || one.peak <= kMaxPeakMore) continue;
     const std::vector<GoingOn> stops(judge.all.begin(),
                                      judge.all.begin() + static_cast<long>(i) + 1);
-    double allowed = allowedPeak(one, undisturbedPeaks(stage, plan, stops, false, cycles));
-    if (one.has_hand)
-      allowed =
-          std::max(allowed, allowedPeak(one, undisturbedPeaks(stage, plan, stops, true, cycles)));
+    const double allowed = allowedPeak(stage, plan, stops, cycles);
     if (one.peak <= allowed) continue;
     found.push_back({"going on", "faster than undisturbed after a return to running",
                      fmt::format("{:.2f}, allowed {:.2f}", one.peak, allowed), one.return_ms});
@@ -82,10 +111,14 @@ void GoingOnJudge::look(const Look& look) {
   const bool has_ended =
       is_open && (now.mode != Mode::kRunning || now.t_ms > all.back().return_ms + kWindow_ms);
   if (has_ended) all.back().end_ms = look.before.t_ms;
-  if (now.mode != Mode::kRunning && look.before.mode == Mode::kRunning) stop_ms = now.t_ms;
+  const bool stops = now.mode != Mode::kRunning && look.before.mode == Mode::kRunning;
+  if (stops) stop_ms = now.t_ms;
+  if (now.mode != Mode::kRunning)
+    is_hold = (stops || is_hold) && now.mode == Mode::kHolding && now.fault == Fault::kNone;
   if (look.entered(Mode::kRunning) && stop_ms >= 0) {
     const double before = newest.empty() ? 0.0 : *std::ranges::max_element(newest);
-    all.push_back({.stop_ms = stop_ms, .return_ms = now.t_ms, .before = before});
+    all.push_back(
+        {.stop_ms = stop_ms, .return_ms = now.t_ms, .before = before, .is_hold = is_hold});
     is_calm.push_back(true);
     newest.clear();
   }

@@ -18,6 +18,7 @@ struct GoingOn {
   double peak = 0.0;      ///< of commands and drives, m/s or rad/s
   double before = 0.0;    ///< the same, in the last 0.2 s before the stop
   bool has_hand = false;  ///< that still leans on the arm, which gives way to it then
+  bool is_hold = false;   ///< the stop was one by the enable line alone
 };
 
 struct GoingOnJudge {
@@ -25,6 +26,7 @@ struct GoingOnJudge {
   std::vector<GoingOn> all;
   std::vector<bool> is_calm;  ///< of each
   int stop_ms = -1;
+  bool is_hold = false;       ///< so far, since then
   std::deque<double> newest;  ///< of the last 0.2 s of running, m/s or rad/s
   void look(const Look& look);
   void end(int now_ms);  ///< of the run
@@ -35,7 +37,9 @@ struct GoingOnJudge {
 /// the arm in the last stop; or, where a hand is there beyond the stop, that leans on it then, too.
 /// Two runs that went apart before the stop, as where an arm meets the band a little elsewhere,
 /// cannot be compared: there it may be as fast as just before the stop, if nothing but hands was at
-/// work then. Adds the cycles that this takes.
+/// work then, or as in the same run without this stop, if it was a hold. Where a hand leans on, the
+/// runs go apart by what it makes the arm do: a quarter of that is no wonder. Adds the cycles that
+/// all this takes.
 void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& judge,
                     std::vector<Violation>& found, long long& cycles);
 

@@ -230,12 +230,18 @@ int goingOnSeesHarm(const Stage& stage) {
   judge.end(play.now_ms());
   long long cycles = 0;
   int wrong = expect(judge.all.size() == 1, "going on: a return to running is not seen");
+  wrong += expect(judge.all.back().is_hold, "going on: a hold is not seen");
+  judge.all.back().is_hold = false;
   judge.all.back().peak += 0.26;  // and so beyond what needs no comparison
   compareGoingOn(stage, plan, judge, found, cycles);
   wrong += expect(found.size() == 1, "going on: blind to a peak");
   judge.all.back().peak -= 0.02;
   compareGoingOn(stage, plan, judge, found, cycles);
   wrong += expect(found.size() == 1, "going on: sees a peak that is none");
+  judge.all.back().is_hold = true;
+  judge.all.back().peak += 0.5;
+  compareGoingOn(stage, plan, judge, found, cycles);
+  wrong += expect(found.size() == 2, "going on: blind to a peak after a hold");
   return wrong;
 }
 
