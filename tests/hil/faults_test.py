@@ -22,7 +22,7 @@ from machine import Build
 
 DRIVES = 9
 HEARTBEAT_LOST, SYNC_LOST = 0x8130, 0x8700
-POWER_RETURNS_US = 5_000_000
+POWER_RETURNS_US = 1_000_000
 
 
 @dataclass(frozen=True)

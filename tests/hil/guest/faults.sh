@@ -173,7 +173,7 @@ by_plant bus_off 'fault:' 0.2 "kind: bus_off, interface: can2, $from, until_s: 0
 by_plant drive_fault 'fault:' 0.2 "kind: drive_fault, interface: can0, id: 2, $from, until_s: 0.7"
 by_plant drive_silent 'fault:' 0.2 "kind: drop, interface: can0, id: 0x181, $from, until_s: 0.7"
 by_plant tactile_stale 'holding:' 0.2 "kind: drop, interface: can3, id: 0x100, $from, until_s: 0.7"
-by_plant power_cut 'fault:' 5.2 "kind: power_cut, interface: can1, $from, until_s: 5.6"
+by_plant power_cut 'fault:' 1.2 "kind: power_cut, interface: can1, $from, until_s: 1.6"
 
 # Drives that do not obey, or lie about their state.
 by_plant boot_up 'fault:' 0.2 "kind: boot_up, interface: can0, id: 2, $from, until_s: 0.7"
