@@ -68,7 +68,9 @@ struct Gains {
 };
 
 static_assert(std::is_trivially_copyable_v<Gains> && std::is_standard_layout_v<Gains>);
-static_assert(sizeof(Gains) == 8 * (4 + 3 + 9 + 5 + 4), "no padding: gains are compared as bytes");
+static_assert(
+    sizeof(Gains) == 8 * (4 + 3 + 9 + 5 + 4),
+    "no padding, for gains are compared as bytes; a new one gets a row in scene_keys.cpp");
 
 /// Of any of the above, to the bit.
 template <typename T>
