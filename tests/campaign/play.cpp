@@ -8,6 +8,7 @@ namespace tactus::campaign {
 namespace {
 
 constexpr int kLateFrame_ms = 50;    ///< after a trouble of frames
+constexpr int kLastSample_ms = 10;   ///< until a sample knows that a hand has gone
 constexpr int kStaleSample_ms = 32;  ///< until the module is seen to say nothing
 constexpr int kSilent_ms = 10;       ///< and a drive
 
@@ -186,12 +187,12 @@ void Play::observeInjections() {
   for (const Injection& x : injections_) {
     const bool is_bus = x.kind->where == InjectionKind::Where::kBus;
     now_.is_late_frame |= is_bus && t_ms >= x.from_ms && t_ms < x.until_ms + kLateFrame_ms;
+    const bool is_hand = x.kind->receive == hand().receive;
+    now_.has_hand |= is_hand && t_ms >= x.from_ms && t_ms < x.until_ms + kLastSample_ms;
     if (!x.isAtWork(t_ms)) continue;
     const bool is_in_place =
         x.kind == &push() && std::abs(x.offset) <= stage_.promise.start_tolerance;
     now_.is_free = now_.is_free && x.kind == &push() && x.offset == 0.0;
-    const bool is_hand = x.kind->receive == hand().receive;
-    now_.has_hand = now_.has_hand || is_hand;
     now_.is_calm = now_.is_calm && (is_hand || is_in_place);
     // What else is at work may hide it, until no news at all comes.
     const bool is_tactile = x.kind->where == InjectionKind::Where::kTactile;
