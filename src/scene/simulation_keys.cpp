@@ -36,6 +36,11 @@ Table<ObstacleConfig> obstacleKeys() {
       number("appears_s", "s", within(0, kMaxTime_s), "absent before", &Config::appears_s),
       optional(number("vanishes_s", "s", above(0, kMaxTime_s), "absent from then on",
                       &Config::vanishes_s)),
+      number("friction_coefficient", "", within(0, 10), "mu of the cover on it; 0: slides freely",
+             &Config::friction_coefficient),
+      optional(number("shear_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                      "along the cover while it sticks; absent: stiffness_N_per_m",
+                      &Config::shear_stiffness_N_per_m)),
       optional(section("swing", "motion to and fro around the place, along a sine", &Config::swing,
                        swingKeys())),
   };

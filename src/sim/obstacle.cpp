@@ -39,9 +39,23 @@ double ContactSpring::force_N(double penetration_m) const noexcept {
   return piece->start_N + piece->stiffness_N_per_m * (penetration_m - piece->start_m);
 }
 
+Obstacle::Obstacle(const ObstacleConfig& config, double robot_stiffness_N_per_m)
+    : config_(config), spring_(config, robot_stiffness_N_per_m) {
+  if (config.friction_coefficient == 0.0) return;
+  const double shear = config.shear_stiffness_N_per_m.value_or(config.stiffness_N_per_m);
+  friction_.emplace(config.friction_coefficient, inSeries(shear, robot_stiffness_N_per_m));
+}
+
+void Obstacle::moveTo(double t_s) noexcept {
+  if (config_.swing.frequency_hz <= 0.0) return;
+  swing_share_before_ = swing_share_;
+  swing_share_ = swingShare(config_.swing, t_s - config_.appears_s);
+}
+
 ObstacleContact Obstacle::touch(const CoverAxis& axis, double t_s) noexcept {
   ObstacleContact contact;
   if (t_s < config_.appears_s || t_s >= config_.vanishes_s) return contact;
+  moveTo(t_s);
   const double horizontal = std::hypot(axis.direction.x(), axis.direction.y());
   if (horizontal < 1e-9) return contact;  // a vertical link has no horizontal side to push on
   const double h_x = axis.direction.x() / horizontal;
@@ -49,9 +63,8 @@ ObstacleContact Obstacle::touch(const CoverAxis& axis, double t_s) noexcept {
   double r_x = config_.x_m - axis.p_BaseStart.x();
   double r_y = config_.y_m - axis.p_BaseStart.y();
   if (config_.swing.frequency_hz > 0.0) {
-    const double share = swingShare(config_.swing, t_s - config_.appears_s);
-    r_x += share * config_.swing.x_m;
-    r_y += share * config_.swing.y_m;
+    r_x += swing_share_ * config_.swing.x_m;
+    r_y += swing_share_ * config_.swing.y_m;
   }
   const double left_m = h_x * r_y - h_y * r_x;  // distance to the left of the axis
   contact.position_m = (h_x * r_x + h_y * r_y) / horizontal;
@@ -63,6 +76,27 @@ ObstacleContact Obstacle::touch(const CoverAxis& axis, double t_s) noexcept {
   contact.force_N = spring_.force_N(axis.radius_m - side_ * left_m);
   contact.force_Base = contact.force_N * side_ * Vector3(h_y, -h_x, 0.0);
   return contact;
+}
+
+ObstacleFriction Obstacle::rub(const ModuleStep& step, const CoverAxis& axis,
+                               const ObstacleContact& contact) noexcept {
+  ObstacleFriction friction;
+  if (contact.force_N <= 0.0) {
+    friction_->release();
+    return friction;
+  }
+  const Vector3 normal = contact.force_Base / contact.force_N;
+  const Vector3 p_BaseSurface =
+      axis.p_BaseStart + contact.position_m * axis.direction - axis.radius_m * normal;
+  const Pose& X = step.X_BaseModule;
+  friction.p_ModuleSurface = X.R_AB.transpose() * (p_BaseSurface - X.p_AB);
+  const Pose& X_before = step.X_BaseModuleBefore;
+  const Vector3 p_BaseBefore = X_before.p_AB + X_before.R_AB * friction.p_ModuleSurface;
+  const double line_way = swing_share_ - swing_share_before_;
+  const Vector3 line_way_m(line_way * config_.swing.x_m, line_way * config_.swing.y_m, 0.0);
+  friction.force_Base =
+      friction_->update(p_BaseSurface - p_BaseBefore - line_way_m, normal, contact.force_N);
+  return friction;
 }
 
 }  // namespace tactus

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "tactus/math/filter.h"
 
@@ -28,6 +29,12 @@ double shortestStep_s(const ControllerConfig& robot, const PlantConfig& plant, d
   return step_s;
 }
 
+/// Of a force at a point, both in the module's frame, about its origin.
+Wrench4 wrenchAt(const Vector3& p, const Vector3& F) {
+  const Vector3 M = p.cross(F);
+  return {F.y(), F.z(), M.y(), M.z()};
+}
+
 }  // namespace
 
 SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig& plant,
@@ -39,16 +46,20 @@ SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig&
       drive_share_(lagShare(step_s_, plant.drive_lag_s)),
       q_commanded_(robot.q_start),
       q_(robot.q_start) {
+  chain_.computePose(q_, pose_);
   for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i) {
     const TactileModuleConfig& config = robot.tactile_modules[i];
     const SimulatedModuleConfig& module = plant.modules[i];
-    modules_.push_back(
-        {config.link, config.length_m, module.cover_radius_m, SimulatedModule(module), {}});
+    modules_.push_back({config.link,
+                        config.length_m,
+                        module.cover_radius_m,
+                        SimulatedModule(module),
+                        {},
+                        framePose(pose_, config.link)});
     modules_.back().steps_a_filter_step = wholeRatio(1.0 / module.filter_rate_hz, step_s_);
     for (const ObstacleConfig& obstacle : plant.obstacles)
       modules_.back().obstacles.emplace_back(obstacle, plant.robot_stiffness_N_per_m);
   }
-  chain_.computePose(q_, pose_);
 }
 
 void SimulatedRobot::read(RobotInput& input) noexcept {
@@ -75,6 +86,7 @@ void SimulatedRobot::moveArm(const JointVector& velocity_setpoint) noexcept {
 
 Wrench4 SimulatedRobot::contactWrench(Module& module) const noexcept {
   const Pose X_BaseModule = framePose(pose_, module.link);
+  const ModuleStep step{X_BaseModule, std::exchange(module.X_BaseModule, X_BaseModule)};
   const CoverAxis axis{X_BaseModule.p_AB, X_BaseModule.R_AB.col(0), module.length_m,
                        module.cover_radius_m};
   Vector3 force_Base = Vector3::Zero();
@@ -82,6 +94,12 @@ Wrench4 SimulatedRobot::contactWrench(Module& module) const noexcept {
   const double t_s = static_cast<double>(step_) * step_s_;
   for (Obstacle& obstacle : module.obstacles) {
     const ObstacleContact contact = obstacle.touch(axis, t_s);
+    if (obstacle.hasFriction()) {
+      const ObstacleFriction friction = obstacle.rub(step, axis, contact);
+      force_Base += friction.force_Base;
+      wrench +=
+          wrenchAt(friction.p_ModuleSurface, X_BaseModule.R_AB.transpose() * friction.force_Base);
+    }
     if (contact.force_N == 0.0) continue;
     const Vector3 F = X_BaseModule.R_AB.transpose() * contact.force_Base;
     force_Base += contact.force_Base;

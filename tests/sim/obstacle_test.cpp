@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "support/crops9.h"
 #include "support/random.h"
 
@@ -149,6 +151,62 @@ TEST(Obstacle, TakesItsSideAnewWhenItComesBackOverTheEnd) {
   EXPECT_EQ(obstacle.touch(axis(0.0, 0.4), 0.0).force_N, 0.0);
   EXPECT_EQ(obstacle.touch(axis(0.3, 0.4), 0.0).force_N, 0.0) << "still beyond, now on the right";
   EXPECT_EQ(obstacle.touch(axis(0.3, 0.6), 0.0).force_N, 0.0) << "beside the cover, 0.2 m away";
+}
+
+/// A cover along x that is pressed against a line at its left, and has moved from another pose.
+struct Rubbed {
+  explicit Rubbed(const ObstacleConfig& config) : obstacle(config, kNoLimit) {}
+
+  ObstacleFriction operator()(const Pose& X_before, const Pose& X, double t_s = 0.0) {
+    const CoverAxis axis{X.p_AB, X.R_AB.col(0), 0.4, 0.06};
+    return obstacle.rub({X, X_before}, axis, obstacle.touch(axis, t_s));
+  }
+
+  Obstacle obstacle;
+};
+
+ObstacleConfig roughLine() {
+  ObstacleConfig config = lineAt(0.2, 0.05);  // 10 N
+  config.friction_coefficient = 0.3;
+  config.shear_stiffness_N_per_m = 5000.0;
+  return config;
+}
+
+Pose at(double x_m, double y_m, double z_m, double roll_rad = 0.0) {
+  Pose X;
+  X.p_AB = Vector3(x_m, y_m, z_m);
+  X.R_AB = Eigen::AngleAxisd(roll_rad, Vector3::UnitX()).toRotationMatrix();
+  return X;
+}
+
+TEST(Obstacle, RubsAgainstTheMotionOfTheMaterialWhereTheyTouch) {
+  const auto friction = [](const Pose& X) { return Rubbed(roughLine())(at(0, 0, 0), X); };
+  const ObstacleFriction along = friction(at(1e-4, 0, 0));
+  EXPECT_LT((along.force_Base - Vector3(-0.5, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((along.p_ModuleSurface - Vector3(0.2 - 1e-4, 0.06, 0)).norm(), 1e-12);
+  EXPECT_LT((friction(at(0, 0, -2e-4)).force_Base - Vector3(0, 0, 1.0)).norm(), 1e-9);
+  EXPECT_LT(friction(at(0, 1e-3, 0)).force_Base.norm(), 1e-9) << "into it";
+  // Rolling about its own axis moves the material, though neither axis nor place of contact.
+  const Vector3 rolled = friction(at(0, 0, 0, 1e-3)).force_Base;
+  EXPECT_LT((rolled - Vector3(0, 0, -5000.0 * 0.06e-3)).norm(), 1e-6);
+  EXPECT_NEAR(friction(at(0.1, 0, 0.1)).force_Base.norm(), 0.3 * 10.0, 1e-9) << "it slips";
+  EXPECT_FALSE(Obstacle(lineAt(0.2, 0.05), kNoLimit).hasFriction());
+}
+
+TEST(Obstacle, DoesNotRubOnAnArmThatMovesWithIt) {
+  ObstacleConfig config = roughLine();
+  config.swing = {0.03, 0.0, 0.25};
+  Rubbed rubbed(config);
+  rubbed(at(0, 0, 0), at(0, 0, 0), 0.0);
+  const double way_m = 0.03 * std::sin(2.0 * std::numbers::pi * 0.25 * 0.1);
+  EXPECT_LT(rubbed(at(0, 0, 0), at(way_m, 0, 0), 0.1).force_Base.norm(), 1e-9);
+}
+
+TEST(Obstacle, ForgetsHowItRubbedWhereItLetsGo) {
+  Rubbed rubbed(roughLine());
+  EXPECT_GT(rubbed(at(0, 0, 0), at(1e-4, 0, 0)).force_Base.norm(), 0.1);
+  EXPECT_EQ(rubbed(at(1e-4, 0, 0), at(0, -0.1, 0)).force_Base.norm(), 0.0);
+  EXPECT_EQ(rubbed(at(0, 0, 0), at(0, 0, 0)).force_Base.norm(), 0.0);
 }
 
 }  // namespace

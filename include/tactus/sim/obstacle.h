@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "tactus/sim/bristle_friction.h"
 #include "tactus/sim/plant_config.h"
 
 namespace tactus {
@@ -32,6 +34,11 @@ struct CoverAxis {
   double radius_m;
 };
 
+/// Where a module is, and where it was a step ago: its material slides along the obstacles.
+struct ModuleStep {
+  Pose X_BaseModule, X_BaseModuleBefore;
+};
+
 /// What one obstacle does to the cover.
 struct ObstacleContact {
   double force_N = 0.0;
@@ -39,19 +46,33 @@ struct ObstacleContact {
   Vector3 force_Base = Vector3::Zero();  ///< on the robot, horizontal, N
 };
 
+/// What its friction adds, where they touch.
+struct ObstacleFriction {
+  Vector3 force_Base = Vector3::Zero();       ///< on the robot, N
+  Vector3 p_ModuleSurface = Vector3::Zero();  ///< where it acts, module frame, m
+};
+
 /// A vertical line with a spring, in its place or swinging around it. The side on which it meets
 /// the cover is fixed when it comes beside it, and until it leaves over an end, so an arm pushed
 /// through more than its radius is still pushed back.
 class Obstacle {
  public:
-  Obstacle(const ObstacleConfig& config, double robot_stiffness_N_per_m)
-      : config_(config), spring_(config, robot_stiffness_N_per_m) {}
+  Obstacle(const ObstacleConfig& config, double robot_stiffness_N_per_m);
 
   ObstacleContact touch(const CoverAxis& axis, double t_s) noexcept;
 
+  bool hasFriction() const noexcept { return friction_.has_value(); }
+  /// After each touch(), with what that returned, if there is friction.
+  ObstacleFriction rub(const ModuleStep& step, const CoverAxis& axis,
+                       const ObstacleContact& contact) noexcept;
+
  private:
+  void moveTo(double t_s) noexcept;
+
   ObstacleConfig config_;
   ContactSpring spring_;
+  std::optional<BristleFriction> friction_;
+  double swing_share_ = 0.0, swing_share_before_ = 0.0;  ///< of its way, now and a step ago
   double side_ = 0.0;  ///< +-1 left or right of the axis; 0 while not beside the cover
 };
 

@@ -24,8 +24,8 @@ struct Swing {
 };
 
 /// A vertical line at (x, y) in the base frame that pushes on the covers of the tactile modules,
-/// horizontally and without friction, wherever it crosses one: a latex band, or a profile behind
-/// foam.
+/// horizontally, wherever it crosses one: a latex band, or a profile behind foam. With friction it
+/// pulls along the cover, too.
 struct ObstacleConfig {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -34,6 +34,9 @@ struct ObstacleConfig {
   double appears_s = 0.0;
   double vanishes_s = kNoLimit;
   Swing swing{};
+  double friction_coefficient = 0.0;  ///< mu of the cover on it
+  /// Of the bristle that sticks, in series with the robot; as the solid part if not given.
+  std::optional<double> shear_stiffness_N_per_m{};
 };
 
 /// A simulated tactile module: its cover and its electronics.

@@ -39,6 +39,7 @@ class SimulatedRobot final : public Robot {
     double length_m, cover_radius_m;
     SimulatedModule electronics;
     std::vector<Obstacle> obstacles;  ///< as they meet this cover
+    Pose X_BaseModule;                ///< in the last step
     int steps_a_filter_step = 1;
     double true_force_N = 0.0;
   };
