@@ -116,7 +116,8 @@ class LogReplay {
         set_gains_(setGains(options.settings)),
         gains_(scene_.controller.gains),
         used_(gains_) {
-    refuseUnknown(options.logs, LogContinuity(scene_.period_s, first.has(kMissedCycles)));
+    refuseUnknown(options.logs, LogContinuity(scene_.period_s, first.has(kMissedCycles),
+                                              scene_.controller.has_joint_limit_avoidance));
     if (!options.output.empty()) csv_.emplace(options.output, shape_);
   }
 

@@ -66,9 +66,10 @@ ControllerState Controller::initialState(const JointVector& q) const {
 }
 
 void Controller::restart(ControllerState& state) const noexcept {
-  if (joint_limit_avoidance_) {
-    state.way_out_before = -joint_limit_avoidance_->evaluate(state.zones, state.q_desired).gradient;
-    softenWayOut(state.return_share, state.way_out_added, state.way_out_before);
+  if (joint_limit_avoidance_ && state.return_share > 0.0) {  // else it has not moved since
+    ScaledVector way_out = -joint_limit_avoidance_->evaluate(state.zones, state.q_desired).gradient;
+    softenWayOut(state.return_share, state.way_out_before, state.way_out_added, way_out);
+    state.way_out_before = way_out;
   }
   state.return_share = 0.0;
   if (contact_controller_) state.contact = contact_controller_->initialState();
@@ -242,7 +243,7 @@ void Controller::avoidJointLimits(const JointLimitAvoidanceGains& gains,
   motion.limit_nearness = cost.nearness;
   motion.v_scaled = -cost.gradient;
   if (state.return_share < 1.0)
-    softenWayOut(state.return_share, state.way_out_added, motion.v_scaled);
+    softenWayOut(state.return_share, state.way_out_before, state.way_out_added, motion.v_scaled);
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 

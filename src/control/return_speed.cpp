@@ -35,9 +35,12 @@ void limitReturnSpeed(const TaskGains& gains, const TaskConfig& task, const Task
     limitPart(task, false, gains.max_return_speed_rad_per_s, push, correction);
 }
 
-void softenWayOut(double share, const ScaledVector& added, ScaledVector& way_out) noexcept {
+void softenWayOut(double share, const ScaledVector& before, const ScaledVector& added,
+                  ScaledVector& way_out) noexcept {
+  const double answer_share = std::min(1.0, share * (kReturnRise_s / kAnswerRise_s));
   for (int i = 0; i < kMaxJoints; ++i) {
-    const double softened = way_out[i] - (1.0 - share) * added[i];
+    const double softened =
+        way_out[i] - (1.0 - share) * added[i] - (1.0 - answer_share) * before[i];
     way_out[i] = std::clamp(softened, std::min(0.0, way_out[i]), std::max(0.0, way_out[i]));
   }
 }

@@ -34,7 +34,11 @@ bool LogContinuity::add(const CycleRecord& recorded) {
   // The mode before a gap is unknown, too: the same, which resets nothing.
   // A reference that has waited goes on where it was, which no reset tells to the bit.
   const bool has_waited = recorded.path_time_s != recorded.task_time_s;
-  if (resetsController(mode, is_gap ? mode : mode_before_) && !has_waited) is_known_ = true;
+  const bool is_reset = resetsController(mode, is_gap ? mode : mode_before_);
+  if (is_gap) running_cycles_ = 0.0;
+  if (is_reset && running_cycles_ >= settled_cycles_ && !has_waited) is_known_ = true;
+  if (is_reset) running_cycles_ = 0.0;
+  if (mode == Mode::kRunning) running_cycles_ += 1.0 + missed_;
   if (!is_known_) stretches_.back().to_s = recorded.t_s;
   is_first_ = is_part_missing_ = false;
   cycle_before_ = cycle;

@@ -41,7 +41,7 @@ Replayer::Replayer(const Controller& controller, int joints, double period_s, bo
     : controller_(controller),
       joints_(joints),
       period_s_(period_s),
-      continuity_(period_s, has_missed),
+      continuity_(period_s, has_missed, controller.config().has_joint_limit_avoidance),
       state_(controller.initialState()) {}
 
 CycleRecord Replayer::replay(const CycleRecord& recorded) {
@@ -56,9 +56,20 @@ CycleRecord Replayer::replay(const CycleRecord& recorded) {
   applyMode(controller_, mode, mode_before_, input, state_);
   controller_.update(input, recorded.gains, recorded.task_time_s, period_s_, state_, output_);
   mode_before_ = mode;
+  if (!is_known_) follow(recorded);
   fillRecord(recorded.t_s, input, recorded.gains, output_,
              Eigen::Map<const Vector3>(recorded.tool_error_m), replayed);
   return replayed;
+}
+
+/// Where the arm was commanded to be next, whatever the controller makes of a state that is
+/// unknown: a reset may keep something of that.
+void Replayer::follow(const CycleRecord& recorded) noexcept {
+  const JointLimits& limits = controller_.config().limits;
+  for (int i = 0; i < joints_; ++i) {
+    const double q = recorded.q[i] + period_s_ * recorded.dq[i];
+    state_.q_desired[i] = std::clamp(q, limits.lower[i], limits.upper[i]);
+  }
 }
 
 double ReplayDifference::size() const noexcept { return std::abs(recorded - replayed); }

@@ -34,10 +34,10 @@ class CommandReplay : public ::testing::Test {
     return records;
   }
 
-  void writeLogOf(const std::vector<Override>& overrides) {
+  void writeLogOf(const std::vector<Override>& overrides, int cycles = 400) {
     const Scene scene = test::shippedScene("scenario1_null_space", overrides);
     description_ = describeLog(scene);
-    records_ = record(scene, 400);
+    records_ = record(scene, cycles);
     rewriteLog();
   }
 
@@ -218,23 +218,23 @@ TEST_F(CommandReplayOfParts, AreOneRun) {
 }
 
 TEST_F(CommandReplayOfParts, ALaterOneAloneIsReplayedFromTheFirstReset) {
-  writeLogOf({});
-  resetIn(300);
-  writePart(third_, "a", 2, 200, 400);
+  writeLogOf({}, 2400);
+  resetIn(2300);
+  writePart(third_, "a", 2, 200, 2400);
   EXPECT_EQ(replay({third_.path(), "-o", csv_.path()}), kExitDone);
   EXPECT_EQ(output_,
-            "not replayed from 0.2 s to 0.299 s: the part before is missing\n"
-            "100 of 200 cycles compared\n"
+            "not replayed from 0.2 s to 2.299 s: the part before is missing\n"
+            "100 of 2200 cycles compared\n"
             "100 cycles, every output equal to the bit\n");
   const std::string csv = csv_.content();
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 101);
   records_[250].dq[4] += 1.0;
-  records_[350].dq[4] += 1.0;
-  writePart(third_, "a", 2, 200, 400);
+  records_[2350].dq[4] += 1.0;
+  writePart(third_, "a", 2, 200, 2400);
   EXPECT_EQ(replay({third_.path(), "--json"}), kExitFault);
   for (const char* expected :
-       {"\"cycles\": 200", "\"compared_cycles\": 100", "\"from_s\": 0.2", "\"to_s\": 0.299",
-        "\"reason\": \"the part before is missing\"", "\"differing_cycles\": 1", "\"cycle\": 150"})
+       {"\"cycles\": 2200", "\"compared_cycles\": 100", "\"from_s\": 0.2", "\"to_s\": 2.299",
+        "\"reason\": \"the part before is missing\"", "\"differing_cycles\": 1", "\"cycle\": 2150"})
     EXPECT_NE(output_.find(expected), std::string::npos) << expected << " in\n" << output_;
 }
 
@@ -254,14 +254,14 @@ TEST_F(CommandReplayOfParts, NothingComparedIsRefusedAndWritesNothing) {
 }
 
 TEST_F(CommandReplayOfParts, DroppedRecordsAreSaidAndNoDifference) {
-  writeLogOf({});
-  resetIn(300);
+  writeLogOf({}, 2400);
+  resetIn(2300);
   records_.erase(records_.begin() + 50, records_.begin() + 60);
   rewriteLog();
   EXPECT_EQ(run({}), kExitDone) << output_;
   EXPECT_EQ(output_,
-            "not replayed from 0.05 s to 0.299 s: records are missing\n"
-            "150 of 390 cycles compared\n"
+            "not replayed from 0.05 s to 2.299 s: records are missing\n"
+            "150 of 2390 cycles compared\n"
             "150 cycles, every output equal to the bit\n");
 }
 

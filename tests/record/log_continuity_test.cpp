@@ -24,7 +24,7 @@ class LogContinuityTest : public ::testing::Test {
     EXPECT_EQ(stretch.reason, reason);
   }
 
-  LogContinuity continuity_{0.001, true};
+  LogContinuity continuity_{0.001, true, false};
 };
 
 TEST_F(LogContinuityTest, MissedCyclesLoseNothing) {
@@ -108,8 +108,23 @@ TEST_F(LogContinuityTest, PartsInARowAreOneRun) {
   expectStretch(0, 0.002, 0.004, "the part before is missing");
 }
 
+TEST_F(LogContinuityTest, AWayOutOfALimitsZoneIsKnownAfterTwoSecondsOfRunning) {
+  continuity_ = LogContinuity(0.001, true, true);
+  EXPECT_TRUE(add(0));
+  int cycle = 10;
+  const auto run = [&](int cycles) {
+    for (int i = 0; i < cycles; ++i) ASSERT_FALSE(add(cycle++));
+  };
+  run(1900);
+  EXPECT_FALSE(add(cycle++, Mode::kFault));
+  run(1000);
+  EXPECT_FALSE(add(cycle++, Mode::kHolding)) << "no reset, nor running";
+  run(1001);
+  EXPECT_TRUE(add(cycle++, Mode::kFault));
+}
+
 TEST_F(LogContinuityTest, WithoutTheNumberEachGapIsTakenForMissedCycles) {
-  continuity_ = LogContinuity(0.001, false);
+  continuity_ = LogContinuity(0.001, false, false);
   EXPECT_TRUE(add(0));
   EXPECT_TRUE(add(5));
   EXPECT_EQ(continuity_.missedCycles(), 4);

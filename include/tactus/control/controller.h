@@ -69,6 +69,7 @@ class Controller {
  public:
   explicit Controller(const ControllerConfig& config);
 
+  const ControllerConfig& config() const noexcept { return config_; }
   /// The config's, for whoever does not tune.
   const Gains& initialGains() const noexcept { return config_.gains; }
 

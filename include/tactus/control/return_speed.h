@@ -7,13 +7,16 @@ namespace tactus {
 /// An arm that its drives had let go may stand beside its path where it goes on, or nearer to a
 /// joint limit, and beta e or the way out of the limit's zone at once would be a jump. So beta and
 /// joint space's pull grow linearly within this time: with beta = 5/s an error e makes at most
-/// 1.0 e /s, and not 5. Of the way out only what the stop added grows from zero: the rest may hold
-/// a contact's push off, and so must whatever the arm meets deeper in the zone.
+/// 1.0 e /s, and not 5. Of the way out what the stop added grows likewise. What there was before
+/// has held a contact's push off, and comes as fast as the law's answer does anew.
 inline constexpr double kReturnRise_s = 2.0;
+inline constexpr double kAnswerRise_s = 0.3;
 
-/// Takes (1 - share) of what the stop added from a way out, with the share of kReturnRise_s that is
-/// over. The way out is never more than the law's, nor against it.
-void softenWayOut(double share, const ScaledVector& added, ScaledVector& way_out) noexcept;
+/// Takes from a way out what is not to be there yet of the one before the stop and of what the stop
+/// added, with the share of kReturnRise_s that is over. It is never more than the law's, nor
+/// against it, and whatever the arm meets deeper in the zone counts at once.
+void softenWayOut(double share, const ScaledVector& before, const ScaledVector& added,
+                  ScaledVector& way_out) noexcept;
 
 inline bool hasReturnSpeed(const TaskGains& gains) noexcept {
   return gains.max_return_speed_m_per_s < kNoLimit || gains.max_return_speed_rad_per_s < kNoLimit;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "tactus/control/return_speed.h"
 #include "tactus/supervisor/cycle_record.h"
 #include "tactus/supervisor/mode.h"
 
@@ -15,12 +16,17 @@ struct UnknownStretch {
 };
 
 /// Follows, cycle by cycle, whether the controller's state follows from what was logged before:
-/// from the run's start on, but behind missing records only once a mode has reset it.
+/// from the run's start on, but behind missing records only once a mode has reset it. What a reset
+/// keeps of joint limits' ways out follows from where the arm was once it has run for
+/// kReturnRise_s.
 class LogContinuity {
  public:
   /// has_missed: the log says how many cycles the loop missed. One of an older version does not:
-  /// there each gap is taken for missed cycles.
-  LogContinuity(double period_s, bool has_missed) : period_s_(period_s), has_missed_(has_missed) {}
+  /// there each gap is taken for missed cycles. avoids_limits: the controller avoids joint limits.
+  LogContinuity(double period_s, bool has_missed, bool avoids_limits)
+      : period_s_(period_s),
+        has_missed_(has_missed),
+        settled_cycles_(avoids_limits ? kReturnRise_s / period_s + 1.0 : 0.0) {}
 
   /// What comes is part `part` of the run, counted from 0. Without a call it is part 0.
   void beginPart(int part) noexcept;
@@ -37,11 +43,13 @@ class LogContinuity {
 
   double period_s_;
   bool has_missed_;
+  double settled_cycles_;  ///< of running, in which a reset keeps nothing from before them
   int next_part_ = 0;
   bool is_part_missing_ = false;  ///< just before the next cycle
   bool is_first_ = true;
   bool is_known_ = true;
   double cycle_before_ = -1.0;
+  double running_cycles_ = 0.0;  ///< since the last reset or gap
   Mode mode_before_ = Mode::kBoot;
   int missed_ = 0;
   std::vector<UnknownStretch> stretches_;

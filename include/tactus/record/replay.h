@@ -28,6 +28,8 @@ class Replayer {
   const std::vector<UnknownStretch>& unknown() const noexcept { return continuity_.stretches(); }
 
  private:
+  void follow(const CycleRecord& recorded) noexcept;
+
   const Controller& controller_;
   int joints_;
   double period_s_;
