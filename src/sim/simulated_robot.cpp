@@ -47,6 +47,12 @@ SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig&
       q_commanded_(robot.q_start),
       q_(robot.q_start) {
   chain_.computePose(q_, pose_);
+  if (plant.dynamics) {
+    dynamics_.emplace(chain_, *plant.dynamics, q_);
+    torque_ = JointVector::Zero(q_.size());
+    parts_a_step_ =
+        std::max(1, static_cast<int>(std::ceil(step_s_ / plant.dynamics->step_s - 1e-6)));
+  }
   for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i) {
     const TactileModuleConfig& config = robot.tactile_modules[i];
     const SimulatedModuleConfig& module = plant.modules[i];
@@ -63,50 +69,68 @@ SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig&
 }
 
 void SimulatedRobot::read(RobotInput& input) noexcept {
-  input.q_measured = q_;
+  input.q_measured = dynamics_ ? dynamics_->qMotor() : q_;
   for (int i = 0; i < modules(); ++i) input.tactile[i] = modules_[i].electronics.sample();
 }
 
 void SimulatedRobot::write(const JointVector& velocity_setpoint) noexcept {
   for (int i = 0; i < steps_a_cycle_; ++i, ++step_) {
-    moveArm(velocity_setpoint);
-    for (Module& module : modules_) {
-      const Wrench4 wrench = contactWrench(module);
-      if (step_ % module.steps_a_filter_step == 0) module.electronics.update(wrench);
+    for (int part = 0; part < parts_a_step_; ++part) {
+      moveArm(step_s_ / parts_a_step_, velocity_setpoint);
+      const double steps = static_cast<double>(step_) + static_cast<double>(part) / parts_a_step_;
+      for (Module& module : modules_) touch(steps * step_s_, module);
     }
+    for (Module& module : modules_)
+      if (step_ % module.steps_a_filter_step == 0) module.electronics.update(module.wrench);
   }
 }
 
-void SimulatedRobot::moveArm(const JointVector& velocity_setpoint) noexcept {
-  q_commanded_ += step_s_ * velocity_setpoint;
+void SimulatedRobot::moveArm(double duration_s, const JointVector& velocity_setpoint) noexcept {
+  q_commanded_ += duration_s * velocity_setpoint;
   q_commanded_ = q_commanded_.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
-  q_ += drive_share_ * (q_commanded_ - q_);
+  if (dynamics_) {
+    dynamics_->step(duration_s, q_commanded_, velocity_setpoint, torque_, pose_);
+    q_ = dynamics_->q();
+    torque_.setZero();
+  } else {
+    q_ += drive_share_ * (q_commanded_ - q_);
+  }
   chain_.computePose(q_, pose_);
 }
 
-Wrench4 SimulatedRobot::contactWrench(Module& module) const noexcept {
+void SimulatedRobot::touch(double t_s, Module& module) noexcept {
   const Pose X_BaseModule = framePose(pose_, module.link);
   const ModuleStep step{X_BaseModule, std::exchange(module.X_BaseModule, X_BaseModule)};
   const CoverAxis axis{X_BaseModule.p_AB, X_BaseModule.R_AB.col(0), module.length_m,
                        module.cover_radius_m};
   Vector3 force_Base = Vector3::Zero();
-  Wrench4 wrench = Wrench4::Zero();
-  const double t_s = static_cast<double>(step_) * step_s_;
+  module.wrench.setZero();
   for (Obstacle& obstacle : module.obstacles) {
     const ObstacleContact contact = obstacle.touch(axis, t_s);
     if (obstacle.hasFriction()) {
       const ObstacleFriction friction = obstacle.rub(step, axis, contact);
       force_Base += friction.force_Base;
-      wrench +=
+      module.wrench +=
           wrenchAt(friction.p_ModuleSurface, X_BaseModule.R_AB.transpose() * friction.force_Base);
+      push(module, X_BaseModule.p_AB + X_BaseModule.R_AB * friction.p_ModuleSurface,
+           friction.force_Base);
     }
     if (contact.force_N == 0.0) continue;
     const Vector3 F = X_BaseModule.R_AB.transpose() * contact.force_Base;
     force_Base += contact.force_Base;
-    wrench += Wrench4(F.y(), F.z(), -contact.position_m * F.z(), contact.position_m * F.y());
+    module.wrench += Wrench4(F.y(), F.z(), -contact.position_m * F.z(), contact.position_m * F.y());
+    push(module, axis.p_BaseStart + contact.position_m * axis.direction, contact.force_Base);
   }
   module.true_force_N = force_Base.norm();
-  return wrench;
+}
+
+/// An arm with mass gives way to what pushes.
+void SimulatedRobot::push(const Module& module, const Vector3& p_Base,
+                          const Vector3& force_Base) noexcept {
+  if (!dynamics_) return;
+  ScaledVector torque;
+  applyPointJacobianTranspose(chain_, pose_, module.link.joint, p_Base, force_Base, torque);
+  torque_ += torque.head(chain_.size());
 }
 
 }  // namespace tactus

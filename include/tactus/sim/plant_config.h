@@ -6,6 +6,7 @@
 
 #include "tactus/control/controller_config.h"
 #include "tactus/control/tactile_channels.h"
+#include "tactus/sim/arm_dynamics.h"
 
 namespace tactus {
 
@@ -54,6 +55,7 @@ struct SimulatedModuleConfig {
 
 struct PlantConfig {
   double drive_lag_s = 0.005;                  ///< first-order lag of position; 0: ideal drives
+  std::optional<ArmDynamicsConfig> dynamics;   ///< in place of that lag, if given
   double robot_stiffness_N_per_m = kNoLimit;   ///< of the arm, in series with every obstacle
   std::vector<SimulatedModuleConfig> modules;  ///< in the order of those that the controller reads
   std::vector<ObstacleConfig> obstacles;

@@ -1,17 +1,19 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "tactus/control/controller_config.h"
 #include "tactus/control/robot.h"
+#include "tactus/sim/arm_dynamics.h"
 #include "tactus/sim/obstacle.h"
 #include "tactus/sim/simulated_module.h"
 
 namespace tactus {
 
 /// The robot interface over a simulated arm among obstacles. write() moves the world on by one
-/// period: drives integrate the setpoint and follow with their lag, obstacles push on the covers,
-/// the tactile modules filter and sample.
+/// period: drives integrate the setpoint and follow with their lag, or move an arm that has mass;
+/// obstacles push on the covers, the tactile modules filter and sample.
 class SimulatedRobot final : public Robot {
  public:
   /// Throws std::invalid_argument unless period and filter periods (1 / filter_rate_hz) are
@@ -42,17 +44,22 @@ class SimulatedRobot final : public Robot {
     Pose X_BaseModule;                ///< in the last step
     int steps_a_filter_step = 1;
     double true_force_N = 0.0;
+    Wrench4 wrench = Wrench4::Zero();
   };
 
-  void moveArm(const JointVector& velocity_setpoint) noexcept;
-  Wrench4 contactWrench(Module& module) const noexcept;
+  void moveArm(double duration_s, const JointVector& velocity_setpoint) noexcept;
+  void touch(double t_s, Module& module) noexcept;
+  void push(const Module& module, const Vector3& p_Base, const Vector3& force_Base) noexcept;
 
   SerialChain chain_;
   JointLimits limits_;
   std::vector<Module> modules_;
   double step_s_;  ///< of the plant: the shortest of cycle and filter periods
   int steps_a_cycle_;
+  int parts_a_step_ = 1;  ///< where the arm has mass
   double drive_share_;
+  std::optional<ArmDynamics> dynamics_;
+  JointVector torque_;  ///< of all contacts; only where the arm has mass
   long step_ = 0;
   JointVector q_commanded_;
   JointVector q_;   ///< of the arm
