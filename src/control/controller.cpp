@@ -58,30 +58,33 @@ Controller::Controller(const ControllerConfig& config)
 
 ControllerState Controller::initialState(const JointVector& q) const {
   ControllerState state;
-  place(q, state);
+  place(q, config_.gains, state);
   for (int i = 0; i < modules(); ++i)
     state.modules[i].contact.position_m = 0.5 * config_.tactile_modules[i].length_m;
   if (contact_controller_) state.contact = contact_controller_->initialState();
   return state;
 }
 
-void Controller::restart(ControllerState& state) const noexcept {
+void Controller::restart(const Gains& gains, ControllerState& state) const noexcept {
   if (joint_limit_avoidance_ && state.return_share > 0.0) {  // else it has not moved since
-    ScaledVector way_out = -joint_limit_avoidance_->evaluate(state.zones, state.q_desired).gradient;
-    softenWayOut(state.return_share, state.way_out_before, state.way_out_added, way_out);
-    state.way_out_before = way_out;
+    state.way_out_before = -limitCost(gains, state).gradient;
+    softenWayOut(state.return_share, ScaledVector::Zero(), state.way_out_added,
+                 state.way_out_before);
   }
   state.return_share = 0.0;
   if (contact_controller_) state.contact = contact_controller_->initialState();
 }
 
-void Controller::place(const JointVector& q, ControllerState& state) const noexcept {
+void Controller::place(const JointVector& q, const Gains& gains,
+                       ControllerState& state) const noexcept {
   state.q_desired = q.cwiseMax(config_.limits.lower).cwiseMin(config_.limits.upper);
   state.velocity_before = JointVector::Zero(config_.chain.size());
   state.fault = Fault::kNone;
   if (!joint_limit_avoidance_) return;
-  const JointLimitCost cost = joint_limit_avoidance_->evaluate(state.zones, state.q_desired);
-  state.way_out_added = -cost.gradient - state.way_out_before;
+  state.is_leaning = contact_controller_ &&
+                     state.modules.front().contact.force_N > gains.force.transition.release_force_N;
+  state.way_out_added = -limitCost(gains, state).gradient;
+  if (state.is_leaning) state.way_out_added -= state.way_out_before;
 }
 
 void Controller::watchSensors(const RobotInput& input, double period_s,
@@ -110,6 +113,7 @@ void Controller::prepare(const Gains& gains, double t_s, ControllerState& state,
   prepared.q_desired = state.q_desired;
   prepared.push = state.contact.push;
   prepared.return_share = state.return_share;
+  prepared.is_leaning = state.is_leaning;
   prepared.task_gains = gains.task;
   prepared.limit_gains = gains.joint_limit_avoidance;
   computeMotion(gains, prepared.path_time_s, state, prepared);
@@ -121,7 +125,7 @@ void Controller::update(const RobotInput& input, const Gains& gains, double t_s,
   output.path_time_s = t_s - state.waited_s;
   if (prepared.path_time_s != output.path_time_s || prepared.q_desired != state.q_desired ||
       prepared.push != state.contact.push || prepared.return_share != state.return_share ||
-      !isSame(prepared.task_gains, gains.task) ||
+      prepared.is_leaning != state.is_leaning || !isSame(prepared.task_gains, gains.task) ||
       !isSame(prepared.limit_gains, gains.joint_limit_avoidance))
     computeMotion(gains, output.path_time_s, state, prepared);
   prepared.path_time_s = std::numeric_limits<double>::quiet_NaN();
@@ -135,7 +139,7 @@ void Controller::computeMotion(const Gains& gains, double path_time_s, Controlle
   Motion& motion = prepared.motion;
   motion.y = prepared.kinematics.y_eff;
   if (joint_limit_avoidance_) {
-    avoidJointLimits(gains.joint_limit_avoidance, prepared.kinematics, state, motion);
+    avoidJointLimits(gains, prepared.kinematics, state, motion);
   } else {
     motion.v_scaled.setZero();
   }
@@ -235,15 +239,21 @@ void Controller::passTime(double duration_s, ControllerState& state) const noexc
   state.return_share = std::min(1.0, state.return_share + duration_s / kReturnRise_s);
 }
 
-void Controller::avoidJointLimits(const JointLimitAvoidanceGains& gains,
-                                  const TaskKinematics& kinematics, ControllerState& state,
-                                  Motion& motion) const noexcept {
-  if (!isSame(state.zones.gains, gains)) state.zones = joint_limit_avoidance_->zones(gains);
-  const JointLimitCost cost = joint_limit_avoidance_->evaluate(state.zones, state.q_desired);
+JointLimitCost Controller::limitCost(const Gains& gains, ControllerState& state) const noexcept {
+  if (!isSame(state.zones.gains, gains.joint_limit_avoidance))
+    state.zones = joint_limit_avoidance_->zones(gains.joint_limit_avoidance);
+  return joint_limit_avoidance_->evaluate(state.zones, state.q_desired);
+}
+
+void Controller::avoidJointLimits(const Gains& gains, const TaskKinematics& kinematics,
+                                  ControllerState& state, Motion& motion) const noexcept {
+  const JointLimitCost cost = limitCost(gains, state);
   motion.limit_nearness = cost.nearness;
   motion.v_scaled = -cost.gradient;
   if (state.return_share < 1.0)
-    softenWayOut(state.return_share, state.way_out_before, state.way_out_added, motion.v_scaled);
+    softenWayOut(state.return_share,
+                 state.is_leaning ? state.way_out_before : ScaledVector(ScaledVector::Zero()),
+                 state.way_out_added, motion.v_scaled);
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 

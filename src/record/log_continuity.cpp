@@ -38,7 +38,8 @@ bool LogContinuity::add(const CycleRecord& recorded) {
   if (is_gap) running_cycles_ = 0.0;
   if (is_reset && running_cycles_ >= settled_cycles_ && !has_waited) is_known_ = true;
   if (is_reset) running_cycles_ = 0.0;
-  if (mode == Mode::kRunning) running_cycles_ += 1.0 + missed_;
+  if (mode == Mode::kRunning)
+    running_cycles_ += 1.0 + (!is_gap && mode_before_ == Mode::kRunning ? missed_ : 0);
   if (!is_known_) stretches_.back().to_s = recorded.t_s;
   is_first_ = is_part_missing_ = false;
   cycle_before_ = cycle;

@@ -53,7 +53,7 @@ CycleRecord Replayer::replay(const CycleRecord& recorded) {
   const int missed = continuity_.missedCycles();
   if (missed > 0) controller_.coast(missed, period_s_, state_);
   if (is_known_ && !was_known) state_.waited_s = 0.0;
-  applyMode(controller_, mode, mode_before_, input, state_);
+  applyMode(controller_, mode, mode_before_, input, recorded.gains, state_);
   controller_.update(input, recorded.gains, recorded.task_time_s, period_s_, state_, output_);
   mode_before_ = mode;
   if (!is_known_) follow(recorded);
@@ -69,6 +69,7 @@ void Replayer::follow(const CycleRecord& recorded) noexcept {
   for (int i = 0; i < joints_; ++i) {
     const double q = recorded.q[i] + period_s_ * recorded.dq[i];
     state_.q_desired[i] = std::clamp(q, limits.lower[i], limits.upper[i]);
+    state_.velocity_before[i] = recorded.dq[i];  // kept up in missed cycles
   }
 }
 

@@ -54,7 +54,10 @@ void Obstacle::moveTo(double t_s) noexcept {
 
 ObstacleContact Obstacle::touch(const CoverAxis& axis, double t_s) noexcept {
   ObstacleContact contact;
-  if (t_s < config_.appears_s || t_s >= config_.vanishes_s) return contact;
+  if (t_s < config_.appears_s || t_s >= config_.vanishes_s) {
+    swing_share_ = 0.0;
+    return contact;
+  }
   moveTo(t_s);
   const double horizontal = std::hypot(axis.direction.x(), axis.direction.y());
   if (horizontal < 1e-9) return contact;  // a vertical link has no horizontal side to push on

@@ -7,10 +7,11 @@ bool resetsController(Mode mode, Mode before) noexcept {
 }
 
 void applyMode(const Controller& controller, Mode mode, Mode before, const RobotInput& input,
-               ControllerState& state) noexcept {
-  if (resetsController(mode, before)) controller.restart(state);
+               const Gains& gains, ControllerState& state) noexcept {
+  if (resetsController(mode, before)) controller.restart(gains, state);
   // Where drives stop by themselves, the arm is where they say.
-  if (!isCommanding(mode) || !isCommanding(before)) controller.place(input.q_measured, state);
+  if (!isCommanding(mode) || !isCommanding(before))
+    controller.place(input.q_measured, gains, state);
   // While holding, faults come and go: the mode remembers them.
   if (mode == Mode::kHolding || before == Mode::kHolding) state.fault = Fault::kNone;
   state.is_stopping = mode != Mode::kRunning;

@@ -182,7 +182,7 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   cycles_ += is_started_ ? 1 + missed_cycles_ : 0;
   task_cycles_ += is_started_ && before == Mode::kRunning ? 1 + missed_cycles_ : 0;
   is_started_ = true;
-  applyMode(controller_, mode_.mode, before, input_, state_);
+  applyMode(controller_, mode_.mode, before, input_, gains_, state_);
   controller_.update(input_, gains_, taskTime_s(), period_s_, prepared_, state_, output_);
 }
 

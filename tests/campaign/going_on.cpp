@@ -51,7 +51,8 @@ Peaks undisturbedPeaks(const Stage& stage, const Plan& plan, const std::vector<G
   return peaks;
 }
 
-/// The peak after a hold where the line stays on: all else that befell the arm before is the same.
+/// The peak after a hold where the line stays on and nobody leans on the arm meanwhile, but who
+/// does so after, too: all that befell the arm before is the same.
 double peakWithoutTheHold(const Stage& stage, const Plan& plan, const GoingOn& hold,
                           long long& cycles) {
   Play play(stage, plan);
@@ -61,7 +62,9 @@ double peakWithoutTheHold(const Stage& stage, const Plan& plan, const GoingOn& h
     const int t_ms = play.now_ms() + 1;
     CycleInput input = play.input();
     if (!user.act(play.now_ms(), play.now().mode, input)) break;
-    if (t_ms >= hold.stop_ms && t_ms <= hold.return_ms) input.lines.enable = true;
+    const bool is_hold = t_ms >= hold.stop_ms && t_ms <= hold.return_ms;
+    if (is_hold) input.lines.enable = true;
+    play.setForces(!is_hold || hold.has_hand);
     play.step(input);
     ++cycles;
     if (t_ms >= hold.return_ms) peak = std::max(peak, speedOf(play.now()));

@@ -152,8 +152,8 @@ TEST(ReturnSpeed, RisesGentlyBesideThePath) {
   arm.config.task.trajectory = {};
   const Controller controller(arm.config);
   ControllerState state = controller.initialState();
-  controller.restart(state);
-  controller.place(arm.config.q_start + arm.push, state);
+  controller.restart(controller.initialGains(), state);
+  controller.place(arm.config.q_start + arm.push, controller.initialGains(), state);
   ControllerOutput output;
   PreparedCycle prepared;
   ControllerState held = controller.initialState();  // of an arm that was not let go
@@ -206,8 +206,8 @@ TEST(ReturnSpeed, RisesGentlyOutOfAJointLimitsZone) {
     const double at_once = run(controller, plain, 1).norm();
     ControllerState state = controller.initialState(it.in_zone.array() - 0.5);
     run(controller, state, 1);
-    controller.restart(state);
-    controller.place(it.in_zone, state);
+    controller.restart(controller.initialGains(), state);
+    controller.place(it.in_zone, controller.initialGains(), state);
     double peak = 0.0;
     for (int i = 0; i < 5000; ++i) peak = std::max(peak, run(controller, state, 1).norm());
     EXPECT_LT(peak, 0.1 * at_once);
@@ -215,30 +215,49 @@ TEST(ReturnSpeed, RisesGentlyOutOfAJointLimitsZone) {
     EXPECT_LT((state.q_desired - plain.q_desired).norm(),
               0.5 * (it.in_zone - plain.q_desired).norm())
         << "it does leave the zone";
-    controller.restart(state);
-    controller.place(it.in_zone, state);
+    controller.restart(controller.initialGains(), state);
+    controller.place(it.in_zone, controller.initialGains(), state);
     const double gentle = run(controller, state, 500).norm();
-    controller.restart(state);  // anew, while it leaves gently
-    controller.place(JointVector(state.q_desired), state);
+    controller.restart(controller.initialGains(), state);  // anew, while it leaves gently
+    controller.place(JointVector(state.q_desired), controller.initialGains(), state);
     EXPECT_LT(run(controller, state, 1).norm(), 1.1 * gentle);
     EXPECT_LT(gentle, 0.2 * at_once);
   }
 }
 
-/// What held a contact's push off before the stop is there again as fast as the law's answer.
-TEST(ReturnSpeed, OfAWayOutIsSoonAsBeforeTheStopWhereTheArmStillStands) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const ArmInAZone it(seed);
-    const Controller controller(it.arm.config);
+/// What held a contact's push off before the stop is there again as fast as the law's answer; where
+/// nothing pushes any more, it comes as gently as all else.
+TEST(ReturnSpeed, OfAWayOutIsSoonAsBeforeTheStopWhereTheArmLeansOnSomething) {
+  test::Random random(264);
+  ControllerConfig config = test::fullController(random, 7, Variant::kNullSpace);
+  config.has_joint_limit_avoidance = true;
+  config.limits.upper = config.q_start.array() + 0.01;
+  config.limits.lower = config.q_start.array() - 1.0;
+  const Controller controller(config);
+  const Gains& gains = controller.initialGains();
+  for (const double force_N : {0.5, 0.0}) {  // below F_th: the law answers with nothing
     ControllerState state = controller.initialState();
-    const double before = run(controller, state, 1).norm();
-    controller.place(it.in_zone, state);
-    controller.restart(state);
-    controller.place(it.in_zone, state);
-    EXPECT_EQ(run(controller, state, 1).norm(), 0.0);
-    state.return_share = kAnswerRise_s / kReturnRise_s;
-    controller.place(it.in_zone, state);
-    EXPECT_NEAR(run(controller, state, 1).norm(), before, 1e-9 * before);
+    ControllerOutput output;
+    std::uint32_t sample = 0;
+    const auto cycle = [&] {
+      const RobotInput input{config.q_start, test::touchAt(0.2, force_N, 0.4, ++sample)};
+      controller.update(input, gains, 0.0, 1e-3, state, output);
+    };
+    for (int i = 0; i < 10; ++i) cycle();
+    controller.restart(gains, state);
+    controller.place(config.q_start, gains, state);
+    EXPECT_EQ(state.is_leaning, force_N > 0.0);
+    ScaledVector at_first = state.way_out_before;
+    ScaledVector soon = state.way_out_before;
+    ScaledVector before = ScaledVector::Zero();
+    if (state.is_leaning) before = state.way_out_before;
+    EXPECT_GT(soon.norm(), 0.1);
+    softenWayOut(0.0, before, state.way_out_added, at_first);
+    softenWayOut(kAnswerRise_s / kReturnRise_s, before, state.way_out_added, soon);
+    EXPECT_LT(at_first.norm(), 0.05 * state.way_out_before.norm());
+    const double share = soon.norm() / state.way_out_before.norm();
+    EXPECT_GT(share, force_N > 0.0 ? 0.95 : 0.05);
+    EXPECT_LT(share, force_N > 0.0 ? 1.01 : 0.2);
   }
 }
 

@@ -148,8 +148,8 @@ TEST(WaitingReference, StaysWhereItIsWhenTheArmStartsAgain) {
   state.waited_s = 1.25;
   state.fault = Fault::kTactileStale;
   const JointVector q = config.q_start + random.vector(7, -0.1, 0.1);
-  controller.restart(state);
-  controller.place(q, state);
+  controller.restart(controller.initialGains(), state);
+  controller.place(q, controller.initialGains(), state);
   EXPECT_EQ(state.waited_s, 1.25);
   const ControllerState fresh = controller.initialState(q);
   EXPECT_EQ(state.q_desired, fresh.q_desired);
@@ -199,7 +199,7 @@ class EventfulRun {
       const bool was_stopping = state.is_stopping;
       if (missed > 0) controller.coast(missed, before_s_, state);
       const double passed_s = i > 0 && !was_stopping ? (1 + missed) * before_s_ : 0.0;
-      if (random_.chance(0.01)) controller.restart(state);
+      if (random_.chance(0.01)) controller.restart(controller.initialGains(), state);
       if (random_.chance(0.01)) is_stopping_ = !is_stopping_;
       state.is_stopping = is_stopping_;
       RobotInput input = touches_.next(state.q_desired);

@@ -25,7 +25,7 @@ struct StateVisitor {
 
   void all(const ControllerState& state) const {
     const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
-                 way_out_before, way_out_added, modules, contact, zones] = state;
+                 way_out_before, way_out_added, is_leaning, modules, contact, zones] = state;
     visit("waited_s", 0, waited_s);
     visit("progress", 0, progress);
     visit("return_share", 0, return_share);

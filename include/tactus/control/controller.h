@@ -41,6 +41,7 @@ struct ControllerState {
   /// Out of joint limits' zones, as Motion::v_scaled: before the last restart(), and what came to
   /// it by the place where the arm stands since.
   ScaledVector way_out_before = ScaledVector::Zero(), way_out_added = ScaledVector::Zero();
+  bool is_leaning = false;  ///< on something, where it stands since
   std::array<TactileReading, kMaxTactileModules> modules;
   ContactControllerState contact;
   JointLimitZones zones;  ///< of the last gains
@@ -54,6 +55,7 @@ struct PreparedCycle {
   JointVector q_desired;  ///< and this configuration
   TaskVector push;        ///< and this push of the law, see TaskConfig
   double return_share = 1.0;
+  bool is_leaning = false;
   TaskGains task_gains;  ///< and these gains
   JointLimitAvoidanceGains limit_gains;
   TaskKinematics kinematics;
@@ -80,9 +82,9 @@ class Controller {
   /// For an arm that its drives stop by themselves: forgets the contact, and will return to its
   /// path gently (see return_speed.h); remembers the newest samples with their age, and where
   /// the path has got to.
-  void restart(ControllerState& state) const noexcept;
+  void restart(const Gains& gains, ControllerState& state) const noexcept;
   /// For an arm that stands at q, wherever it was commanded to be, m or rad.
-  void place(const JointVector& q, ControllerState& state) const noexcept;
+  void place(const JointVector& q, const Gains& gains, ControllerState& state) const noexcept;
 
   /// For a cycle in which the controller has nothing to do: only samples are taken over, or age.
   void watchSensors(const RobotInput& input, double period_s,
@@ -122,7 +124,8 @@ class Controller {
                          PreparedCycle& prepared) const noexcept;
   void computeTaskMotion(const TaskGains& gains, const ControllerState& state,
                          PreparedCycle& prepared) const noexcept;
-  void avoidJointLimits(const JointLimitAvoidanceGains& gains, const TaskKinematics& kinematics,
+  JointLimitCost limitCost(const Gains& gains, ControllerState& state) const noexcept;
+  void avoidJointLimits(const Gains& gains, const TaskKinematics& kinematics,
                         ControllerState& state, Motion& motion) const noexcept;
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
   void sense(const RobotInput& input, double period_s, ControllerState& state,

@@ -5,8 +5,7 @@
 namespace tactus {
 
 /// Dry friction of one contact: a bristle between the surfaces sticks as a spring, and slips where
-/// it would pull with more than mu times the normal force (the quasi-static limit of Dahl's model,
-/// 1968).
+/// it would pull with more than mu times the normal force (Dahl's model of 1968 with exponent 0).
 class BristleFriction {
  public:
   /// coefficient: mu >= 0; stiffness: of the bristle, finite, > 0.

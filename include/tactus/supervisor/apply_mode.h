@@ -11,6 +11,6 @@ bool resetsController(Mode mode, Mode before) noexcept;
 /// How the mode of a cycle and of the one before act on the controller. A function of what the log
 /// holds, so that a replay does the same.
 void applyMode(const Controller& controller, Mode mode, Mode before, const RobotInput& input,
-               ControllerState& state) noexcept;
+               const Gains& gains, ControllerState& state) noexcept;
 
 }  // namespace tactus
