@@ -199,6 +199,7 @@ std::vector<CycleRecord> restartedRun(const Scene& scene) {
   std::vector<CycleRecord> records;
   for (int i = 0; i < 8000; ++i) {
     cell.input.lines.emergency_stop = i >= 4000 && i < 4100;
+    cell.input.missed_cycles = i == 4000 ? 3 : 0;
     cell.input.lines.enable = i < 4000 || i > 4500;
     cell.step();
     if (cell.cycle.isRecorded()) records.push_back(cell.record());
@@ -231,8 +232,8 @@ TEST(ControlCycleReplay, GoesOnToTheBitWhereTheControllerBeginsAnewBehindMissing
   EXPECT_EQ(comparison.skipped(), 2300);
   EXPECT_GT(comparison.cycles(), 4000);
   ASSERT_EQ(replayer.unknown().size(), 1u);
-  EXPECT_NEAR(replayer.unknown()[0].from_s, fault_s - 2.7, 1e-9);
-  EXPECT_NEAR(replayer.unknown()[0].to_s, fault_s - 0.001, 1e-9);
+  EXPECT_NEAR(replayer.unknown()[0].from_s, fault_s - 2.703, 1e-9);
+  EXPECT_NEAR(replayer.unknown()[0].to_s, fault_s - 0.004, 1e-9);
 }
 
 TEST(ControlCycleReplay, MissedCyclesAreNoMissingRecords) {
