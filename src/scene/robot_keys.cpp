@@ -1,3 +1,4 @@
+#include "tactus/control/robot.h"
 #include "tactus/scene/hardware_keys.h"
 #include "tactus/scene/key_defaults.h"
 
@@ -65,6 +66,28 @@ Table<TactileModuleSection> tactileModuleKeys() {
               inside(&Config::channels, channelKeys()), moduleOnBusKeys());
 }
 
+Row<RobotConfig> dynamicsSection() {
+  using Config = DynamicsSection;
+  const Table<Config> rows = {
+      oneAJoint("rotor_inertia", "kg m^2 or kg", within(0, 1e5),
+                "of motor and gear, at the joint; absent: none", &Config::rotor_inertia),
+      oneAJoint("gear_stiffness", "Nm/rad or N/m", above(0, 1e12),
+                "of the gear, for simulation.arm: flexible_gears", &Config::gear_stiffness),
+      oneAJoint("gear_damping", "Nm s/rad or N s/m", within(0, 1e9),
+                "of the gear's spring; absent: none", &Config::gear_damping),
+      number("servo_bandwidth_hz", "Hz", within(0.1, 1000), "of the velocity loop",
+             &Config::servo_bandwidth_hz),
+      number("servo_integral_hz", "Hz", within(0, 1000),
+             "zero of its integral part; 0: it has none", &Config::servo_integral_hz),
+      optional(number("contact_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
+                      "in place of stiffness_N_per_m where the gears are flexible: what is left "
+                      "of it, as links and covers; absent: rigid",
+                      &Config::contact_stiffness_N_per_m)),
+  };
+  return optional(
+      section("dynamics", "of an arm that is simulated with mass", &RobotConfig::dynamics, rows));
+}
+
 Table<RobotConfig> robotTable() {
   using Config = RobotConfig;
   return {
@@ -79,6 +102,7 @@ Table<RobotConfig> robotTable() {
       optional(number("stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
                       "compliance of the arm, in series with every obstacle; absent: rigid",
                       &Config::stiffness_N_per_m)),
+      dynamicsSection(),
       canSection(),
       drivesSection(),
       sectionList("tactile_modules", {1, kMaxTactileModules}, "sensing covers, one around a link",

@@ -63,7 +63,10 @@ LoadedRobot loadRobot(const SourceFile& file, const SceneSettings& settings, Sou
   for (std::size_t i = 0; i < chain.module_links.size(); ++i)
     config.tactile_modules[i].config.link = chain.module_links[i];
   std::optional<HardwareConfig> hardware = loadHardware(root, config, chain);
-  return {std::move(root), std::move(config), std::move(chain), std::move(hardware)};
+  std::vector<BodyInertia> bodies;
+  if (config.dynamics) bodies = loadUrdfBodies(urdf, chain);
+  return {std::move(root), std::move(config), std::move(chain), std::move(bodies),
+          std::move(hardware)};
 }
 
 }  // namespace tactus

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "tactus/scene/dynamics_loader.h"
 #include "tactus/scene/hardware_checks.h"
 #include "tactus/scene/hardware_loader.h"
 #include "tactus/scene/key_words.h"
@@ -109,10 +110,16 @@ SimulatedModuleConfig makeSimulatedModule(const SimulationSection& simulation,
 }
 
 /// The robot as it is simulated, which may differ from the one that the controller reckons with.
-PlantConfig makePlant(const SimulationSection& simulation, const RobotConfig& robot) {
+PlantConfig makePlant(const YamlNode& root, const SceneConfig& config, const LoadedRobot& loaded,
+                      const JointVector& q_start) {
+  const SimulationSection& simulation = config.simulation;
+  const RobotConfig& robot = loaded.config;
   PlantConfig plant;
   plant.drive_lag_s = simulation.drive_lag_s.value_or(robot.drives.position_lag_s);
-  plant.robot_stiffness_N_per_m = robot.stiffness_N_per_m;
+  plant.dynamics = loadDynamics(root, simulation.arm, loaded, q_start, config.period_s);
+  plant.robot_stiffness_N_per_m = simulation.arm == SimulatedArm::kFlexibleGears
+                                      ? robot.dynamics->contact_stiffness_N_per_m.value_or(kNoLimit)
+                                      : robot.stiffness_N_per_m;
   plant.obstacles = simulation.obstacles;
   for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i)
     plant.modules.push_back(makeSimulatedModule(simulation, robot.tactile_modules[i], i));
@@ -171,7 +178,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
               .period_s = config.period_s,
               .duration_s = config.simulation.duration_s,
               .stiffest_N_per_m = stiffness.stiffest_N_per_m.value_or(0.0),
-              .plant = makePlant(config.simulation, robot.config),
+              .plant = makePlant(root, config, robot, q_start),
               .robot_name = robot.chain.robot_name,
               .joint_names = robot.chain.joint_names,
               .module_links = linksThatAreRead(config, robot.config),

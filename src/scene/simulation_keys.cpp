@@ -103,8 +103,14 @@ Table<SimulationSection> simulationKeys() {
       required(number("duration_s", "s", above(0, kMaxTime_s),
                       "length of a simulated run; tactusd goes on until it is stopped",
                       &Config::duration_s)),
+      choice("arm",
+             "quasi_static: it follows its drives with their lag. rigid_gears: bodies with the "
+             "masses of the URDF and `dynamics` of robot.yaml, moved by velocity servos. "
+             "flexible_gears: each behind the spring of its gear",
+             &Config::arm, kArmWords),
       number("drive_lag_s", "s", within(0, 1),
-             "lag of the simulated drives; absent: as robot.yaml says", &Config::drive_lag_s),
+             "lag of the simulated drives of a quasi-static arm; absent: as robot.yaml says",
+             &Config::drive_lag_s),
       moduleSection(),
       sectionList("obstacles", {0, 64}, "vertical lines that push on the cover", &Config::obstacles,
                   obstacleKeys()),

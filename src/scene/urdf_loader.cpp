@@ -2,114 +2,32 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
-#include "tactus/scene/number_text.h"
+#include "tactus/scene/urdf_node.h"
 
 namespace tactus {
 namespace {
 
-constexpr double kMaxLength_m = 1e3;  // keeps products of transforms finite and meaningful
-constexpr double kMaxAngle_rad = 1e3;
+constexpr double kMaxAxis = 1e3;
 constexpr double kMaxLimit = 1e6;
-constexpr const char* kWhitespace = " \t\r\n";
 
 /// One joint of the chain while it is read.
-struct JointReader {
-  const UrdfTree& tree;
+struct JointReader : UrdfNode {
+  JointReader(const UrdfTree& of, const UrdfJoint& read)
+      : UrdfNode{of, read.node, "joint." + read.name}, joint(read) {}
+
   const UrdfJoint& joint;
-
-  std::string key(const std::string& part) const { return "joint." + joint.name + "." + part; }
-
-  [[noreturn]] void fail(const pugi::xml_node& at, const std::string& part,
-                         const std::string& problem, const std::string& expectation) const {
-    failAt(tree.position(at), key(part), problem, "expected " + expectation);
-  }
-
-  pugi::xml_node child(const char* name) const {
-    return onlyChild(tree, joint.node, name, "joint." + joint.name);
-  }
 };
 
-/// Numbers between white space; false if there is anything else.
-bool parseNumbers(std::string_view text, std::vector<double>& numbers) {
-  while (true) {
-    text.remove_prefix(std::min(text.find_first_not_of(kWhitespace), text.size()));
-    if (text.empty()) return true;
-    const std::string_view word = text.substr(0, text.find_first_of(kWhitespace));
-    const std::string_view number = withoutPlus(word);
-    const char* const end = number.data() + number.size();
-    double value = 0.0;
-    const auto [stop, error] = std::from_chars(number.data(), end, value);
-    if (error != std::errc() || stop != end || !std::isfinite(value)) {
-      return false;
-    }
-    numbers.push_back(value);
-    text.remove_prefix(word.size());
-  }
-}
-
-Vector3 readVector(const JointReader& reader, const char* element, const char* attribute,
-                   double bound, const Vector3& absent) {
-  const std::string part = std::string(element) + "." + attribute;
-  const pugi::xml_node node = reader.child(element);
-  const pugi::xml_attribute given =
-      onlyAttribute(reader.tree, node, attribute, reader.key(element));
-  if (!given) return absent;
-  std::vector<double> numbers;
-  const bool is_valid =
-      parseNumbers(given.value(), numbers) && numbers.size() == 3 &&
-      std::ranges::all_of(numbers, [&](double x) { return std::abs(x) <= bound; });
-  if (!is_valid) {
-    reader.fail(node, part, inQuotes(given.value()) + " is no vector",
-                fmt::format("three numbers from {} to {}", -bound, bound));
-  }
-  return {numbers[0], numbers[1], numbers[2]};
-}
-
-/// Rotations about the fixed axes x, y, z in this order, as the URDF defines rpy.
-Matrix3 rotationOf(const Vector3& rpy) {
-  return (Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) *
-          Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
-          Eigen::AngleAxisd(rpy.x(), Vector3::UnitX()))
-      .toRotationMatrix();
-}
-
-Pose readOrigin(const JointReader& reader) {
-  return {rotationOf(readVector(reader, "origin", "rpy", kMaxAngle_rad, Vector3::Zero())),
-          readVector(reader, "origin", "xyz", kMaxLength_m, Vector3::Zero())};
-}
-
 Vector3 readAxis(const JointReader& reader) {
-  const Vector3 axis = readVector(reader, "axis", "xyz", kMaxLength_m, Vector3::UnitX());
+  const Vector3 axis = reader.vector("axis", "xyz", kMaxAxis, Vector3::UnitX());
   constexpr double kMinLength = 1e-6;
   if (axis.norm() < kMinLength) {
     reader.fail(reader.child("axis"), "axis.xyz", "the axis has no length",
                 "a vector other than zero");
   }
   return axis.normalized();
-}
-
-/// kNoLimit if the attribute is absent and need not be there.
-double readLimit(const JointReader& reader, const char* attribute, bool is_required) {
-  const pugi::xml_node node = reader.child("limit");
-  const std::string part = std::string("limit.") + attribute;
-  const pugi::xml_attribute given =
-      onlyAttribute(reader.tree, node, attribute, reader.key("limit"));
-  if (!given) {
-    if (!is_required) return kNoLimit;
-    reader.fail(node ? node : reader.joint.node, part, "is missing", "a number");
-  }
-  std::vector<double> numbers;
-  if (!parseNumbers(given.value(), numbers) || numbers.size() != 1 ||
-      std::abs(numbers[0]) > kMaxLimit) {
-    reader.fail(node, part, inQuotes(given.value()) + " is no limit",
-                fmt::format("a number from {} to {}", -kMaxLimit, kMaxLimit));
-  }
-  return numbers[0];
 }
 
 struct MovingJoint {
@@ -123,15 +41,15 @@ MovingJoint readMovingJoint(const JointReader& reader) {
   result.joint.type = type == "prismatic" ? JointType::kPrismatic : JointType::kRevolute;
   result.joint.axis = readAxis(reader);
   if (type != "continuous") {
-    result.lower = readLimit(reader, "lower", true);
-    result.upper = readLimit(reader, "upper", true);
+    result.lower = reader.number("limit", "lower", kMaxLimit, kRequired);
+    result.upper = reader.number("limit", "upper", kMaxLimit, kRequired);
     if (result.lower >= result.upper) {
       reader.fail(reader.child("limit"), "limit",
                   fmt::format("lower {} is not below upper {}", result.lower, result.upper),
                   "lower < upper");
     }
   }
-  result.max_velocity = readLimit(reader, "velocity", true);
+  result.max_velocity = reader.number("limit", "velocity", kMaxLimit, kRequired);
   if (result.max_velocity <= 0.0) {
     reader.fail(reader.child("limit"), "limit.velocity", "is not positive",
                 "a number > 0 in m/s or rad/s");
@@ -161,12 +79,6 @@ int requireLink(const UrdfTree& tree, const NamedFrame& frame) {
   return link;
 }
 
-/// Where each link of the chain is, by its last moving joint.
-struct PlacedLink {
-  int link;
-  AttachedFrame frame;
-};
-
 /// The frame of a link that hangs on the chain by fixed joints only.
 AttachedFrame frameBesideChain(const UrdfTree& tree, const std::vector<PlacedLink>& placed,
                                const NamedFrame& named) {
@@ -186,7 +98,7 @@ AttachedFrame frameBesideChain(const UrdfTree& tree, const std::vector<PlacedLin
                          inQuotes(named.link), inQuotes(reader.joint.name)),
              "expected a link on the way to the tip or fixed to one");
     }
-    X_LinkFrame = readOrigin(reader) * X_LinkFrame;
+    X_LinkFrame = reader.origin() * X_LinkFrame;
     link = reader.joint.parent;
   }
 }
@@ -218,7 +130,7 @@ Walk walkFrom(int root, const UrdfTree& tree, const std::vector<int>& path) {
   for (const int j : path) {
     const JointReader reader{tree, tree.joints[j]};
     checkType(reader);
-    walk.frame.X_JointFrame = walk.frame.X_JointFrame * readOrigin(reader);
+    walk.frame.X_JointFrame = walk.frame.X_JointFrame * reader.origin();
     if (reader.joint.type != "fixed") {
       walk.moving.push_back(readMovingJoint(reader));
       walk.moving.back().joint.X_ParentJoint = walk.frame.X_JointFrame;
@@ -260,6 +172,7 @@ UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
   checkJointCount(walk, tree.links[root], tip);
 
   UrdfChain chain;
+  chain.links = walk.placed;
   chain.robot_name = tree.robot_name;
   chain.joint_names = walk.names;
   for (const MovingJoint& m : walk.moving) chain.joints.push_back(m.joint);

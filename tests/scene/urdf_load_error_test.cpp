@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenText{"lower=\"-2\" upper=\"2\"", "lower=\"-2\"",
                    "robot.urdf:14:24: joint.shoulder.limit.upper: ", "is missing", "a number"},
         BrokenText{"lower=\"-2\" upper=\"2\"", "lower=\"-2 0\" upper=\"2\"",
-                   "robot.urdf:14:24: joint.shoulder.limit.lower: ", "'-2 0' is no limit",
+                   "robot.urdf:14:24: joint.shoulder.limit.lower: ", "'-2 0' is no number",
                    "a number"},
         BrokenText{"<limit lower=\"-2\" upper=\"2\" velocity=\"1.5\"/>", "",
                    "robot.urdf:11:3: joint.shoulder.limit.lower: ", "is missing", "a number"},
@@ -115,7 +115,7 @@ TEST(BrokenUrdfFile, HostileName) {
   files.urdf = test::replaced(files.urdf, "velocity=\"1.5\"", "velocity=\"fast\"");
   test::expectError(test::loadError(files.sources()),
                     {"", "", "robot.urdf:14:24: joint.a\\x3a b\\x0ac.limit.velocity: ",
-                     "'fast' is no limit", "a number"});
+                     "'fast' is no number", "a number"});
 }
 
 TEST(BrokenUrdfFile, EndlessNames) {

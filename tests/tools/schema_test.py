@@ -71,6 +71,7 @@ stiffness:
              max_N_per_m: 1e6}
 simulation:
   duration_s: 13
+  arm: quasi_static
   drive_lag_s: 0.005
   tactile_module: {filter_cutoff_hz: 15, quantised: true, noise_N: 0, lost_share: 0, seed: 1}
   obstacles:
@@ -149,6 +150,8 @@ class Case(unittest.TestCase):
         robot = load((crops9 / "robot_with_lines.yaml").read_text())
         robot["urdf"] = str(crops9 / robot["urdf"])
         robot["can"]["buses"][0]["bit_rate_per_s"] = 1e6
+        robot["dynamics"] = load((crops9 / "robot.yaml").read_text())["dynamics"] | {
+            "servo_bandwidth_hz": 40, "servo_integral_hz": 8}  # fmt: skip
         for line in ("e_stop", "enable", "brake", "heartbeat"):
             robot["gpio"][line].setdefault("active_low", False)
         scene = load(SCENE)

@@ -67,6 +67,7 @@ Row<S> choice(const std::string& key, const std::string& doc, E S::*member,
   Row<S> row;
   row.spec.key = key;
   row.spec.type = ValueType::kChoice;
+  row.spec.presence = Presence::kDefaulted;
   row.spec.doc = doc;
   for (const Word<E>& word : words) row.spec.choices.push_back(word.text);
   row.spec.target = [member, &words](void* owner) -> Target {

@@ -5,6 +5,7 @@
 
 #include "tactus/control/controller_config.h"
 #include "tactus/plant/trouble.h"
+#include "tactus/scene/scene_config.h"
 
 /// How files spell the values of enumerations.
 namespace tactus {
@@ -46,6 +47,12 @@ inline constexpr std::array kTroubleWords = {
     Word<Trouble::Kind>{"boot_up", Trouble::Kind::kBootUp},
     Word<Trouble::Kind>{"heartbeat_only", Trouble::Kind::kHeartbeatOnly},
     Word<Trouble::Kind>{"emergency_stop", Trouble::Kind::kEmergencyStop},
+};
+
+inline constexpr std::array kArmWords = {
+    Word<SimulatedArm>{"quasi_static", SimulatedArm::kQuasiStatic},
+    Word<SimulatedArm>{"rigid_gears", SimulatedArm::kRigidGears},
+    Word<SimulatedArm>{"flexible_gears", SimulatedArm::kFlexibleGears},
 };
 
 /// The word of a value; empty if it has none.

@@ -44,6 +44,14 @@ struct TactileModuleSection {
   bool filter_in_daemon = false;
 };
 
+/// What an arm with mass is made of beside its bodies, which the URDF has.
+struct DynamicsSection {
+  std::optional<std::vector<double>> rotor_inertia, gear_stiffness, gear_damping;
+  double servo_bandwidth_hz = ArmDynamicsConfig{}.servo_bandwidth_hz;
+  double servo_integral_hz = ArmDynamicsConfig{}.servo_integral_hz;
+  std::optional<double> contact_stiffness_N_per_m;
+};
+
 /// What a robot.yaml says: each value checked for itself, not yet against the others and the URDF.
 struct RobotConfig {
   std::string urdf;  ///< path as written
@@ -51,6 +59,7 @@ struct RobotConfig {
   std::vector<double> home;
   std::optional<std::vector<double>> max_acceleration;  ///< absent: no limit
   double stiffness_N_per_m = PlantConfig{}.robot_stiffness_N_per_m;
+  std::optional<DynamicsSection> dynamics;
   std::optional<CanSection> can;
   DrivesSection drives;
   /// Of `tactile_modules`, or the one of `tactile_module`.

@@ -8,7 +8,7 @@
 #include "tactus/scene/robot_config.h"
 #include "tactus/scene/source_reader.h"
 #include "tactus/scene/table_reader.h"
-#include "tactus/scene/urdf_loader.h"
+#include "tactus/scene/urdf_bodies.h"
 #include "tactus/scene/yaml_tree.h"
 
 namespace tactus {
@@ -18,6 +18,7 @@ struct LoadedRobot {
   YamlNode root;  ///< for the places of values
   RobotConfig config;
   UrdfChain chain;
+  std::vector<BodyInertia> bodies;         ///< one a joint; none without `dynamics`
   std::optional<HardwareConfig> hardware;  ///< absent without `can`
 };
 

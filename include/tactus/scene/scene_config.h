@@ -36,8 +36,12 @@ struct TroubleSection {
   std::optional<double> delay_s;
 };
 
+/// What the simulated arm is: a line that follows its drives, or bodies that they move.
+enum class SimulatedArm : std::uint8_t { kQuasiStatic, kRigidGears, kFlexibleGears };
+
 struct SimulationSection {
   double duration_s = 0.0;
+  SimulatedArm arm = SimulatedArm::kQuasiStatic;
   std::optional<double> drive_lag_s;       ///< another one than robot.yaml says
   std::optional<double> filter_cutoff_hz;  ///< of the tactile module: another one, too
   SimulatedModuleConfig module;            ///< its imperfections alone

@@ -15,6 +15,12 @@ struct NamedFrame {
   SourcePosition at;
 };
 
+/// A link of the chain, as an index into UrdfTree::links, and where it is by its last moving joint.
+struct PlacedLink {
+  int link;
+  AttachedFrame frame;
+};
+
 /// What a controller needs of a URDF: the moving joints from the root to the tip, fixed joints
 /// merged, everything beside them ignored.
 struct UrdfChain {
@@ -23,7 +29,8 @@ struct UrdfChain {
   std::vector<Joint> joints;
   AttachedFrame tip;
   std::vector<AttachedFrame> module_links;
-  JointLimits limits;  ///< accelerations unlimited; positions of continuous joints too
+  std::vector<PlacedLink> links;  ///< from the root to the tip
+  JointLimits limits;             ///< accelerations unlimited; positions of continuous joints too
 };
 
 /// Throws InputError. `module_links` are links of the chain or fixed to it, moved by at least one

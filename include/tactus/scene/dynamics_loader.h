@@ -1,0 +1,16 @@
+#pragma once
+
+#include <optional>
+
+#include "tactus/scene/robot_loader.h"
+#include "tactus/scene/scene_config.h"
+
+namespace tactus {
+
+/// What moves the simulated arm; none where it is quasi-static. Throws InputError where the robot
+/// does not say enough, a joint moves no mass, or a gear rings faster than cycles of period_s show.
+std::optional<ArmDynamicsConfig> loadDynamics(const YamlNode& scene, SimulatedArm arm,
+                                              const LoadedRobot& robot, const JointVector& q_start,
+                                              double period_s);
+
+}  // namespace tactus

@@ -1,0 +1,94 @@
+#include "tactus/scene/dynamics_loader.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+
+namespace tactus {
+namespace {
+
+JointVector orAll(const std::optional<std::vector<double>>& values, double absent,
+                  const LoadedRobot& robot, const char* key) {
+  if (values)
+    return toJointVector(*values, robot.root, std::string("dynamics.") + key, robot.chain);
+  return JointVector::Constant(static_cast<Eigen::Index>(robot.chain.joints.size()), absent);
+}
+
+MassMatrix massMatrix(const LoadedRobot& robot, const JointVector& q) {
+  const SerialChain chain(robot.chain.joints, robot.chain.tip);
+  ChainPose pose;
+  chain.computePose(q, pose);
+  MassMatrix M;
+  computeMassMatrix(chain, pose, robot.bodies, M);
+  return M;
+}
+
+[[noreturn]] void failAtRobot(const LoadedRobot& robot, const std::string& key,
+                              const std::string& problem, const std::string& expectation) {
+  failAt(locate(robot.root, key), key, problem, "expected " + expectation);
+}
+
+/// The last joint that moves nothing is what makes it singular.
+void checkMass(const LoadedRobot& robot, const MassMatrix& M, const JointVector& rotors) {
+  MassMatrix all = M;
+  all.diagonal() += rotors;
+  if (all.llt().info() == Eigen::Success) return;
+  Eigen::Index least = 0;
+  all.diagonal().minCoeff(&least);
+  failAtRobot(robot, "dynamics",
+              fmt::format("joint {} moves no mass", inQuotes(robot.chain.joint_names[least])),
+              "<inertial> in the URDF's links, or rotor_inertia");
+}
+
+/// The modes of the links behind motors that are held fast.
+void checkGearModes(const LoadedRobot& robot, const MassMatrix& M, const JointVector& stiffness,
+                    double period_s) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(
+      Eigen::MatrixXd(stiffness.asDiagonal()), Eigen::MatrixXd(M), Eigen::EigenvaluesOnly);
+  const double fastest_hz = std::sqrt(modes.eigenvalues().maxCoeff()) / (2.0 * std::numbers::pi);
+  if (fastest_hz <= 0.5 / period_s) return;
+  failAtRobot(robot, "dynamics.gear_stiffness",
+              fmt::format("a gear rings with {:.4g} Hz at the start", fastest_hz),
+              fmt::format("at most {:.4g} Hz, half the rate of the cycles: softer gears, more mass "
+                          "behind them, or rigid_gears",
+                          0.5 / period_s));
+}
+
+}  // namespace
+
+std::optional<ArmDynamicsConfig> loadDynamics(const YamlNode& scene, SimulatedArm arm,
+                                              const LoadedRobot& robot, const JointVector& q_start,
+                                              double period_s) {
+  if (arm == SimulatedArm::kQuasiStatic) return std::nullopt;
+  const auto& section = robot.config.dynamics;
+  if (!section) {
+    failAt(locate(scene, "simulation.arm"), "simulation.arm", "the robot has no section dynamics",
+           "expected one in its robot.yaml, or quasi_static");
+  }
+  const bool is_flexible = arm == SimulatedArm::kFlexibleGears;
+  if (is_flexible && !section->gear_stiffness) {
+    failAt(locate(scene, "simulation.arm"), "simulation.arm", "the robot has no gear_stiffness",
+           "expected one in `dynamics` of its robot.yaml, or rigid_gears");
+  }
+  ArmDynamicsConfig config;
+  config.bodies = robot.bodies;
+  config.rotor_inertia = orAll(section->rotor_inertia, 0.0, robot, "rotor_inertia");
+  config.gear_damping = orAll(section->gear_damping, 0.0, robot, "gear_damping");
+  config.gear_stiffness = orAll(is_flexible ? section->gear_stiffness : std::nullopt, kNoLimit,
+                                robot, "gear_stiffness");
+  config.servo_bandwidth_hz = section->servo_bandwidth_hz;
+  config.servo_integral_hz = section->servo_integral_hz;
+  const MassMatrix M = massMatrix(robot, q_start);
+  if (is_flexible) {
+    checkMass(robot, M, JointVector::Zero(q_start.size()));  // of the links behind the springs
+    checkGearModes(robot, M, config.gear_stiffness, period_s);
+  } else {
+    checkMass(robot, M, config.rotor_inertia);
+  }
+  return config;
+}
+
+}  // namespace tactus

@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/scene_files.h"
+
+/// An arm that is simulated with mass: bodies from the URDF, the rest from robot.yaml.
+namespace tactus {
+namespace {
+
+std::string linkWith(const char* name, const char* mass, const char* moments) {
+  return std::string("<link name=\"") + name +
+         "\"><inertial><origin xyz=\"0.1 0 0\"/><mass value=\"" + mass + "\"/><inertia " + moments +
+         "/></inertial></link>";
+}
+
+constexpr const char* kMoments =
+    "ixx=\"0.02\" ixy=\"0\" ixz=\"0\" iyy=\"0.03\" iyz=\"0\" izz=\"0.04\"";
+
+struct MassiveFiles : test::SceneFiles {
+  MassiveFiles() {
+    for (const char* link : {"link1", "link2", "link3", "gripper"}) {
+      urdf = test::replaced(urdf, std::string("<link name=\"") + link + "\"/>",
+                            linkWith(link, "2", kMoments));
+    }
+    robot +=
+        "dynamics:\n  rotor_inertia: [3, 0.5, 0.1]\n  gear_stiffness: [1e5, 1e3, 1e3]\n"
+        "  gear_damping: [10, 1, 1]\n  servo_bandwidth_hz: 30\n"
+        "  contact_stiffness_N_per_m: 9000\n";
+    scene += "  arm: flexible_gears\n";
+  }
+};
+
+TEST(DynamicsLoad, TakesBodiesFromTheUrdfAndTheRestFromTheRobot) {
+  const Scene scene = MassiveFiles().load();
+  ASSERT_TRUE(scene.plant.dynamics);
+  const ArmDynamicsConfig& arm = *scene.plant.dynamics;
+  ASSERT_EQ(arm.bodies.size(), 3u);
+  EXPECT_EQ(arm.bodies[0].mass_kg, 2.0);
+  EXPECT_LT((arm.bodies[0].p_JointCom - Vector3(0.1, 0, 0)).norm(), 1e-15);
+  EXPECT_NEAR(arm.bodies[1].I_Com(2, 2), 0.04, 1e-15);
+  // link3 and the gripper, which hangs on it by a fixed joint and one beside the chain.
+  EXPECT_EQ(arm.bodies[2].mass_kg, 4.0);
+  EXPECT_LT((arm.bodies[2].p_JointCom - Vector3(0.25, 0.05, 0)).norm(), 1e-15);
+  EXPECT_EQ(arm.rotor_inertia[1], 0.5);
+  EXPECT_EQ(arm.gear_stiffness[0], 1e5);
+  EXPECT_EQ(arm.servo_bandwidth_hz, 30.0);
+  EXPECT_EQ(scene.plant.robot_stiffness_N_per_m, 9000.0);
+}
+
+TEST(DynamicsLoad, IsAbsentUnlessTheSceneNamesIt) {
+  MassiveFiles files;
+  files.scene = test::kSceneText;
+  EXPECT_FALSE(files.load().plant.dynamics);
+  EXPECT_EQ(files.load().plant.robot_stiffness_N_per_m, 5000.0);
+}
+
+TEST(DynamicsLoad, RigidGearsHaveNoSpring) {
+  const Scene scene = MassiveFiles().load({{"simulation.arm", "rigid_gears"}});
+  EXPECT_TRUE(std::isinf(scene.plant.dynamics->gear_stiffness[2]));
+  EXPECT_EQ(scene.plant.robot_stiffness_N_per_m, 5000.0);
+}
+
+struct Broken {
+  const char *from, *to;
+  std::vector<std::string> parts;
+};
+
+TEST(DynamicsLoad, EndsAsOneLine) {
+  const auto expectParts = [](const std::string& error, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts)
+      EXPECT_NE(error.find(part), std::string::npos) << part << " in " << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos);
+  };
+  for (const Broken& broken : std::vector<Broken>{
+           {"dynamics:", "drives2:", {"robot.yaml:", "unknown key"}},
+           {"  gear_stiffness: [1e5, 1e3, 1e3]\n",
+            "",
+            {"scene.yaml:", "simulation.arm: the robot has no gear_stiffness", "rigid_gears"}},
+           {"[1e5, 1e3, 1e3]",
+            "[1e5, 1e3]",
+            {"robot.yaml:", "dynamics.gear_stiffness", "3 numbers"}},
+           {"[1e5, 1e3, 1e3]",
+            "[1e5, 1e3, 1e9]",
+            {"dynamics.gear_stiffness: a gear rings with", "at most 500 Hz"}},
+           {"[3, 0.5, 0.1]", "[3, -0.5, 0.1]", {"dynamics.rotor_inertia[1]: '-0.5'"}}}) {
+    MassiveFiles files;
+    files.robot = test::replaced(files.robot, broken.from, broken.to);
+    expectParts(test::loadError(files.sources()), broken.parts);
+  }
+  for (const Broken& broken : std::vector<Broken>{
+           {"value=\"2\"", "value=\"-2\"", {"robot.urdf:", "link.link1.inertial.mass.value"}},
+           {"ixx=\"0.02\"", "ixx=\"1.02\"", {"robot.urdf:", "no body has these moments"}},
+           {"ixx=\"0.02\" ", "", {"robot.urdf:", "inertia.ixx: is missing"}},
+           {"ixx=\"0.02\"", "ixx=\"nan\"", {"robot.urdf:", "'nan' is no number"}}}) {
+    MassiveFiles files;
+    const std::size_t at = files.urdf.find(broken.from);
+    files.urdf.replace(at, std::string(broken.from).size(), broken.to);
+    expectParts(test::loadError(files.sources()), broken.parts);
+  }
+  MassiveFiles without;
+  without.urdf = test::kUrdfText;
+  expectParts(test::loadError(without.sources()),
+              {"robot.yaml:", "dynamics: joint", "moves no mass", "<inertial>"});
+  MassiveFiles nothing;
+  nothing.robot = test::kRobotText;
+  expectParts(test::loadError(nothing.sources()),
+              {"scene.yaml:", "simulation.arm: the robot has no section dynamics"});
+}
+
+}  // namespace
+}  // namespace tactus
