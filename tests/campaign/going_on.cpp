@@ -11,7 +11,9 @@ namespace tactus::campaign {
 namespace {
 
 constexpr double kMaxPeakMore = 0.25;  ///< than without a trouble, m/s or rad/s
-constexpr double kHandShare = 0.25;    ///< more than that, by a hand that leans on
+/// Where a hand leans on, which the arm is to give way to, in the posture in which it stands then.
+constexpr double kMaxHandMore = 0.5;
+constexpr double kMaxHandShare = 0.25;
 constexpr int kBefore_ms = 200;
 
 struct Peaks {
@@ -76,7 +78,7 @@ double peakWithoutTheHold(const Stage& stage, const Plan& plan, const GoingOn& h
 double allowedPeak(const GoingOn& one, const Peaks& undisturbed) {
   const bool went_apart = one.before > undisturbed.before + kMaxPeakMore;
   const double peak = went_apart ? std::max(one.before, undisturbed.after) : undisturbed.after;
-  return peak + (one.has_hand ? std::max(kMaxPeakMore, kHandShare * peak) : kMaxPeakMore);
+  return peak + (one.has_hand ? std::max(kMaxHandMore, kMaxHandShare * peak) : kMaxPeakMore);
 }
 
 double allowedPeak(const Stage& stage, const Plan& plan, const std::vector<GoingOn>& stops,

@@ -38,8 +38,8 @@ struct GoingOnJudge {
 /// Two runs that went apart before the stop, as where an arm meets the band a little elsewhere,
 /// cannot be compared: there it may be as fast as just before the stop, if nothing but hands was at
 /// work then, or as in the same run without this stop, if it was a hold. Where a hand leans on, the
-/// runs go apart by what it makes the arm do: a quarter of that is no wonder. Adds the cycles that
-/// all this takes.
+/// runs go apart by what it makes the arm do, as the arm does not stand in the same posture: there
+/// 0.5 rad/s or a quarter are no wonder. Adds the cycles that all this takes.
 void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& judge,
                     std::vector<Violation>& found, long long& cycles);
 
