@@ -1,0 +1,29 @@
+#include "tactus/control/controller.h"
+#include "tactus/control/return_speed.h"
+
+/// How an arm goes on that its drives had stopped by themselves.
+namespace tactus {
+
+void Controller::restart(const Gains& gains, ControllerState& state) const noexcept {
+  if (joint_limit_avoidance_ && state.return_share > 0.0) {  // else it has not moved since
+    state.way_out_before = -limitCost(gains, state).gradient;
+    softenWayOut(state.return_share, ScaledVector::Zero(), state.way_out_added,
+                 state.way_out_before);
+  }
+  state.return_share = 0.0;
+  if (contact_controller_) state.contact = contact_controller_->initialState();
+}
+
+void Controller::place(const JointVector& q, const Gains& gains,
+                       ControllerState& state) const noexcept {
+  state.q_desired = q.cwiseMax(config_.limits.lower).cwiseMin(config_.limits.upper);
+  state.velocity_before = JointVector::Zero(config_.chain.size());
+  state.fault = Fault::kNone;
+  if (!joint_limit_avoidance_) return;
+  state.is_leaning = contact_controller_ &&
+                     state.modules.front().contact.force_N > gains.force.transition.release_force_N;
+  state.way_out_added = -limitCost(gains, state).gradient;
+  if (state.is_leaning) state.way_out_added -= state.way_out_before;
+}
+
+}  // namespace tactus
