@@ -1,7 +1,5 @@
 #include "tactus/math/mass_matrix.h"
 
-#include <Eigen/Cholesky>
-
 namespace tactus {
 namespace {
 
@@ -73,8 +71,13 @@ void computeMassMatrix(const SerialChain& chain, const ChainPose& pose,
   }
 }
 
-double effectiveMass_kg(const MassMatrix& M, const JointVector& a) noexcept {
-  return 1.0 / a.dot(M.llt().solve(a));
+MassMatrix massMatrixAt(const SerialChain& chain, const std::vector<BodyInertia>& bodies,
+                        const JointVector& q) noexcept {
+  ChainPose pose;
+  chain.computePose(q, pose);
+  MassMatrix M;
+  computeMassMatrix(chain, pose, bodies, M);
+  return M;
 }
 
 }  // namespace tactus

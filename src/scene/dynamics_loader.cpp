@@ -18,12 +18,7 @@ JointVector orAll(const std::optional<std::vector<double>>& values, double absen
 }
 
 MassMatrix massMatrix(const LoadedRobot& robot, const JointVector& q) {
-  const SerialChain chain(robot.chain.joints, robot.chain.tip);
-  ChainPose pose;
-  chain.computePose(q, pose);
-  MassMatrix M;
-  computeMassMatrix(chain, pose, robot.bodies, M);
-  return M;
+  return massMatrixAt(SerialChain(robot.chain.joints, robot.chain.tip), robot.bodies, q);
 }
 
 [[noreturn]] void failAtRobot(const LoadedRobot& robot, const std::string& key,

@@ -20,11 +20,7 @@ ArmDynamics::ArmDynamics(const SerialChain& chain, const ArmDynamicsConfig& conf
                     config.rotor_inertia.size() == n && config.gear_stiffness.size() == n &&
                     config.gear_damping.size() == n;
   if (!fits) throw std::invalid_argument("one body, rotor and gear a joint are needed");
-  ChainPose pose;
-  chain_.computePose(q, pose);
-  MassMatrix M;
-  computeMassMatrix(chain_, pose, config_.bodies, M);
-  MassMatrix with_rotors = M;
+  MassMatrix with_rotors = massMatrixAt(chain_, config_.bodies, q);
   with_rotors.diagonal() += config_.rotor_inertia;
   if (with_rotors.llt().info() != Eigen::Success || !with_rotors.allFinite())
     throw std::invalid_argument("the arm's mass matrix is not positive definite");

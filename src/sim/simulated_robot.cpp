@@ -103,31 +103,28 @@ void SimulatedRobot::touch(double t_s, Module& module) noexcept {
   const ModuleStep step{X_BaseModule, std::exchange(module.X_BaseModule, X_BaseModule)};
   const CoverAxis axis{X_BaseModule.p_AB, X_BaseModule.R_AB.col(0), module.length_m,
                        module.cover_radius_m};
-  Vector3 force_Base = Vector3::Zero();
+  module.force_Base.setZero();
   module.wrench.setZero();
   for (Obstacle& obstacle : module.obstacles) {
     const ObstacleContact contact = obstacle.touch(axis, t_s);
     if (obstacle.hasFriction()) {
       const ObstacleFriction friction = obstacle.rub(step, axis, contact);
-      force_Base += friction.force_Base;
-      module.wrench +=
-          wrenchAt(friction.p_ModuleSurface, X_BaseModule.R_AB.transpose() * friction.force_Base);
-      push(module, X_BaseModule.p_AB + X_BaseModule.R_AB * friction.p_ModuleSurface,
-           friction.force_Base);
+      push(friction.p_ModuleSurface, friction.force_Base, module);
     }
-    if (contact.force_N == 0.0) continue;
-    const Vector3 F = X_BaseModule.R_AB.transpose() * contact.force_Base;
-    force_Base += contact.force_Base;
-    module.wrench += Wrench4(F.y(), F.z(), -contact.position_m * F.z(), contact.position_m * F.y());
-    push(module, axis.p_BaseStart + contact.position_m * axis.direction, contact.force_Base);
+    if (contact.force_N != 0.0)
+      push(Vector3(contact.position_m, 0.0, 0.0), contact.force_Base, module);
   }
-  module.true_force_N = force_Base.norm();
+  module.true_force_N = module.force_Base.norm();
 }
 
-/// An arm with mass gives way to what pushes.
-void SimulatedRobot::push(const Module& module, const Vector3& p_Base,
-                          const Vector3& force_Base) noexcept {
+/// What a force at a point of a module is to its electronics, and to an arm with mass.
+void SimulatedRobot::push(const Vector3& p_Module, const Vector3& force_Base,
+                          Module& module) noexcept {
+  const Pose& X_BaseModule = module.X_BaseModule;
+  module.force_Base += force_Base;
+  module.wrench += wrenchAt(p_Module, X_BaseModule.R_AB.transpose() * force_Base);
   if (!dynamics_) return;
+  const Vector3 p_Base = X_BaseModule.p_AB + X_BaseModule.R_AB * p_Module;
   ScaledVector torque;
   applyPointJacobianTranspose(chain_, pose_, module.link.joint, p_Base, force_Base, torque);
   torque_ += torque.head(chain_.size());

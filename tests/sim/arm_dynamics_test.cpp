@@ -6,9 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "support/crops9.h"
 #include "support/random_robot.h"
-#include "tactus/sim/obstacle.h"
 
 namespace tactus {
 namespace {

@@ -26,8 +26,8 @@ using MassMatrix =
 void computeMassMatrix(const SerialChain& chain, const ChainPose& pose,
                        const std::vector<BodyInertia>& bodies, MassMatrix& M) noexcept;
 
-/// What a blow against the row a = J_p^T n of joint space feels: 1 / (a^T M^-1 a), kg. Infinite
-/// where no joint moves the point along n. M: positive definite.
-double effectiveMass_kg(const MassMatrix& M, const JointVector& a) noexcept;
+/// With the joints at q, m or rad.
+MassMatrix massMatrixAt(const SerialChain& chain, const std::vector<BodyInertia>& bodies,
+                        const JointVector& q) noexcept;
 
 }  // namespace tactus

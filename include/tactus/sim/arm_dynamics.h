@@ -36,7 +36,6 @@ class ArmDynamics {
 
   const JointVector& q() const noexcept { return q_; }             ///< of the links
   const JointVector& qMotor() const noexcept { return q_motor_; }  ///< at the joint
-  double longestStep_s() const noexcept { return config_.step_s; }
 
  private:
   SerialChain chain_;

@@ -44,12 +44,13 @@ class SimulatedRobot final : public Robot {
     Pose X_BaseModule;                ///< in the last step
     int steps_a_filter_step = 1;
     double true_force_N = 0.0;
+    Vector3 force_Base = Vector3::Zero();  ///< of all contacts, and what they are to the module
     Wrench4 wrench = Wrench4::Zero();
   };
 
   void moveArm(double duration_s, const JointVector& velocity_setpoint) noexcept;
   void touch(double t_s, Module& module) noexcept;
-  void push(const Module& module, const Vector3& p_Base, const Vector3& force_Base) noexcept;
+  void push(const Vector3& p_Module, const Vector3& force_Base, Module& module) noexcept;
 
   SerialChain chain_;
   JointLimits limits_;
