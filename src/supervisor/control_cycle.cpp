@@ -153,6 +153,8 @@ void ControlCycle::rememberPlaces() noexcept {
     places_.observe(joint, input_.q_measured[joint], robot_.isHolding(joint),
                     is_let_go && !is_commanding);
   }
+  // It may have been its feedback that stood still.
+  if (mode_.fault == Fault::kFollowingError && report_.joint >= 0) places_.doubt(report_.joint);
 }
 
 ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept {

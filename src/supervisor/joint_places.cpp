@@ -34,6 +34,11 @@ void JointPlaces::observe(int joint, double q_measured, bool is_holding, bool is
   if (is_held_[joint] && is_holding && way <= stop_way_[joint]) q_released_[joint] = q_measured;
 }
 
+void JointPlaces::doubt(int joint) noexcept {
+  is_held_[joint] = false;
+  q_released_[joint] = q_commanded_[joint];
+}
+
 int JointPlaces::outOfPlace(const JointVector& q_measured) const noexcept {
   const JointVector from_command = (q_measured - q_commanded_).cwiseAbs();
   const JointVector from_release = (q_measured - q_released_).cwiseAbs();

@@ -48,5 +48,16 @@ TEST(JointPlaces, EndWhereNoStopLeadsTo) {
   EXPECT_EQ(joints.outOfPlace(places(0.0, 1.01 * longest)), 1);
 }
 
+TEST(JointPlaces, AreTheCommandedOnesWhereAJointIsDoubted) {
+  JointPlaces joints(places(0, 0), twoDrives());
+  joints.command(places(0.5, 0.5), places(0.2, 0.2));
+  joints.observe(0, 0.45, true, false);
+  joints.observe(1, 0.45, true, false);
+  joints.doubt(0);
+  joints.observe(0, 0.45, true, false);
+  EXPECT_EQ(joints.outOfPlace(places(0.5, 0.45)), -1);
+  EXPECT_EQ(joints.outOfPlace(places(0.45, 0.45)), 0);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <string>
 
@@ -115,6 +116,33 @@ TEST(LyingDrive, ThatWentFurtherThanAnyStopIsNotInPlace) {
 }
 
 /// A fault of another drive while this one ignores what it is told, and moves on.
+/// Its position stands still from the start of motion on, until that is a following error. Once limp
+/// the joint may be pushed to just where its feedback stood: nobody held it there.
+TEST(LyingDrive, WhosePositionStoodStillIsNotInPlaceThere) {
+  Scene scene = sceneWith({}, true);
+  for (DriveConfig& drive : scene.hardware->drives) drive.max_following_error = 0.05;
+  scene.hardware->start_tolerance = 0.02;
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  std::array<std::uint8_t, 4> kept{};
+  bool has_kept = false;
+  cell.on_frame = [&](int bus, CanFrame& frame) {
+    if (bus != 0 || frame.id != 0x181) return;
+    if (!has_kept) std::copy_n(frame.data.begin() + 2, 4, kept.begin());
+    has_kept = true;
+    std::copy_n(kept.begin(), 4, frame.data.begin() + 2);
+  };
+  ASSERT_TRUE(cell.runUntil(Mode::kFault, 10000));
+  ASSERT_EQ(cell.cycle.report().fault, Fault::kFollowingError);
+  step(cell, 1000);
+  cell.switchEnable();
+  for (int i = 0; i < 1000; ++i) {
+    cell.step();
+    ASSERT_NE(cell.cycle.report().mode, Mode::kEnabling) << i;
+  }
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart);
+}
+
 TEST(LyingDrive, ThatMovesOnIsBrakedAndStoppedInTime) {
   for (const int joint : {0, 3, 8}) {
     const int bus = joint / 3;

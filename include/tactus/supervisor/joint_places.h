@@ -23,6 +23,9 @@ class JointPlaces {
   /// stopped. is_holding: its drive holds it or slows it down.
   void observe(int joint, double q_measured, bool is_holding, bool is_let_go) noexcept;
 
+  /// The joint's feedback cannot be believed: its place is the one that was commanded.
+  void doubt(int joint) noexcept;
+
   /// The joint that is farthest from both places, if by more than HardwareConfig::start_tolerance;
   /// else -1. NaN is in no place.
   int outOfPlace(const JointVector& q_measured) const noexcept;
