@@ -53,10 +53,9 @@ Peaks undisturbedPeaks(const Stage& stage, const Plan& plan, const std::vector<G
   return peaks;
 }
 
-/// The peak after a hold where the line stays on and nobody leans on the arm meanwhile, but who
-/// does so after, too: all that befell the arm before is the same.
+/// The peak after a hold where the line stays on: all that befell the arm before is the same.
 double peakWithoutTheHold(const Stage& stage, const Plan& plan, const GoingOn& hold,
-                          long long& cycles) {
+                          bool has_forces_between, long long& cycles) {
   Play play(stage, plan);
   User user(plan);
   double peak = 0.0;
@@ -66,7 +65,7 @@ double peakWithoutTheHold(const Stage& stage, const Plan& plan, const GoingOn& h
     if (!user.act(play.now_ms(), play.now().mode, input)) break;
     const bool is_hold = t_ms >= hold.stop_ms && t_ms <= hold.return_ms;
     if (is_hold) input.lines.enable = true;
-    play.setForces(!is_hold || hold.has_hand);
+    play.setForces(!is_hold || has_forces_between);
     play.step(input);
     ++cycles;
     if (t_ms >= hold.return_ms) peak = std::max(peak, speedOf(play.now()));
@@ -88,8 +87,10 @@ double allowedPeak(const Stage& stage, const Plan& plan, const std::vector<Going
   if (one.peak > allowed && one.has_hand)
     allowed =
         std::max(allowed, allowedPeak(one, undisturbedPeaks(stage, plan, stops, true, cycles)));
-  if (one.peak > allowed && one.is_hold)
-    allowed = std::max(allowed, peakWithoutTheHold(stage, plan, one, cycles) + kMaxPeakMore);
+  for (const bool has_forces : {false, true})
+    if (one.peak > allowed && one.is_hold)
+      allowed = std::max(allowed,
+                         kMaxPeakMore + peakWithoutTheHold(stage, plan, one, has_forces, cycles));
   return allowed;
 }
 
@@ -113,8 +114,10 @@ void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& ju
 void GoingOnJudge::look(const Look& look) {
   const Observation& now = look.now;
   const bool is_open = !all.empty() && all.back().end_ms == 0;
+  const int since_ms = is_open ? now.t_ms - all.back().return_ms : 0;
+  const bool is_let_go = look.before.has_hand && !now.has_hand && since_ms > kLeaned_ms;
   const bool has_ended =
-      is_open && (now.mode != Mode::kRunning || now.t_ms > all.back().return_ms + kWindow_ms);
+      is_open && (now.mode != Mode::kRunning || since_ms > kWindow_ms || is_let_go);
   if (has_ended) all.back().end_ms = look.before.t_ms;
   const bool stops = now.mode != Mode::kRunning && look.before.mode == Mode::kRunning;
   if (stops) stop_ms = now.t_ms;

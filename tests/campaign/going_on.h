@@ -14,7 +14,7 @@ namespace tactus::campaign {
 struct GoingOn {
   int stop_ms = 0;        ///< when it last stopped running
   int return_ms = 0;      ///< and ran again
-  int end_ms = 0;         ///< of what was looked at: 3 s, or the next stop
+  int end_ms = 0;         ///< of what was looked at: 3 s, the next stop or the hand's end
   double peak = 0.0;      ///< of commands and drives, m/s or rad/s
   double before = 0.0;    ///< the same, in the last 0.2 s before the stop
   bool has_hand = false;  ///< that still leans on the arm, which gives way to it then
@@ -23,6 +23,9 @@ struct GoingOn {
 
 struct GoingOnJudge {
   static constexpr int kWindow_ms = 3000;
+  /// A hand that leaned on the running arm for so long lets go of one that stands by what has been
+  /// since it went on.
+  static constexpr int kLeaned_ms = 1000;
   std::vector<GoingOn> all;
   std::vector<bool> is_calm;  ///< of each
   int stop_ms = -1;
@@ -37,9 +40,11 @@ struct GoingOnJudge {
 /// the arm in the last stop; or, where a hand is there beyond the stop, that leans on it then, too.
 /// Two runs that went apart before the stop, as where an arm meets the band a little elsewhere,
 /// cannot be compared: there it may be as fast as just before the stop, if nothing but hands was at
-/// work then, or as in the same run without this stop, if it was a hold. Where a hand leans on, the
-/// runs go apart by what it makes the arm do, as the arm does not stand in the same posture: there
-/// 0.5 rad/s or a quarter are no wonder. Adds the cycles that all this takes.
+/// work then, or as in the same run without this stop, if it was a hold, with or without a hand in
+/// it, for who takes it away at the end lets go of an arm that gives way as long as it feels that.
+/// Where a hand leans on, the runs go apart by what it makes the arm do, as the arm does not stand
+/// in the same posture: there 0.5 rad/s or a quarter are no wonder. Adds the cycles that all this
+/// takes.
 void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& judge,
                     std::vector<Violation>& found, long long& cycles);
 
