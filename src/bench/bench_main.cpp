@@ -170,6 +170,9 @@ void parse(CLI::App& app, Options& options, int argc, char** argv) {
   app.add_flag_callback(
       "--law", [&options] { options.names.push_back("law"); },
       "null_limit beside the paper's law: --study law; SCENE: its base, with band and profile");
+  app.add_flag_callback(
+      "--contact", [&options] { options.names.push_back("contact"); },
+      "null_limit on contacts that rub: --study contact; SCENE: as for --law");
   app.add_flag("--quick", options.is_quick, "A look: few repetitions, short sweeps");
   app.add_flag("--json", options.json, "Print all tables as JSON");
   app.add_flag("--count-steps", options.counts_steps)->group("");  // how valgrind runs this

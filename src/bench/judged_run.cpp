@@ -65,6 +65,7 @@ JudgedRun judgeRun(const RunSetup& setup) {
     run.tcp_error_final_m = (goal - robot.toolPosition()).norm();
     robot.write(output.velocity);
     run.peak_force_N = std::max(run.peak_force_N, output.sensed[0].force_N);
+    run.peak_true_force_N = std::max(run.peak_true_force_N, robot.trueForce_N());
     if (cycle >= rest_from) {
       last_readings.add(output.sensed[0].force_N);
       last_forces.add(robot.trueForce_N());

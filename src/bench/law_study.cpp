@@ -1,10 +1,9 @@
 #include <algorithm>
-#include <atomic>
 #include <string>
-#include <thread>
 
 #include "tactus/bench/law_grid.h"
 #include "tactus/bench/law_trials.h"
+#include "tactus/bench/parallel.h"
 #include "tactus/bench/study.h"
 #include "tactus/scene/scene_loader.h"
 
@@ -16,15 +15,8 @@ constexpr const char* kLawBase = "/scenario2_estimated.yaml";
 std::vector<LawGridRow> runGrid(const RunSetup& base, const std::vector<LawGridPoint>& points,
                                 const LawTrial& trial) {
   std::vector<LawGridRow> rows(points.size());
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < points.size(); i = next++)
-      rows[i] = runLawGridPoint(base, points[i], trial.change);
-  };
-  std::vector<std::jthread> workers;
-  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) workers.emplace_back(work);
-  work();
-  workers.clear();
+  inParallel(points.size(),
+             [&](std::size_t i) { rows[i] = runLawGridPoint(base, points[i], trial.change); });
   return rows;
 }
 

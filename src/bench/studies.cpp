@@ -12,6 +12,7 @@ const std::vector<Study>& studies() {
       {"stability", "stiff and extreme cases, each with its outcome", false, false, studyStability},
       {"law", "the approach-speed limit beside the paper's law, on bands and profiles", false,
        false, studyLaw},
+      {"contact", "null_limit on contacts that rub", false, false, studyContact},
   };
   return list;
 }

@@ -68,7 +68,11 @@ ContactController::ContactController(const ControllerConfig& config,
       has_estimator_(config.force_control->has_estimator),
       inv_sqrt_weights_(inv_sqrt_weights),
       law_(*config.force_control, config.chain, inv_sqrt_weights) {
-  if (config.force_control->variant == Variant::kNullLimit) approach_limit_.emplace(config);
+  if (config.force_control->variant != Variant::kNullLimit) return;
+  approach_limit_.emplace(config);
+  if (config.force_control->friction_coefficient > 0.0)
+    friction_cone_.emplace(config.tactile_modules.front(),
+                           config.force_control->friction_coefficient);
 }
 
 ContactControllerState ContactController::initialState() const {
@@ -104,7 +108,7 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   input.cut_m_per_s = state.cut_m_per_s;
   ControlLawOutput u;
   law_.update(gains.force, input, contact.space, period_s, state.law, u);
-  if (approach_limit_) {
+  if (approach_limit_ && !friction_cone_) {
     const ContactSpace& space = contact.space;
     const double v_res = dot(space.a_task, motion.y, task_.size) +
                          dot(space.a_scaled, motion.v_scaled) - space.k_n * u.u_n;
@@ -115,6 +119,7 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
   motion.y += (u.u_n - u.u_t) * contact.space.a_task;
   motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
+  if (friction_cone_) u.u_t = limitCorners(gains.force, kinematics, input.F_p_N, state, motion);
 
   if (is_multi_space_ && commanded.is_followed && hasReturnSpeed(gains.task)) {
     state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * contact.space.a_task);
@@ -148,6 +153,20 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
   }
   input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
   report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
+}
+
+double ContactController::limitCorners(const ForceGains& gains, const TaskKinematics& kinematics,
+                                       double F_p_N, ContactControllerState& state,
+                                       Motion& motion) const noexcept {
+  state.approach.is_limiting = false;
+  if (state.approach.memory_N_per_m == 0.0) return 0.0;
+  SpeedRows rows;
+  friction_cone_->corners(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_,
+                          rows);
+  approach_limit_->limitRows(gains, F_p_N, state.approach, rows);
+  const double sum = keepSpeedRows(rows, task_.size, motion).sum();
+  state.approach.is_limiting = sum > 0.0;
+  return -sum;
 }
 
 const ContactPointState& ContactController::follow(const Gains& gains,

@@ -13,9 +13,9 @@ Table<TactileModuleSection> placeKeys() {
       text("link", "URDF link whose x axis runs along the cover from its start", &Config::link)};
 }
 
-Table<SimulatedModuleConfig> coverKeys() {
+Table<TactileModuleConfig> coverKeys() {
   return {required(number("cover_radius_m", "m", above(0, 1), "radius of the cover around x",
-                          &SimulatedModuleConfig::cover_radius_m))};
+                          &TactileModuleConfig::cover_radius_m))};
 }
 
 Table<TactileModuleConfig> readingKeys() {
@@ -61,7 +61,7 @@ Table<TactileChannels> channelKeys() {
 
 Table<TactileModuleSection> tactileModuleKeys() {
   using Config = TactileModuleSection;
-  return join(placeKeys(), inside(&Config::simulated, coverKeys()),
+  return join(placeKeys(), inside(&Config::config, coverKeys()),
               inside(&Config::config, readingKeys()), inside(&Config::simulated, filterKeys()),
               inside(&Config::channels, channelKeys()), moduleOnBusKeys());
 }

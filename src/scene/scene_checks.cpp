@@ -143,6 +143,10 @@ void checkController(const Checked& c) {
     c.fail("controller.activation_force_N", "is missing",
            fmt::format("a number > 0 in N with the variant {}", name));
   }
+  if (c.scene.controller->friction_coefficient > 0.0 && variant != Variant::kNullLimit) {
+    c.fail("controller.friction_coefficient", name + " does not bear friction",
+           "0, or the variant null_limit");
+  }
   if (variant == Variant::kJointSpace) checkJointSpace(c);
   if (variant != Variant::kNone && !c.scene.stiffness) {
     c.fail("stiffness", "is missing", fmt::format("a section with the variant {}", name));

@@ -78,6 +78,14 @@ Row<ForceControlConfig> orderRow() {
                  &ForceControlConfig::order);
 }
 
+Row<ForceControlConfig> frictionRow() {
+  return withSymbol("mu_max",
+                    number("friction_coefficient", "", within(0, 2),
+                           "of the cover on whatever it may touch, at most; null_limit bears that "
+                           "much, at the price of more give, and 0 stands for no friction",
+                           &ForceControlConfig::friction_coefficient));
+}
+
 Table<ForceGains> responseKeys() {
   using Config = ForceGains;
   return {
@@ -124,11 +132,11 @@ Table<ForceGains> responseLimitKeys() {
 
 Row<SceneConfig> controllerSection() {
   const Table<ForceGains> gains = join(responseKeys(), responseLimitKeys());
-  return optional(
-      group<SceneConfig>("controller", "force control; absent: no tactile module is even read",
-                         join(inside(&SceneConfig::controller, {variantRow(), orderRow()}),
-                              inside(&SceneConfig::gains, inside(&Gains::force, gains))),
-                         [](SceneConfig& scene) { scene.controller.emplace(); }));
+  return optional(group<SceneConfig>(
+      "controller", "force control; absent: no tactile module is even read",
+      join(inside(&SceneConfig::controller, {variantRow(), orderRow(), frictionRow()}),
+           inside(&SceneConfig::gains, inside(&Gains::force, gains))),
+      [](SceneConfig& scene) { scene.controller.emplace(); }));
 }
 
 Table<StiffnessEstimatorGains> estimateKeys() {

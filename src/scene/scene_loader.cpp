@@ -102,7 +102,7 @@ SimulatedModuleConfig makeSimulatedModule(const SimulationSection& simulation,
                                           const TactileModuleSection& section, std::size_t index) {
   SimulatedModuleConfig module = simulation.module;
   module.seed += index;
-  module.cover_radius_m = section.simulated.cover_radius_m;
+  module.cover_radius_m = section.config.cover_radius_m;
   module.filter_rate_hz = section.simulated.filter_rate_hz;
   module.filter_cutoff_hz = simulation.filter_cutoff_hz.value_or(section.config.filter_cutoff_hz);
   module.channels = section.channels;

@@ -27,6 +27,7 @@ class ClosedLoop {
     while (static_cast<double>(cycle_) * period_s_ < t_s - 0.5 * period_s_) step();
   }
 
+  double time_s() const { return static_cast<double>(cycle_) * period_s_; }
   const ControllerOutput& output() const { return output_; }
   const RobotInput& input() const { return input_; }
   const SimulatedRobot& robot() const { return robot_; }

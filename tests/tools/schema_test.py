@@ -54,6 +54,7 @@ redundancy:
 controller:
   variant: null_task
   order: 2
+  friction_coefficient: 0
   time_constant_s: 0.1
   damping: 0.5
   contact_threshold_N: 1.2

@@ -22,8 +22,9 @@ struct RunSetup {
 /// How a run went with its last obstacle, the profile. Forces are the sensor's.
 struct JudgedRun {
   double peak_force_N = 0.0;
-  double final_force_N = 0.0;   ///< mean over the last kRest_s
-  double restlessness_N = 0.0;  ///< standard deviation of the true force over them
+  double peak_true_force_N = 0.0;  ///< of the contact itself
+  double final_force_N = 0.0;      ///< mean over the last kRest_s
+  double restlessness_N = 0.0;     ///< standard deviation of the true force over them
   double tcp_error_final_m = 0.0;
   /// When the profile was first touched: the speed against it, and F_p of what was already there.
   double touch_speed_m_per_s = 0.0;

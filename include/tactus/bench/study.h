@@ -51,5 +51,6 @@ StudyResult studyStep(const BenchOptions& options);
 StudyResult studyClosedLoop(const BenchOptions& options);
 StudyResult studyStability(const BenchOptions& options);
 StudyResult studyLaw(const BenchOptions& options);
+StudyResult studyContact(const BenchOptions& options);
 
 }  // namespace tactus

@@ -3,6 +3,7 @@
 #include "tactus/control/approach_estimator.h"
 #include "tactus/control/contact_smoother.h"
 #include "tactus/control/sensed_position.h"
+#include "tactus/control/speed_rows.h"
 
 namespace tactus {
 
@@ -48,6 +49,10 @@ class ApproachLimit {
   /// min(0, v_res + v_max), m/s; after observe().
   double excess(const ForceGains& gains, double F_p_N, double v_res_m_per_s,
                 ApproachLimitState& state) const noexcept;
+
+  /// For rows that limit the approach instead: v_max of (1) and T m, of all alike.
+  void limitRows(const ForceGains& gains, double F_p_N, const ApproachLimitState& state,
+                 SpeedRows& rows) const noexcept;
 
  private:
   void estimate(const ForceGains& gains, const ScaledVector& a, int joints, double F_p_N,

@@ -50,6 +50,7 @@ struct TaskConfig {
 struct TactileModuleConfig {
   AttachedFrame link;              ///< frame of the module: x along the link
   double length_m = 0.0;           ///< contact lies at 0 <= x <= length
+  double cover_radius_m = 0.06;    ///< around x
   double max_force_N = 100.0;      ///< a larger reading is a sensor fault
   double max_sample_age_s = 0.02;  ///< an older sample is a sensor fault
   double filter_cutoff_hz = 15.0;  ///< of the module's 3rd-order Butterworth filter
@@ -67,8 +68,9 @@ enum class Variant {
 
 struct ForceControlConfig {
   Variant variant = Variant::kNullSpace;
-  int order = 2;               ///< of the target dynamics (4): 1 or 2
-  bool has_estimator = false;  ///< of the stiffness; else it is as assumed
+  int order = 2;                      ///< of the target dynamics (4): 1 or 2
+  bool has_estimator = false;         ///< of the stiffness; else it is as assumed
+  double friction_coefficient = 0.0;  ///< mu_max that contacts may have; null_limit only
 };
 
 struct ControllerConfig {

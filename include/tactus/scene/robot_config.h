@@ -37,7 +37,7 @@ struct DrivesSection {
 struct TactileModuleSection {
   std::string link;                 ///< name in the URDF
   TactileModuleConfig config;       ///< without link
-  SimulatedModuleConfig simulated;  ///< cover and filter rate alone
+  SimulatedModuleConfig simulated;  ///< filter rate alone
   TactileChannels channels;
   std::optional<std::string> interface;  ///< of its bus
   CanTactileConfig on_bus;               ///< id and tare alone

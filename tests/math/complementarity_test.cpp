@@ -1,0 +1,85 @@
+#include "tactus/math/complementarity.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <optional>
+
+#include "support/random.h"
+
+namespace tactus {
+namespace {
+
+struct Problem {
+  /// opposition: 0..1, how nearly two of the rows exclude each other.
+  Problem(test::Random& random, int rows, double opposition) : K(rows, rows), d(rows) {
+    Eigen::MatrixXd A(rows, rows + 2);
+    for (double& entry : A.reshaped()) entry = random.uniform(-1.0, 1.0);
+    if (rows > 1) A.row(1) = (1.0 - opposition) * A.row(1) - opposition * A.row(0);
+    K = A * A.transpose() + 1e-6 * Eigen::MatrixXd::Identity(rows, rows);
+    for (double& entry : d) entry = random.uniform(-1.0, 1.0);
+  }
+  RowMatrix K;
+  RowVector d;
+};
+
+/// By trying all sets of active rows.
+std::optional<Eigen::VectorXd> bruteForce(const Problem& p) {
+  const auto n = static_cast<int>(p.d.size());
+  for (int set = 0; set < 1 << n; ++set) {
+    Eigen::MatrixXd K = p.K;
+    Eigen::VectorXd d = p.d;
+    for (int i = 0; i < n; ++i) {
+      if ((set >> i & 1) != 0) continue;
+      K.row(i).setZero();
+      K.col(i).setZero();
+      K(i, i) = 1.0;
+      d[i] = 0.0;
+    }
+    const Eigen::VectorXd l = K.ldlt().solve(d);
+    const Eigen::VectorXd lack = p.d - p.K * l;
+    if (l.minCoeff() >= -1e-9 && lack.maxCoeff() <= 1e-9) return l;
+  }
+  return {};
+}
+
+TEST(Complementarity, FindsTheOneSolution) {
+  test::Random random(301);
+  int with_active = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Problem p(random, random.integer(1, 6), random.chance(0.5) ? 0.0 : 0.9);
+    RowVector l;
+    ASSERT_TRUE(solveComplementarity(p.K, p.d, l));
+    const auto expected = bruteForce(p);
+    ASSERT_TRUE(expected);
+    ASSERT_LT((l - *expected).norm(), 1e-6 * (1.0 + expected->norm())) << i;
+    with_active += l.maxCoeff() > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(with_active, 100);
+}
+
+TEST(Complementarity, KeepsItsConditionsForAnyNumberOfRows) {
+  test::Random random(302);
+  for (int i = 0; i < 3000; ++i) {
+    const Problem p(random, random.integer(1, kMaxRows), random.uniform(0.0, 0.999));
+    RowVector l;
+    ASSERT_TRUE(solveComplementarity(p.K, p.d, l)) << i;
+    const Eigen::VectorXd lack = p.d - p.K * l;
+    const double scale = p.d.norm() + p.K.norm() * l.norm();
+    ASSERT_GE(l.minCoeff(), 0.0);
+    ASSERT_LE(lack.maxCoeff(), 1e-9 * scale) << i;
+    ASSERT_LE(std::abs(l.dot(lack)), 1e-9 * scale * (1.0 + l.norm())) << i;
+  }
+}
+
+TEST(Complementarity, AsksForNothingWhereNothingLacks) {
+  test::Random random(303);
+  Problem p(random, 5, 0.0);
+  p.d = -p.d.cwiseAbs();
+  RowVector l;
+  ASSERT_TRUE(solveComplementarity(p.K, p.d, l));
+  EXPECT_TRUE(l.isZero(0.0));
+}
+
+}  // namespace
+}  // namespace tactus
