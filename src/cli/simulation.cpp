@@ -8,6 +8,7 @@
 #include "tactus/record/tool_error.h"
 #include "tactus/record/ulog_writer.h"
 #include "tactus/sim/simulated_robot.h"
+#include "tactus/supervisor/apply_mode.h"
 #include "tactus/supervisor/cycle_record.h"
 
 namespace tactus {
@@ -32,8 +33,23 @@ void noteFault(const ControllerOutput& output, double t_s, FaultReport& end) {
   end.detail = output.fault_detail;
 }
 
-bool isOver(const ControllerOutput& output) {
-  return output.fault != Fault::kNone && output.velocity.isZero(0.0);
+/// As the daemon's receivers find it in the counts of the newest samples.
+void judgeChannels(const SimulatedRobot& robot, double t_s, FaultReport& end) {
+  for (int i = 0; i < robot.modules() && end.fault == Fault::kNone; ++i) {
+    if (!robot.module(i).isSaturated()) continue;
+    end.fault = Fault::kTactileSaturated;
+    end.time_s = t_s;
+    end.detail.module = i;
+  }
+}
+
+/// What a controller finds in its own input it answers itself; any other fault is the mode's.
+Mode modeAfter(Fault fault) {
+  return fault == Fault::kTactileSaturated ? Mode::kHolding : Mode::kRunning;
+}
+
+bool isOver(const FaultReport& end, const ControllerOutput& output) {
+  return end.fault != Fault::kNone && output.velocity.isZero(0.0);
 }
 
 }  // namespace
@@ -53,9 +69,13 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
 
   const Clock::time_point start = Clock::now();
   long long cycle = 0;
-  for (; cycle < cycles && !isOver(output); ++cycle) {
+  for (; cycle < cycles && !isOver(end, output); ++cycle) {
     const double t_s = static_cast<double>(cycle) * scene.period_s;
     robot.read(input);
+    const Mode mode_before = modeAfter(end.fault);
+    judgeChannels(robot, t_s, end);
+    const Mode mode = modeAfter(end.fault);
+    applyMode(controller, mode, mode_before, input, scene.controller.gains, state);
     const Clock::time_point before = Clock::now();
     controller.update(input, scene.controller.gains, t_s, scene.period_s, state, output);
     record.step_ns = nanoseconds(Clock::now() - before);
@@ -64,6 +84,8 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
     robot.write(output.velocity);
     fillRecord(t_s, input, scene.controller.gains, output, error, record);
     rotation_error.fill(record);
+    record.mode = static_cast<std::uint64_t>(mode);
+    if (end.fault != Fault::kNone) record.fault = static_cast<std::uint64_t>(end.fault);
     sink(record);
     summary.add(record);
   }

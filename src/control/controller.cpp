@@ -50,6 +50,10 @@ Controller::Controller(const ControllerConfig& config)
       limiter_(config.limits) {
   if (config.has_joint_limit_avoidance)
     joint_limit_avoidance_.emplace(config.limits, inv_sqrt_weights_);
+  if (std::ranges::any_of(config.tactile_modules,
+                          [](const auto& m) { return m.cover.has_value(); }))
+    for (const TactileModuleConfig& module : config.tactile_modules)
+      covers_.emplace_back(config, module);
   if (!config.force_control) return;
   if (config.tactile_modules.size() != 1)
     throw std::invalid_argument("force control needs one tactile module");
@@ -67,8 +71,17 @@ ControllerState Controller::initialState(const JointVector& q) const {
 
 void Controller::watchSensors(const RobotInput& input, double period_s,
                               ControllerState& state) const noexcept {
-  for (int i = 0; i < modules(); ++i)
-    readSample(config_.tactile_modules[i], input.tactile[i], period_s, state.modules[i]);
+  for (int i = 0; i < modules(); ++i) read(i, input, period_s, state.modules[i]);
+}
+
+Fault Controller::read(int module, const RobotInput& input, double period_s,
+                       TactileReading& reading) const noexcept {
+  const TactileModuleConfig& config = config_.tactile_modules[module];
+  const TactileSample& sample = input.tactile[module];
+  if (covers_.empty()) return readSample(config, sample, period_s, reading);
+  return readSample(config,
+                    covers_[module].relieve(sample, input.q_measured, period_s, reading.cover),
+                    period_s, reading);
 }
 
 FaultDetail Controller::sampleAge(int module, const RobotInput& input, double period_s,
@@ -155,7 +168,7 @@ void Controller::sense(const RobotInput& input, double period_s, ControllerState
   output.modules = modules();
   for (int i = 0; i < output.modules; ++i) {
     TactileReading& reading = state.modules[i];
-    const Fault fault = readSample(config_.tactile_modules[i], input.tactile[i], period_s, reading);
+    const Fault fault = read(i, input, period_s, reading);
     if (state.fault == Fault::kNone && fault != Fault::kNone) {
       state.fault = fault;
       output.fault_detail = reading.detail;
@@ -167,7 +180,10 @@ void Controller::sense(const RobotInput& input, double period_s, ControllerState
 
 void Controller::coast(int missed_cycles, double period_s, ControllerState& state) const noexcept {
   passTime(missed_cycles * period_s, state);
-  for (int i = 0; i < modules(); ++i) state.modules[i].age_s += missed_cycles * period_s;
+  for (int i = 0; i < modules(); ++i) {
+    state.modules[i].age_s += missed_cycles * period_s;
+    state.modules[i].cover.missed_s += missed_cycles * period_s;
+  }
 }
 
 void Controller::limit(const Motion& motion, double period_s, ControllerState& state,

@@ -18,7 +18,7 @@ constexpr double kFirstMove_periods = 0.25;
 constexpr double kMoveAfterSync_periods = 0.5;
 constexpr std::int64_t kLongSilence_periods = 100;
 
-/// A module on a bus has 24 bits, and filters only if nobody behind it does.
+/// A module on a bus has 24 bits, filters only if nobody behind it does, and is tared there.
 PlantConfig withModulesOf(const HardwareConfig& hardware, PlantConfig plant) {
   for (std::size_t i = 0; i < hardware.tactile_modules.size(); ++i) {
     const CanTactileConfig& on_bus = hardware.tactile_modules[i];
@@ -26,6 +26,7 @@ PlantConfig withModulesOf(const HardwareConfig& hardware, PlantConfig plant) {
     module.quantised = true;
     module.channels.sample_period_s = on_bus.channels.sample_period_s;
     module.filtered = !on_bus.filter_cutoff_hz;
+    module.tared = false;
   }
   return plant;
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tactus/scene/tactile_loader.h"
+
 namespace tactus {
 namespace {
 
@@ -52,7 +54,27 @@ void checkGearModes(const LoadedRobot& robot, const MassMatrix& M, const JointVe
                           0.5 / period_s));
 }
 
+/// The key that asks for gears; empty: none.
+std::string coverBehindGears(const LoadedRobot& robot) {
+  const std::vector<TactileModuleSection>& modules = robot.config.tactile_modules;
+  for (std::size_t i = 0; i < modules.size(); ++i)
+    if (modules[i].cover && modules[i].cover->behind_gears)
+      return moduleKey(robot.root, i) + ".cover.behind_gears";
+  return "";
+}
+
 }  // namespace
+
+std::optional<GearedLinks> loadGearedLinks(const LoadedRobot& robot, const JointVector& q_start) {
+  const std::string key = coverBehindGears(robot);
+  if (key.empty()) return std::nullopt;
+  const auto& section = robot.config.dynamics;
+  if (!section || !section->gear_stiffness)
+    failAtRobot(robot, key, "the robot has no gear_stiffness", "one in its section dynamics");
+  checkMass(robot, massMatrix(robot, q_start), JointVector::Zero(q_start.size()));
+  return GearedLinks{robot.bodies, orAll(section->gear_stiffness, 0.0, robot, "gear_stiffness"),
+                     orAll(section->gear_damping, 0.0, robot, "gear_damping")};
+}
 
 std::optional<ArmDynamicsConfig> loadDynamics(const YamlNode& scene, SimulatedArm arm,
                                               const LoadedRobot& robot, const JointVector& q_start,

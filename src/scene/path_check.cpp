@@ -73,12 +73,28 @@ std::string unfeltObstacles(const Scene& scene) {
   return "nothing feels the obstacles: there is no controller";
 }
 
+/// The first module whose simulated cover nobody takes out of its readings.
+std::string uncompensatedCover(const Scene& scene) {
+  const std::vector<TactileModuleConfig>& read = scene.controller.tactile_modules;
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const std::optional<CoverConfig>& cover = scene.plant.modules[i].cover;
+    if (!cover || read[i].cover) continue;
+    return fmt::format(
+        "the cover of {:g} kg on {} is felt as a contact of up to {:.3g} N where it turns over; "
+        "better a section cover of the tactile module in robot.yaml",
+        cover->mass_kg, scene.module_links[i],
+        2.0 * cover->mass_kg * scene.plant.gravity_Base.norm());
+  }
+  return "";
+}
+
 }  // namespace
 
 std::vector<std::string> checkPath(const Scene& scene) {
   std::vector<std::string> warnings;
-  for (const std::string& warning : {singularStart(scene.controller), laggingPath(scene),
-                                     shortRun(scene), unfeltObstacles(scene)}) {
+  for (const std::string& warning :
+       {singularStart(scene.controller), laggingPath(scene), shortRun(scene),
+        unfeltObstacles(scene), uncompensatedCover(scene)}) {
     if (!warning.empty()) warnings.push_back(warning);
   }
   return warnings;

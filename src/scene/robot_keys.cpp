@@ -1,4 +1,5 @@
 #include "tactus/control/robot.h"
+#include "tactus/scene/cover_keys.h"
 #include "tactus/scene/hardware_keys.h"
 #include "tactus/scene/key_defaults.h"
 
@@ -11,6 +12,22 @@ Table<TactileModuleSection> placeKeys() {
   using Config = TactileModuleSection;
   return {
       text("link", "URDF link whose x axis runs along the cover from its start", &Config::link)};
+}
+
+Table<CoverSection> gearedCoverKeys() {
+  return join(coverLoadKeys(),
+              Table<CoverSection>{boolean(
+                  "behind_gears",
+                  "the drives measure their motors, and gear_stiffness in `dynamics` says where "
+                  "the links are; false: the drives measure the links, or gears are stiff",
+                  &CoverSection::behind_gears)});
+}
+
+Table<TactileModuleSection> coverSection() {
+  return {optional(section("cover",
+                           "weight and inertia of the cover, which are taken out of the readings "
+                           "and simulated; absent: none",
+                           &TactileModuleSection::cover, gearedCoverKeys()))};
 }
 
 Table<TactileModuleConfig> coverKeys() {
@@ -62,8 +79,9 @@ Table<TactileChannels> channelKeys() {
 Table<TactileModuleSection> tactileModuleKeys() {
   using Config = TactileModuleSection;
   return join(placeKeys(), inside(&Config::config, coverKeys()),
-              inside(&Config::config, readingKeys()), inside(&Config::simulated, filterKeys()),
-              inside(&Config::channels, channelKeys()), moduleOnBusKeys());
+              inside(&Config::config, readingKeys()), coverSection(),
+              inside(&Config::simulated, filterKeys()), inside(&Config::channels, channelKeys()),
+              moduleOnBusKeys());
 }
 
 Row<RobotConfig> dynamicsSection() {
@@ -99,6 +117,8 @@ Table<RobotConfig> robotTable() {
                     {oneAJoint("acceleration", "m/s^2 or rad/s^2", above(0, 1e6),
                                "largest change of the command; absent: no limit",
                                &Config::max_acceleration)}),
+      vector3("gravity_m_per_s2", "m/s^2", within(-100, 100),
+              "in the base frame, for the covers of tactile modules", &Config::gravity_Base),
       optional(number("stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
                       "compliance of the arm, in series with every obstacle; absent: rigid",
                       &Config::stiffness_N_per_m)),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "tactus/scene/cover_keys.h"
 #include "tactus/scene/dynamics_loader.h"
 #include "tactus/scene/hardware_checks.h"
 #include "tactus/scene/hardware_loader.h"
@@ -88,8 +89,12 @@ ControllerConfig makeController(const YamlNode& root, const SceneConfig& config,
   controller.has_joint_limit_avoidance = config.has_joint_limit_avoidance;
   controller.gains = config.gains;
   if (!config.controller) return controller;
-  for (const TactileModuleSection& module : robot.config.tactile_modules)
-    controller.tactile_modules.push_back(module.config);
+  for (const TactileModuleSection& module : robot.config.tactile_modules) {
+    TactileModuleConfig& read = controller.tactile_modules.emplace_back(module.config);
+    if (module.cover) read.cover = makeCover(*module.cover, module.config.length_m);
+  }
+  controller.gravity_Base = robot.config.gravity_Base;
+  controller.geared_links = loadGearedLinks(robot, q_start);
   controller.drive_lag_s = robot.config.drives.position_lag_s;
   if (config.controller->variant != Variant::kNone) {
     controller.force_control = makeForceControl(config);
@@ -106,6 +111,8 @@ SimulatedModuleConfig makeSimulatedModule(const SimulationSection& simulation,
   module.filter_rate_hz = section.simulated.filter_rate_hz;
   module.filter_cutoff_hz = simulation.filter_cutoff_hz.value_or(section.config.filter_cutoff_hz);
   module.channels = section.channels;
+  const std::optional<CoverSection>& cover = simulation.cover ? simulation.cover : section.cover;
+  if (cover && cover->mass_kg > 0.0) module.cover = makeCover(*cover, section.config.length_m);
   return module;
 }
 
@@ -121,6 +128,7 @@ PlantConfig makePlant(const YamlNode& root, const SceneConfig& config, const Loa
                                       ? robot.dynamics->contact_stiffness_N_per_m.value_or(kNoLimit)
                                       : robot.stiffness_N_per_m;
   plant.obstacles = simulation.obstacles;
+  plant.gravity_Base = robot.gravity_Base;
   for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i)
     plant.modules.push_back(makeSimulatedModule(simulation, robot.tactile_modules[i], i));
   return plant;

@@ -1,5 +1,7 @@
 #include "tactus/scene/simulation_keys.h"
 
+#include "tactus/scene/cover_keys.h"
+
 namespace tactus {
 namespace {
 
@@ -78,6 +80,15 @@ Table<TroubleSection> troubleKeys() {
               });
 }
 
+Row<SimulatedModuleConfig> eachChannel(const std::string& key, const std::string& unit,
+                                       const std::string& doc,
+                                       std::vector<double> SimulatedModuleConfig::*member) {
+  Row<SimulatedModuleConfig> row = optional(value(ValueType::kNumberList, key, unit, doc, member));
+  row.spec.range = within(-100, 100);
+  row.spec.count = {8, 8};
+  return row;
+}
+
 Table<SimulatedModuleConfig> imperfectionKeys() {
   using Config = SimulatedModuleConfig;
   return {
@@ -85,14 +96,24 @@ Table<SimulatedModuleConfig> imperfectionKeys() {
       number("noise_N", "N", within(0, 100), "standard deviation of one channel", &Config::noise_N),
       number("lost_share", "", within(0, 1), "share of the samples that get lost",
              &Config::lost_share),
-      integer("seed", within(0, 1e15), "of noise and losses", &Config::seed),
+      number("jitter_s", "s", within(0, 1),
+             "samples come late by up to that, at the latest with the next one", &Config::jitter_s),
+      integer("seed", within(0, 1e15), "of noise, losses and jitter", &Config::seed),
+      eachChannel("channel_gains", "", "error of calibration: what a channel reads of 1 N",
+                  &Config::channel_gains),
+      eachChannel("channel_drifts_N_per_s", "N/s", "of each channel since the start",
+                  &Config::channel_drifts_N_per_s),
+      number("direction_error_rad", "rad", within(-4, 4), "by which the cells are turned about x",
+             &Config::direction_error_rad),
   };
 }
 
 Row<SimulationSection> moduleSection() {
-  const Table<SimulationSection> cutoff = {number("filter_cutoff_hz", "Hz", within(0.1, 1e5),
-                                                  "of its filter; absent: as robot.yaml says",
-                                                  &SimulationSection::filter_cutoff_hz)};
+  const Table<SimulationSection> cutoff = {
+      number("filter_cutoff_hz", "Hz", within(0.1, 1e5),
+             "of its filter; absent: as robot.yaml says", &SimulationSection::filter_cutoff_hz),
+      optional(section("cover", "absent: as robot.yaml says", &SimulationSection::cover,
+                       coverLoadKeys()))};
   return group("tactile_module", "imperfections of the simulated tactile modules",
                join(cutoff, inside(&SimulationSection::module, imperfectionKeys())));
 }

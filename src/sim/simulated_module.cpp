@@ -15,46 +15,102 @@ Eigen::Matrix<double, 8, 4> pseudoinverse(const Eigen::Matrix<double, 4, 8>& C) 
 }
 }  // namespace
 
-SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config)
+SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config,
+                                 const std::optional<Wrench4>& at_rest)
     : config_(config),
       filters_{ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz)},
       channels_from_wrench_(pseudoinverse(config.channels.calibration)),
+      at_rest_(at_rest),
+      sin_error_(std::sin(config.direction_error_rad)),
+      cos_error_(std::cos(config.direction_error_rad)),
       random_(config.seed),
       steps_a_sample_(
-          static_cast<int>(std::lround(config.channels.sample_period_s * config.filter_rate_hz))) {}
+          static_cast<int>(std::lround(config.channels.sample_period_s * config.filter_rate_hz))) {
+  if (!at_rest_ || !config.tared) return;
+  config_.noise_N = 0.0;  // a tare is the mean of many samples
+  tare_ = measure(*at_rest_);
+  config_.noise_N = config.noise_N;
+}
 
 void SimulatedModule::update(const Wrench4& wrench) noexcept {
-  Wrench4 filtered;
-  for (int i = 0; i < 4; ++i)
-    filtered[i] = config_.filtered ? filters_[i].update(wrench[i]) : wrench[i];
+  const Wrench4 filtered = filter(wrench);
+  t_s_ += 1.0 / config_.filter_rate_hz;
+  if (steps_to_delivery_ > 0 && --steps_to_delivery_ == 0) deliver();
   if (steps_to_sample_-- > 0) return;
   steps_to_sample_ = steps_a_sample_ - 1;
-  if (config_.lost_share > 0.0 && isLost()) return;
-  const Wrench4 measured = measure(filtered);
-  sample_ = {measured[0], measured[1], measured[2], measured[3], sample_.sequence + 1};
+  if (config_.lost_share > 0.0 && chance() < config_.lost_share) return;
+  if (steps_to_delivery_ > 0) deliver();
+  Wrench4 measured = measure(filtered);
+  if (at_rest_) measured -= tare_;
+  measured_ = {measured[0], measured[1], measured[2], measured[3], measured_.sequence + 1};
+  steps_to_delivery_ = 0;
+  if (config_.jitter_s > 0.0)
+    steps_to_delivery_ =
+        static_cast<int>(std::lround(chance() * config_.jitter_s * config_.filter_rate_hz));
+  if (steps_to_delivery_ == 0) deliver();
+}
+
+/// What was felt from the beginning has long come through the filter.
+Wrench4 SimulatedModule::filter(const Wrench4& wrench) noexcept {
+  if (!config_.filtered) return wrench;
+  Wrench4 input = wrench;
+  if (at_rest_) input -= *at_rest_;
+  Wrench4 filtered;
+  for (int i = 0; i < 4; ++i) filtered[i] = filters_[i].update(input[i]);
+  if (at_rest_) filtered += *at_rest_;
+  return filtered;
+}
+
+void SimulatedModule::deliver() noexcept {
+  sample_ = measured_;
+  counts_ = measured_counts_;
 }
 
 /// 53 random bits make up a number in [0, 1), the same on every machine.
-bool SimulatedModule::isLost() noexcept {
-  return static_cast<double>(random_() >> 11) * 0x1p-53 < config_.lost_share;
+double SimulatedModule::chance() noexcept { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+
+/// As cells that are turned about x see it.
+Wrench4 SimulatedModule::turned(const Wrench4& w) const noexcept {
+  return {cos_error_ * w[0] + sin_error_ * w[1], cos_error_ * w[1] - sin_error_ * w[0],
+          cos_error_ * w[2] + sin_error_ * w[3], cos_error_ * w[3] - sin_error_ * w[2]};
+}
+
+void SimulatedModule::distort(Channels& forces_N) const noexcept {
+  const std::vector<double>& gains = config_.channel_gains;
+  const std::vector<double>& drifts = config_.channel_drifts_N_per_s;
+  for (std::size_t i = 0; i < gains.size(); ++i) forces_N[static_cast<int>(i)] *= gains[i];
+  for (std::size_t i = 0; i < drifts.size(); ++i) forces_N[static_cast<int>(i)] += drifts[i] * t_s_;
 }
 
 Wrench4 SimulatedModule::measure(const Wrench4& wrench) noexcept {
-  if (!config_.quantised && config_.noise_N == 0.0) return wrench;
-  Eigen::Matrix<double, 8, 1> channels = channels_from_wrench_ * wrench;
+  const bool is_turned = config_.direction_error_rad != 0.0;
+  const bool is_distorted =
+      !config_.channel_gains.empty() || !config_.channel_drifts_N_per_s.empty();
+  const Wrench4 seen = is_turned ? turned(wrench) : wrench;
+  if (!config_.quantised && config_.noise_N == 0.0 && !is_distorted) return seen;
+  Channels forces_N = channels_from_wrench_ * seen;
+  if (is_distorted) distort(forces_N);
+  return read(forces_N);
+}
+
+Wrench4 SimulatedModule::read(Channels& forces_N) noexcept {
   for (int i = 0; i < 8; ++i) {
-    double& force_N = channels[i];
+    double& force_N = forces_N[i];
     if (config_.noise_N > 0.0) force_N += config_.noise_N * normal_(random_);
     if (!config_.quantised) continue;
     const double counts =
         std::clamp(std::round(force_N * config_.channels.counts_per_N), -kMaxCounts, kMaxCounts);
     force_N = counts / config_.channels.counts_per_N;
-    counts_[i] = static_cast<std::int32_t>(counts);
+    measured_counts_[i] = static_cast<std::int32_t>(counts);
   }
-  return config_.channels.calibration * channels;
+  return config_.channels.calibration * forces_N;
+}
+
+bool SimulatedModule::isSaturated() const noexcept {
+  return std::ranges::any_of(counts_, [](std::int32_t c) { return std::abs(c) >= kMaxCounts; });
 }
 
 }  // namespace tactus

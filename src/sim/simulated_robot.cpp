@@ -56,12 +56,20 @@ SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig&
   for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i) {
     const TactileModuleConfig& config = robot.tactile_modules[i];
     const SimulatedModuleConfig& module = plant.modules[i];
+    const Pose X_BaseModule = framePose(pose_, config.link);
+    std::optional<MovingCover> cover;
+    std::optional<Wrench4> at_rest;
+    if (module.cover) {
+      cover.emplace(*module.cover, plant.gravity_Base, X_BaseModule);
+      at_rest = cover->atRest();
+    }
     modules_.push_back({config.link,
                         config.length_m,
                         module.cover_radius_m,
-                        SimulatedModule(module),
+                        SimulatedModule(module, at_rest),
                         {},
-                        framePose(pose_, config.link)});
+                        X_BaseModule,
+                        cover});
     modules_.back().steps_a_filter_step = wholeRatio(1.0 / module.filter_rate_hz, step_s_);
     for (const ObstacleConfig& obstacle : plant.obstacles)
       modules_.back().obstacles.emplace_back(obstacle, plant.robot_stiffness_N_per_m);
@@ -81,8 +89,15 @@ void SimulatedRobot::write(const JointVector& velocity_setpoint) noexcept {
       for (Module& module : modules_) touch(steps * step_s_, module);
     }
     for (Module& module : modules_)
-      if (step_ % module.steps_a_filter_step == 0) module.electronics.update(module.wrench);
+      if (step_ % module.steps_a_filter_step == 0) measure(module);
   }
+}
+
+void SimulatedRobot::measure(Module& module) noexcept {
+  if (!module.cover) return module.electronics.update(module.wrench);
+  const double filter_step_s = module.steps_a_filter_step * step_s_;
+  module.electronics.update(module.wrench +
+                            module.cover->update(module.X_BaseModule, filter_step_s));
 }
 
 void SimulatedRobot::moveArm(double duration_s, const JointVector& velocity_setpoint) noexcept {

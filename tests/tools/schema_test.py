@@ -74,7 +74,10 @@ simulation:
   duration_s: 13
   arm: quasi_static
   drive_lag_s: 0.005
-  tactile_module: {filter_cutoff_hz: 15, quantised: true, noise_N: 0, lost_share: 0, seed: 1}
+  tactile_module:
+    {filter_cutoff_hz: 15, cover: {mass_kg: 0.3, center_m: [0.19, 0, 0]}, quantised: true, noise_N: 0,
+     lost_share: 0, jitter_s: 0, seed: 1, channel_gains: [1, 1, 1, 1, 1, 1, 1, 1],
+     channel_drifts_N_per_s: [0, 0, 0, 0, 0, 0, 0, 0], direction_error_rad: 0}
   obstacles:
     - x_m: 0.7
       y_m: 0
@@ -153,6 +156,9 @@ class Case(unittest.TestCase):
         robot["can"]["buses"][0]["bit_rate_per_s"] = 1e6
         robot["dynamics"] = load((crops9 / "robot.yaml").read_text())["dynamics"] | {
             "servo_bandwidth_hz": 40, "servo_integral_hz": 8}  # fmt: skip
+        robot["gravity_m_per_s2"] = [0, 0, -9.81]
+        robot["tactile_module"]["cover"] = {
+            "mass_kg": 0.3, "center_m": [0.19, 0, 0], "behind_gears": True}  # fmt: skip
         for line in ("e_stop", "enable", "brake", "heartbeat"):
             robot["gpio"][line].setdefault("active_low", False)
         scene = load(SCENE)

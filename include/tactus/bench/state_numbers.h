@@ -33,10 +33,24 @@ struct StateVisitor {
     list("way_out_added", way_out_added);
     list("q_desired", q_desired);
     list("velocity_before", velocity_before);
-    const auto& [sequence, age_s, sample_fault, detail, sensed_contact] = modules.front();
+    const auto& [sequence, age_s, sample_fault, detail, sensed_contact, cover] = modules.front();
     visit("sample_age_s", 0, age_s);
     point("force_N", "position_m", "direction", sensed_contact);
+    compensation(cover);
     answer(contact);
+  }
+
+  void compensation(const CoverCompensationState& cover) const {
+    const auto& [has_started, links, missed_s, p_center, v_center, origin, s0, s1, s2] = cover;
+    list("cover.link_q", links.q);
+    list("cover.link_velocity", links.velocity);
+    visit("cover.missed_s", 0, missed_s);
+    list("cover.p_center", p_center);
+    list("cover.v_center", v_center);
+    list("cover.origin", origin);
+    list("cover.s0", s0);
+    list("cover.s1", s1);
+    list("cover.s2", s2);
   }
 
   void answer(const ContactControllerState& contact) const {

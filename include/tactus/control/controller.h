@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "tactus/control/command_limiter.h"
 #include "tactus/control/contact_controller.h"
@@ -128,6 +129,8 @@ class Controller {
   void avoidJointLimits(const Gains& gains, const TaskKinematics& kinematics,
                         ControllerState& state, Motion& motion) const noexcept;
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
+  Fault read(int module, const RobotInput& input, double period_s,
+             TactileReading& reading) const noexcept;
   void sense(const RobotInput& input, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
   FaultDetail notFinite(const Motion& motion) const noexcept;
@@ -142,6 +145,7 @@ class Controller {
   ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
   bool has_rotation_;
   CommandLimiter limiter_;
+  std::vector<CoverCompensation> covers_;  ///< one a module, or none
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
   std::optional<ContactController> contact_controller_;
 };

@@ -5,7 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "tactus/control/cover_load.h"
 #include "tactus/control/gains.h"
+#include "tactus/control/link_observer.h"
 #include "tactus/math/serial_chain.h"
 #include "tactus/math/trajectory.h"
 #include "tactus/math/types.h"
@@ -48,12 +50,13 @@ struct TaskConfig {
 };
 
 struct TactileModuleConfig {
-  AttachedFrame link;              ///< frame of the module: x along the link
-  double length_m = 0.0;           ///< contact lies at 0 <= x <= length
-  double cover_radius_m = 0.06;    ///< around x
-  double max_force_N = 100.0;      ///< a larger reading is a sensor fault
-  double max_sample_age_s = 0.02;  ///< an older sample is a sensor fault
-  double filter_cutoff_hz = 15.0;  ///< of the module's 3rd-order Butterworth filter
+  AttachedFrame link;                  ///< frame of the module: x along the link
+  double length_m = 0.0;               ///< contact lies at 0 <= x <= length
+  double cover_radius_m = 0.06;        ///< around x
+  double max_force_N = 100.0;          ///< a larger reading is a sensor fault
+  double max_sample_age_s = 0.02;      ///< an older sample is a sensor fault
+  double filter_cutoff_hz = 15.0;      ///< of the module's 3rd-order Butterworth filter
+  std::optional<CoverConfig> cover{};  ///< whose weight and inertia are taken out of its samples
 };
 
 enum class Variant {
@@ -81,6 +84,8 @@ struct ControllerConfig {
   JointVector weights{};  ///< diagonal of W, > 0
   bool has_joint_limit_avoidance = false;
   std::vector<TactileModuleConfig> tactile_modules{};  ///< at most kMaxTactileModules
+  Vector3 gravity_Base = Vector3::Zero();              ///< m/s^2; only covers ask
+  std::optional<GearedLinks> geared_links{};  ///< only covers ask; absent: links are measured
   double drive_lag_s = 0.005;  ///< nominal first-order lag of position; only null_limit asks
   std::optional<ForceControlConfig> force_control{};  ///< absent also for `variant: none`
   Gains gains{};  ///< no structure: what the first cycle is given, and all where nobody tunes

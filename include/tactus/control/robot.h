@@ -22,7 +22,8 @@ struct TactileSample {
 
 /// What a cycle reads from the robot.
 struct RobotInput {
-  JointVector q_measured;  ///< m or rad; logged, but no law uses it: the arm is position-controlled
+  /// m or rad. No law uses it: the arm is position-controlled; covers of modules move with it.
+  JointVector q_measured;
   /// One a module; those that the robot does not have stay zero.
   std::array<TactileSample, kMaxTactileModules> tactile;
 };

@@ -4,6 +4,9 @@
 
 namespace tactus {
 
+/// Force and moment (F_y, F_z, M_y, M_z) in the module's frame, N and Nm.
+using Wrench4 = Eigen::Vector4d;
+
 /// What the eight channels of a tactile module mean, and how often it sends them.
 struct TactileChannels {
   /// (F_y, F_z, M_y, M_z) in the module's frame from the channels in N, m; rank 4.

@@ -4,6 +4,7 @@
 
 #include "tactus/control/contact_point.h"
 #include "tactus/control/controller_config.h"
+#include "tactus/control/cover_compensation.h"
 #include "tactus/control/fault.h"
 #include "tactus/control/robot.h"
 
@@ -11,11 +12,12 @@ namespace tactus {
 
 /// What is known of one tactile module.
 struct TactileReading {
-  std::uint32_t sequence = 0;  ///< of the newest sample
-  double age_s = 0.0;          ///< of that sample
-  Fault fault = Fault::kNone;  ///< of that sample; not of its age
-  FaultDetail detail;          ///< of that fault, or of a sample too old
-  ContactPointState contact;   ///< of the newest valid sample
+  std::uint32_t sequence = 0;    ///< of the newest sample
+  double age_s = 0.0;            ///< of that sample
+  Fault fault = Fault::kNone;    ///< of that sample; not of its age
+  FaultDetail detail;            ///< of that fault, or of a sample too old
+  ContactPointState contact;     ///< of the newest valid sample
+  CoverCompensationState cover;  ///< only of a module with one
 };
 
 /// A new sample is judged and located, an old one ages by a period. Returns kNone, kTactileInvalid

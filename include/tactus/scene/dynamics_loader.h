@@ -13,4 +13,8 @@ std::optional<ArmDynamicsConfig> loadDynamics(const YamlNode& scene, SimulatedAr
                                               const LoadedRobot& robot, const JointVector& q_start,
                                               double period_s);
 
+/// What covers that are behind gears need; none where no cover is. Throws InputError where the
+/// robot does not say enough, or a joint moves no mass.
+std::optional<GearedLinks> loadGearedLinks(const LoadedRobot& robot, const JointVector& q_start);
+
 }  // namespace tactus

@@ -8,8 +8,8 @@
 namespace tactus {
 
 /// What is doubtful about the motion of a scene: a start near a singularity, a path that the joints
-/// cannot follow or the simulation does not reach the end of, obstacles that nothing feels. For
-/// people, to be printed as warnings.
+/// cannot follow or the simulation does not reach the end of, obstacles that nothing feels, a cover
+/// whose weight is taken for a contact. For people, to be printed as warnings.
 std::vector<std::string> checkPath(const Scene& scene);
 
 /// Smallest singular value of J W^-1/2 where the task starts. weights: positive.

@@ -34,10 +34,17 @@ struct DrivesSection {
   std::vector<DriveSection> joints;
 };
 
+struct CoverSection {
+  double mass_kg = 0.0;
+  std::optional<Vector3> center_m;  ///< absent: in the middle
+  bool behind_gears = false;        ///< that the drives do not measure
+};
+
 struct TactileModuleSection {
   std::string link;                 ///< name in the URDF
   TactileModuleConfig config;       ///< without link
   SimulatedModuleConfig simulated;  ///< filter rate alone
+  std::optional<CoverSection> cover;
   TactileChannels channels;
   std::optional<std::string> interface;  ///< of its bus
   CanTactileConfig on_bus;               ///< id and tare alone
@@ -58,6 +65,7 @@ struct RobotConfig {
   std::string tip;
   std::vector<double> home;
   std::optional<std::vector<double>> max_acceleration;  ///< absent: no limit
+  Vector3 gravity_Base{0.0, 0.0, -9.81};
   double stiffness_N_per_m = PlantConfig{}.robot_stiffness_N_per_m;
   std::optional<DynamicsSection> dynamics;
   std::optional<CanSection> can;

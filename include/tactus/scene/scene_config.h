@@ -9,6 +9,7 @@
 #include "tactus/control/controller_config.h"
 #include "tactus/plant/trouble.h"
 #include "tactus/scene/log_config.h"
+#include "tactus/scene/robot_config.h"
 #include "tactus/scene/scene.h"
 #include "tactus/sim/plant_config.h"
 
@@ -45,6 +46,7 @@ struct SimulationSection {
   std::optional<double> drive_lag_s;       ///< another one than robot.yaml says
   std::optional<double> filter_cutoff_hz;  ///< of the tactile module: another one, too
   SimulatedModuleConfig module;            ///< its imperfections alone
+  std::optional<CoverSection> cover;       ///< another one, too
   std::vector<ObstacleConfig> obstacles;
   std::vector<TroubleSection> troubles;
 };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tactus/control/controller_config.h"
+#include "tactus/control/cover_load.h"
 #include "tactus/control/tactile_channels.h"
 #include "tactus/sim/arm_dynamics.h"
 
@@ -47,16 +48,23 @@ struct SimulatedModuleConfig {
   double filter_rate_hz = 1000.0;  ///< rate at which the module filters
   TactileChannels channels;
   bool quantised = true;
-  bool filtered = true;     ///< false: a module that leaves the filter to its reader
-  double noise_N = 0.0;     ///< standard deviation of one channel
-  double lost_share = 0.0;  ///< of the samples, each by chance
-  std::uint64_t seed = 1;   ///< of noise and losses
+  bool filtered = true;               ///< false: a module that leaves the filter to its reader
+  double noise_N = 0.0;               ///< standard deviation of one channel
+  double lost_share = 0.0;            ///< of the samples, each by chance
+  double jitter_s = 0.0;              ///< a sample comes late by up to that, by chance
+  std::uint64_t seed = 1;             ///< of noise, losses and jitter
+  std::vector<double> channel_gains;  ///< of the eight channels; empty: 1
+  std::vector<double> channel_drifts_N_per_s;  ///< likewise, since the start; empty: 0
+  double direction_error_rad = 0.0;            ///< by which the cells are turned about x
+  std::optional<CoverConfig> cover;            ///< absent: it weighs nothing
+  bool tared = true;  ///< false: a module that leaves the tare to its reader
 };
 
 struct PlantConfig {
   double drive_lag_s = 0.005;                  ///< first-order lag of position; 0: ideal drives
   std::optional<ArmDynamicsConfig> dynamics;   ///< in place of that lag, if given
   double robot_stiffness_N_per_m = kNoLimit;   ///< of the arm, in series with every obstacle
+  Vector3 gravity_Base = Vector3::Zero();      ///< m/s^2; only covers feel it
   std::vector<SimulatedModuleConfig> modules;  ///< in the order of those that the controller reads
   std::vector<ObstacleConfig> obstacles;
 };

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <random>
 
 #include "tactus/control/robot.h"
@@ -10,15 +11,15 @@
 
 namespace tactus {
 
-/// Force and moment (F_y, F_z, M_y, M_z) in the module's frame, N and Nm.
-using Wrench4 = Eigen::Vector4d;
-
-/// The electronics of the tactile module: filters at its own rate, and every sample period turns
-/// force and moment into eight channels of signed 24-bit counts, and back by its calibration. After
-/// a lost sample the one before stays.
+/// The cells and electronics of the tactile module: filters at its own rate, and every sample
+/// period turns force and moment into eight channels of signed 24-bit counts, and back by the
+/// calibration that its reader knows. After a lost sample the one before stays; a late one comes at
+/// the latest with the next.
 class SimulatedModule {
  public:
-  explicit SimulatedModule(const SimulatedModuleConfig& config);
+  /// at_rest: what it feels at the start without a contact, and has for long.
+  explicit SimulatedModule(const SimulatedModuleConfig& config,
+                           const std::optional<Wrench4>& at_rest = std::nullopt);
 
   /// One step at the module's rate.
   void update(const Wrench4& wrench) noexcept;
@@ -26,20 +27,34 @@ class SimulatedModule {
   const TactileSample& sample() const noexcept { return sample_; }
   /// The channels of the sample; zero unless quantised.
   const std::array<std::int32_t, 8>& counts() const noexcept { return counts_; }
+  /// A channel of the sample is at its rail.
+  bool isSaturated() const noexcept;
 
  private:
-  bool isLost() noexcept;
+  using Channels = Eigen::Matrix<double, 8, 1>;
+
+  Wrench4 filter(const Wrench4& wrench) noexcept;
+  double chance() noexcept;
+  void deliver() noexcept;
+  Wrench4 turned(const Wrench4& wrench) const noexcept;
+  void distort(Channels& forces_N) const noexcept;
   Wrench4 measure(const Wrench4& wrench) noexcept;
+  Wrench4 read(Channels& forces_N) noexcept;
 
   SimulatedModuleConfig config_;
   std::array<ButterworthLowPass, 4> filters_;
   Eigen::Matrix<double, 8, 4> channels_from_wrench_;  ///< pseudoinverse of the calibration
+  std::optional<Wrench4> at_rest_;
+  Wrench4 tare_ = Wrench4::Zero();
+  double sin_error_ = 0.0, cos_error_ = 1.0;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   int steps_a_sample_;
   int steps_to_sample_ = 0;
-  TactileSample sample_;
-  std::array<std::int32_t, 8> counts_{};
+  int steps_to_delivery_ = 0;  ///< of what was measured; 0: none is under way
+  double t_s_ = 0.0;           ///< of channels that drift
+  TactileSample measured_, sample_;
+  std::array<std::int32_t, 8> measured_counts_{}, counts_{};
 };
 
 }  // namespace tactus

@@ -6,6 +6,7 @@
 #include "tactus/control/controller_config.h"
 #include "tactus/control/robot.h"
 #include "tactus/sim/arm_dynamics.h"
+#include "tactus/sim/moving_cover.h"
 #include "tactus/sim/obstacle.h"
 #include "tactus/sim/simulated_module.h"
 
@@ -42,6 +43,7 @@ class SimulatedRobot final : public Robot {
     SimulatedModule electronics;
     std::vector<Obstacle> obstacles;  ///< as they meet this cover
     Pose X_BaseModule;                ///< in the last step
+    std::optional<MovingCover> cover;
     int steps_a_filter_step = 1;
     double true_force_N = 0.0;
     Vector3 force_Base = Vector3::Zero();  ///< of all contacts, and what they are to the module
@@ -50,6 +52,7 @@ class SimulatedRobot final : public Robot {
 
   void moveArm(double duration_s, const JointVector& velocity_setpoint) noexcept;
   void touch(double t_s, Module& module) noexcept;
+  void measure(Module& module) noexcept;
   void push(const Vector3& p_Module, const Vector3& force_Base, Module& module) noexcept;
 
   SerialChain chain_;

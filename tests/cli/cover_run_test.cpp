@@ -1,0 +1,170 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/command_run.h"
+#include "support/shipped_scene.h"
+#include "support/telemetry.h"
+#include "tactus/cli/commands.h"
+#include "tactus/cli/simulation.h"
+#include "tactus/scene/input_error.h"
+#include "tactus/scene/json.h"
+#include "tactus/scene/path_check.h"
+
+/// Covers that weigh something, from a scene to what its log says of them.
+namespace tactus {
+namespace {
+
+class CoverRunTest : public ::testing::Test {
+ protected:
+  void logRun(const std::string& scene, const std::vector<Override>& overrides) const {
+    simulate(test::shippedScene(scene, overrides), log_.path(), [](double) {});
+  }
+
+  int identify(std::vector<std::string> arguments = {}) {
+    arguments.insert(arguments.begin(), {"identify", "cover", log_.path()});
+    return test::runCommand(addIdentifyCommand, std::move(arguments), output_);
+  }
+
+  std::string refusal() {
+    try {
+      identify();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  test::TemporaryFile log_{".ulg"};
+  std::string output_;
+};
+
+std::vector<Override> withNoise(std::vector<Override> overrides) {
+  overrides.push_back({"simulation.tactile_module.noise_N", "0.05"});
+  return overrides;
+}
+
+TEST_F(CoverRunTest, IsIdentifiedFromTheLogOfTheShippedScene) {
+  for (const char* arm : {"quasi_static", "flexible_gears"}) {
+    logRun("robots/crops9_cover", withNoise({{"simulation.tactile_module.cover",
+                                              "{mass_kg: 0.4, center_m: [0.2, 0.01, -0.02]}"},
+                                             {"simulation.arm", arm}}));
+    ASSERT_EQ(identify({"--json"}), kExitDone) << output_;
+    const Json found = Json::parse(output_);
+    EXPECT_NEAR(found["cover"]["mass_kg"].get<double>(), 0.4, 0.01) << arm;
+    const auto center = found["cover"]["center_m"].get<std::vector<double>>();
+    EXPECT_NEAR(center[0], 0.2, 0.01);
+    EXPECT_NEAR(center[1], 0.01, 0.01);
+    EXPECT_NEAR(center[2], -0.02, 0.01);
+  }
+  EXPECT_EQ(identify(), kExitDone);
+  EXPECT_NE(output_.find("\ncover: {mass_kg: 0.4"), std::string::npos) << output_;
+}
+
+TEST_F(CoverRunTest, WhatALogDoesNotTellIsRefused) {
+  const Override cover{"simulation.tactile_module.cover.mass_kg", "0.4"};
+  logRun("robots/crops9_cover",
+         {cover,
+          {"task.trajectory.waypoints[0].displacement_m", "[0, 0, 0.005]"},
+          {"task.trajectory.waypoints[1].displacement_m", "[0, 0, -0.005]"}});
+  EXPECT_NE(refusal().find("cover: across the axis of the module gravity changes by"),
+            std::string::npos)
+      << refusal();
+  logRun("robots/crops9_cover", {cover, {"simulation.duration_s", "3"}});
+  EXPECT_NE(refusal().find("too short"), std::string::npos) << refusal();
+  logRun("robots/crops9_cover", withNoise({}));
+  EXPECT_NE(refusal().find("cover: the mass is"), std::string::npos) << refusal();
+  logRun("free_motion", {});
+  EXPECT_NE(refusal().find("no tactile module is read"), std::string::npos) << refusal();
+}
+
+TEST_F(CoverRunTest, ARunWithACompensatedCoverReplaysToTheBit) {
+  for (const char* behind_gears : {"false", "true"}) {
+    logRun("scenario3_tactus", {{"robot.tactile_module.cover.mass_kg", "0.4"},
+                                {"robot.tactile_module.cover.behind_gears", behind_gears},
+                                {"simulation.duration_s", "9"}});
+    EXPECT_EQ(test::runCommand(addReplayCommand, {"replay", log_.path()}, output_), kExitDone)
+        << output_;
+  }
+}
+
+TEST(CoverBehindGears, IsCompensatedWhereTheGearsAreKnown) {
+  const auto peakOf = [](const char* behind_gears) {
+    const Scene scene = test::shippedScene(
+        "scenario3_tactus", {{"simulation.arm", "flexible_gears"},
+                             {"robot.tactile_module.cover.mass_kg", "0.4"},
+                             {"robot.tactile_module.cover.behind_gears", behind_gears}});
+    double peak_N = 0.0;
+    simulate(scene, [&](const CycleRecord& record) {
+      peak_N = std::max(peak_N, record.force_sensor_N[0]);
+    });
+    return peak_N;
+  };
+  EXPECT_LT(peakOf("true"), 5.3) << "5.04 without a cover";
+  EXPECT_GT(peakOf("false"), 10.0) << "the gears make no difference: this test is blind";
+}
+
+TEST_F(CoverRunTest, AChannelAtItsRailEndsARunAndItsLogReplays) {
+  const std::vector<Override> overrides = {{"robot.tactile_module.counts_per_N", "6e6"}};
+  const Scene scene = test::shippedScene("scenario1_none", overrides);
+  double last_speed = 1.0;
+  std::uint64_t last_fault = 0;
+  const FaultReport end = simulate(scene, [&](const CycleRecord& record) {
+                            last_speed = std::abs(record.dq[1]);
+                            last_fault = record.fault;
+                          }).figures.end;
+  EXPECT_EQ(end.fault, Fault::kTactileSaturated) << "1.4 N a channel, of more than 5 N";
+  EXPECT_EQ(end.detail.module, 0);
+  EXPECT_EQ(last_speed, 0.0);
+  EXPECT_EQ(last_fault, static_cast<std::uint64_t>(Fault::kTactileSaturated));
+  logRun("scenario1_none", overrides);
+  EXPECT_EQ(test::runCommand(addReplayCommand, {"replay", log_.path()}, output_), kExitDone)
+      << output_;
+}
+
+TEST(CoverCheck, WarnsOfACoverThatNobodyCompensates) {
+  const auto warningsOf = [](const Override& setting) {
+    return checkPath(test::shippedScene("scenario1_tactus", {setting}));
+  };
+  const auto warnings = warningsOf({"simulation.tactile_module.cover.mass_kg", "0.5"});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].find("the cover of 0.5 kg on link4 is felt"), 0u) << warnings[0];
+  EXPECT_NE(warnings[0].find("9.81 N"), std::string::npos) << "twice its weight";
+  EXPECT_TRUE(warningsOf({"robot.tactile_module.cover.mass_kg", "0.5"}).empty());
+  EXPECT_TRUE(warningsOf({"simulation.tactile_module.cover.mass_kg", "0"}).empty());
+}
+
+TEST(CoverLoad, ASceneTakesTheRobotsCoverUnlessItHasItsOwn) {
+  const auto sceneWith = [](const std::vector<Override>& settings) {
+    return test::shippedScene("scenario1_tactus", settings);
+  };
+  const Scene none = sceneWith({});
+  EXPECT_FALSE(none.plant.modules[0].cover || none.controller.tactile_modules[0].cover);
+  const Scene both = sceneWith({{"robot.tactile_module.cover.mass_kg", "0.4"}});
+  EXPECT_EQ(both.plant.modules[0].cover->mass_kg, 0.4);
+  EXPECT_EQ(both.controller.tactile_modules[0].cover->p_ModuleCenter, Vector3(0.19, 0.0, 0.0));
+  EXPECT_EQ(both.controller.gravity_Base, Vector3(0.0, 0.0, -9.81));
+  EXPECT_FALSE(both.controller.geared_links);
+  const Scene other = sceneWith({{"robot.tactile_module.cover.mass_kg", "0.4"},
+                                 {"robot.gravity_m_per_s2", "[9.81, 0, 0]"},
+                                 {"simulation.tactile_module.cover", "{mass_kg: 0.36}"}});
+  EXPECT_EQ(other.plant.modules[0].cover->mass_kg, 0.36);
+  EXPECT_EQ(other.controller.tactile_modules[0].cover->mass_kg, 0.4);
+  EXPECT_EQ(other.plant.gravity_Base, Vector3(9.81, 0.0, 0.0));
+}
+
+TEST(CoverLoad, GearsThatNobodyDescribesAreRefused) {
+  try {
+    loadScene(TACTUS_SOURCE_DIR "/config/scenes/robots/kuka_iiwa7_contact.yaml",
+              {{"robot.tactile_module.cover.mass_kg", "0.4"},
+               {"robot.tactile_module.cover.behind_gears", "true"}});
+    FAIL() << "nothing was refused";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("cover.behind_gears: the robot has no gear_stiffness"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace tactus
