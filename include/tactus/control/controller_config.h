@@ -76,7 +76,7 @@ struct ControllerConfig {
   JointVector q_start{};
   JointLimits limits{};
   TaskConfig task{};
-  JointVector weights{};  ///< diagonal of W, > 0
+  JointVector weights{};  ///< diagonal of W, > 0, with a median of 1: see redundancy.weights
   bool has_joint_limit_avoidance = false;
   std::vector<TactileModuleConfig> tactile_modules{};  ///< at most kMaxTactileModules
   double drive_lag_s = 0.005;  ///< nominal first-order lag of position; only null_limit asks
