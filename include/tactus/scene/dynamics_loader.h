@@ -13,4 +13,7 @@ std::optional<ArmDynamicsConfig> loadDynamics(const YamlNode& scene, SimulatedAr
                                               const LoadedRobot& robot, const JointVector& q_start,
                                               double period_s);
 
+/// What the robot says of itself, whatever is simulated; absent where that is not enough.
+std::optional<ArmDescription> describeArm(const LoadedRobot& robot, const JointVector& q_start);
+
 }  // namespace tactus
