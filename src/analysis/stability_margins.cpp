@@ -4,6 +4,8 @@
 #include <limits>
 #include <numbers>
 
+#include "tactus/analysis/bisect.h"
+
 namespace tactus {
 namespace {
 
@@ -11,17 +13,6 @@ constexpr double kSoftest = 1e-3;
 constexpr double kStiffest = 1e6;
 constexpr double kGrid = 1.25;
 constexpr double kLargestTimeConstant_s = 100.0;
-constexpr int kBisections = 30;
-
-/// Where holds(x), true at `inside`, ends before `outside`.
-template <typename Condition>
-double bisect(double inside, double outside, Condition holds) {
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = 0.5 * (inside + outside);
-    (holds(middle) ? inside : outside) = middle;
-  }
-  return inside;
-}
 
 /// A lag takes away stability once and for good, so its end tells about all smaller ones.
 bool hasPhaseMargin(const ContactLoop& loop, double stiffness_ratio, double margin_rad) {

@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tactus/cli/commands.h"
+#include "tactus/cli/contact_report.h"
 #include "tactus/record/log_size.h"
+#include "tactus/scene/arm_check.h"
 #include "tactus/scene/bus_load_text.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/json.h"
@@ -16,6 +18,7 @@
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/path_check.h"
 #include "tactus/scene/stability_check.h"
+#include "tactus/scene/touch_check.h"
 
 namespace tactus {
 namespace {
@@ -35,8 +38,10 @@ struct StartPose {
 /// What was found about a scene that is accepted.
 struct Findings {
   StartPose start;
+  std::vector<CoverReport> covers;
   std::optional<StabilityReport> stability;
-  std::vector<std::string> warnings;  ///< of the path, then of the stability
+  ExpectedContact contact;
+  std::vector<std::string> warnings;  ///< of arm, path, stability, contact
 };
 
 StartPose computeStart(const ControllerConfig& config) {
@@ -47,10 +52,19 @@ StartPose computeStart(const ControllerConfig& config) {
 }
 
 Findings examine(const Scene& scene) {
-  Findings findings{computeStart(scene.controller), checkStability(scene), checkPath(scene)};
-  if (!findings.stability) return findings;
-  const std::vector<std::string>& more = findings.stability->warnings;
-  findings.warnings.insert(findings.warnings.end(), more.begin(), more.end());
+  Findings findings{computeStart(scene.controller),
+                    coversAtStart(scene),
+                    checkStability(scene),
+                    {},
+                    checkArm(scene)};
+  const auto add = [&](const std::vector<std::string>& more) {
+    findings.warnings.insert(findings.warnings.end(), more.begin(), more.end());
+  };
+  add(checkPath(scene));
+  const StabilityReport stability = findings.stability.value_or(StabilityReport{});
+  findings.contact = checkContacts(scene, stability.stiffest_N_per_m);
+  add(stability.warnings);
+  add(findings.contact.warnings);
   return findings;
 }
 
@@ -131,14 +145,12 @@ Json checkJson(const Scene& scene, const Findings& findings) {
                {"joints", joints},
                {"tool_start_m", {tool.x(), tool.y(), tool.z()}},
                {"smallest_singular_value_at_start", findings.start.smallest_singular_value},
+               {"covers", coversJson(findings.covers)},
                {"warnings", findings.warnings}};
   if (findings.stability) json["stability"] = stabilityJson(*findings.stability);
+  addContact(findings.contact, json);
   addHardware(scene, json);
   return json;
-}
-
-std::string textLine(const std::string& name, const std::string& value) {
-  return fmt::format("{:<9}{}\n", name, value);
 }
 
 std::string stabilityText(const StabilityReport& stability) {
@@ -153,6 +165,8 @@ std::string stabilityText(const StabilityReport& stability) {
                     loop.name, margins.largest_stiffness_ratio, margins.gain_margin,
                     20.0 * std::log10(margins.gain_margin), loop.phaseMargin_deg()));
   }
+  if (!stability.loops.empty())
+    text += textLine("gears", "rigid in these margins: flexible ones take about half of them");
   return text;
 }
 
@@ -174,7 +188,9 @@ std::string toText(const Scene& scene, const Findings& findings) {
   line("start", fmt::format("tool at ({:.4f}, {:.4f}, {:.4f}) m, smallest singular value {:.3g}",
                             start.p_BaseTool.x(), start.p_BaseTool.y(), start.p_BaseTool.z(),
                             start.smallest_singular_value));
+  text += coversText(findings.covers);
   if (findings.stability) text += stabilityText(*findings.stability);
+  text += contactText(findings.contact);
   for (const std::string& warning : findings.warnings) line("warning", warning);
   if (!scene.hardware) return text;
   line("hardware", fmt::format("{}", fmt::join(hardwareStageNames(*scene.hardware), ", ")));

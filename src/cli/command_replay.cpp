@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -39,11 +40,20 @@ void checkSize(const std::string& log, const char* field, const char* what, int 
          "expected the log of a run of its scene");
 }
 
+/// Its cycles came when they came.
+void refusePeriod(const std::vector<Override>& settings) {
+  if (std::ranges::count(settings, "period_s", &Override::key) == 0) return;
+  failAt({std::make_shared<std::string>("--set period_s"), 1, 1}, "period_s",
+         "cannot be set in a replay", "expected keys other than the period of recorded cycles");
+}
+
 /// The scene of the first log with its own overrides and then those of the command line.
 Scene loadLoggedScene(const ReplayOptions& options, const LogDescription& description) {
   const std::string& log = options.logs.front();
   std::vector<Override> overrides = description.overrides;
-  for (const Override& setting : parseOverrides(options.settings)) overrides.push_back(setting);
+  const std::vector<Override> settings = parseOverrides(options.settings);
+  refusePeriod(settings);
+  overrides.insert(overrides.end(), settings.begin(), settings.end());
   if (description.sources.empty()) {
     failAt({std::make_shared<std::string>(log), 1, 1}, "source_path", "the log holds no scene",
            "expected the files of the run");
@@ -204,6 +214,7 @@ Json replayJson(const ReplayOptions& options, const ReplayResult& result) {
     largest.push_back(differenceJson(difference));
   return {{"logs", options.logs},
           {"set", options.settings},
+          {"forces", "as recorded"},
           {"cycles", comparison.cycles() + comparison.skipped()},
           {"cut_off", result.cut_off},
           {"compared_cycles", comparison.cycles()},
@@ -235,6 +246,7 @@ std::string differencesText(const ReplayOptions& options, const ReplayComparison
       comparison.differingCycles(), comparison.cycles(), first.cycle, first.t_s, first.column,
       first.recorded, first.replayed);
   if (options.settings.empty()) return text;
+  text += "forces are as recorded: they do not react to other commands\n";
   for (const ReplayDifference& largest : comparison.largest()) {
     text += fmt::format("largest difference of {}: {:.6g} at {:.9g} s, recorded {}, replayed {}\n",
                         largest.column, largest.size(), largest.t_s, largest.recorded,
@@ -272,7 +284,10 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   command->add_option("log", options->logs, "Log of a run (run.ulg), or its logs, oldest first")
       ->required();
   command
-      ->add_option("--set", options->settings, std::string(kSetHelp) + "; shows what that changes")
+      ->add_option("--set", options->settings,
+                   std::string(kSetHelp) +
+                       "; shows what that changes of the commands, while "
+                       "forces stay as they were recorded")
       ->allow_extra_args(false);
   command->add_option("-o,--output", options->output,
                       "Write recorded and replayed commands as CSV, - for standard output");

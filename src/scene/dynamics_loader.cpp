@@ -28,11 +28,17 @@ MassMatrix massMatrix(const LoadedRobot& robot, const JointVector& q) {
   failAt(locate(robot.root, key), key, problem, "expected " + expectation);
 }
 
-/// The last joint that moves nothing is what makes it singular.
-void checkMass(const LoadedRobot& robot, const MassMatrix& M, const JointVector& rotors) {
+bool isMassive(const MassMatrix& M, const JointVector& rotors) {
   MassMatrix all = M;
   all.diagonal() += rotors;
-  if (all.llt().info() == Eigen::Success) return;
+  return all.llt().info() == Eigen::Success;
+}
+
+/// The last joint that moves nothing is what makes it singular.
+void checkMass(const LoadedRobot& robot, const MassMatrix& M, const JointVector& rotors) {
+  if (isMassive(M, rotors)) return;
+  MassMatrix all = M;
+  all.diagonal() += rotors;
   Eigen::Index least = 0;
   all.diagonal().minCoeff(&least);
   failAtRobot(robot, "dynamics",
@@ -63,6 +69,19 @@ std::string coverBehindGears(const LoadedRobot& robot) {
   return "";
 }
 
+ArmDynamicsConfig readDynamics(const LoadedRobot& robot, bool is_flexible) {
+  const DynamicsSection& section = *robot.config.dynamics;
+  ArmDynamicsConfig config;
+  config.bodies = robot.bodies;
+  config.rotor_inertia = orAll(section.rotor_inertia, 0.0, robot, "rotor_inertia");
+  config.gear_damping = orAll(section.gear_damping, 0.0, robot, "gear_damping");
+  config.gear_stiffness =
+      orAll(is_flexible ? section.gear_stiffness : std::nullopt, kNoLimit, robot, "gear_stiffness");
+  config.servo_bandwidth_hz = section.servo_bandwidth_hz;
+  config.servo_integral_hz = section.servo_integral_hz;
+  return config;
+}
+
 }  // namespace
 
 std::optional<GearedLinks> loadGearedLinks(const LoadedRobot& robot, const JointVector& q_start) {
@@ -90,14 +109,7 @@ std::optional<ArmDynamicsConfig> loadDynamics(const YamlNode& scene, SimulatedAr
     failAt(locate(scene, "simulation.arm"), "simulation.arm", "the robot has no gear_stiffness",
            "expected one in `dynamics` of its robot.yaml, or rigid_gears");
   }
-  ArmDynamicsConfig config;
-  config.bodies = robot.bodies;
-  config.rotor_inertia = orAll(section->rotor_inertia, 0.0, robot, "rotor_inertia");
-  config.gear_damping = orAll(section->gear_damping, 0.0, robot, "gear_damping");
-  config.gear_stiffness = orAll(is_flexible ? section->gear_stiffness : std::nullopt, kNoLimit,
-                                robot, "gear_stiffness");
-  config.servo_bandwidth_hz = section->servo_bandwidth_hz;
-  config.servo_integral_hz = section->servo_integral_hz;
+  const ArmDynamicsConfig config = readDynamics(robot, is_flexible);
   const MassMatrix M = massMatrix(robot, q_start);
   if (is_flexible) {
     checkMass(robot, M, JointVector::Zero(q_start.size()));  // of the links behind the springs
@@ -106,6 +118,22 @@ std::optional<ArmDynamicsConfig> loadDynamics(const YamlNode& scene, SimulatedAr
     checkMass(robot, M, config.rotor_inertia);
   }
   return config;
+}
+
+std::optional<ArmDescription> describeArm(const LoadedRobot& robot, const JointVector& q_start) {
+  const auto& section = robot.config.dynamics;
+  if (!section) return std::nullopt;
+  ArmDescription arm;
+  arm.has_gears = section->gear_stiffness.has_value();
+  arm.dynamics = readDynamics(robot, arm.has_gears);
+  arm.contact_stiffness_N_per_m = arm.has_gears
+                                      ? section->contact_stiffness_N_per_m.value_or(kNoLimit)
+                                      : robot.config.stiffness_N_per_m;
+  arm.max_effort = robot.chain.max_effort;
+  const JointVector moved_with_links =
+      arm.has_gears ? JointVector(JointVector::Zero(q_start.size())) : arm.dynamics.rotor_inertia;
+  if (!isMassive(massMatrix(robot, q_start), moved_with_links)) return std::nullopt;
+  return arm;
 }
 
 }  // namespace tactus

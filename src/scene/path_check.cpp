@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/analysis/path_contacts.h"
 #include "tactus/control/controller.h"
 #include "tactus/math/weighted_pseudoinverse.h"
 
@@ -12,16 +13,6 @@ namespace tactus {
 namespace {
 
 constexpr double kMaxLag = 1e-3;  ///< m or rad; discretisation alone stays far below
-/// So that check stays quick: the first minutes of a path.
-constexpr double kMaxCheckedCycles = 3e5;
-
-/// The motion without a contact, along a path that does not wait.
-ControllerConfig undisturbed(ControllerConfig config) {
-  config.gains.task.wait_beyond_m = kNoLimit;
-  config.tactile_modules.clear();
-  config.force_control.reset();
-  return config;
-}
 
 std::string singularStart(const ControllerConfig& config) {
   const double smallest = smallestSingularValueAtStart(config, config.weights);
@@ -47,7 +38,7 @@ std::string slowestJoint(const Scene& scene, const JointVector& velocity) {
 std::string laggingPath(const Scene& scene) {
   const ControllerConfig config = undisturbed(scene.controller);
   const double end_s = Trajectory(config.task.trajectory, Pose{}).end_s();
-  const auto cycles = std::llround(std::min(end_s / scene.period_s, kMaxCheckedCycles));
+  const auto cycles = std::llround(std::min(end_s / scene.period_s, kMaxFollowedCycles));
   const Controller controller(config);
   ControllerState state = controller.initialState();
   ControllerOutput output;

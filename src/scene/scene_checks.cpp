@@ -119,6 +119,22 @@ bool needsActivationForce(Variant variant) {
          variant == Variant::kNullLimit;
 }
 
+/// At rest the sensor shows F_th, or F_act + F_th: what it cannot show is a fault.
+void checkSensorRange(const Checked& c) {
+  const ForceGains& gains = c.scene.gains.force;
+  const bool has_second = needsActivationForce(c.scene.controller->variant);
+  const double rest_N = gains.contact_threshold_N + (has_second ? gains.activation_force_N : 0.0);
+  for (std::size_t i = 0; i < c.robot.config.tactile_modules.size(); ++i) {
+    const double max_force_N = c.robot.config.tactile_modules[i].config.max_force_N;
+    if (max_force_N > rest_N) continue;
+    const std::string key = moduleKey(c.robot.root, i) + ".max_force_N";
+    failAt(locate(c.robot.root, key), key,
+           fmt::format("{:g} N is no more than where the arm rests", max_force_N),
+           fmt::format("expected more than {:g} N, the scene's {}contact_threshold_N", rest_N,
+                       has_second ? "activation_force_N + " : ""));
+  }
+}
+
 /// The laws answer one contact; without a law any number of modules is read.
 void checkModules(const Checked& c) {
   const std::size_t modules = c.robot.config.tactile_modules.size();
@@ -148,6 +164,7 @@ void checkController(const Checked& c) {
            "0, or the variant null_limit");
   }
   if (variant == Variant::kJointSpace) checkJointSpace(c);
+  if (variant != Variant::kNone) checkSensorRange(c);
   if (variant != Variant::kNone && !c.scene.stiffness) {
     c.fail("stiffness", "is missing", fmt::format("a section with the variant {}", name));
   }

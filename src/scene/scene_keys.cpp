@@ -28,7 +28,8 @@ Row<SceneConfig> redundancySection() {
       "redundancy", "how the joints share a motion",
       {
           withSymbol("W", oneAJoint("weights", "", within(1e-6, 1e6),
-                                    "a joint with a larger one moves less: diagonal of W in (1); "
+                                    "a joint with a larger one moves less: diagonal of W in (1), "
+                                    "divided by their median, as a common factor says nothing; "
                                     "absent: all 1",
                                     &SceneConfig::weights)),
           optional(group<SceneConfig>(

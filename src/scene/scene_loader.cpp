@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "tactus/scene/cover_keys.h"
@@ -77,15 +78,26 @@ ForceControlConfig makeForceControl(const SceneConfig& config) {
   return force;
 }
 
+/// Divided by their median, for a common factor, which leaves J# and N of (1) as they are, would
+/// weaken W^-1 dH/dq and shift the thresholds of damping and regularised gains, which are lengths.
+JointVector withoutScale(JointVector weights) {
+  JointVector sorted = weights;
+  std::sort(sorted.begin(), sorted.end());
+  const Eigen::Index n = sorted.size();
+  weights /= std::sqrt(sorted[(n - 1) / 2] * sorted[n / 2]);  // exact where both are equal
+  return weights;
+}
+
 ControllerConfig makeController(const YamlNode& root, const SceneConfig& config,
                                 const LoadedRobot& robot, const JointVector& q_start) {
   const UrdfChain& chain = robot.chain;
   ControllerConfig controller{
       .chain = SerialChain(chain.joints, chain.tip), .q_start = q_start, .limits = chain.limits};
   controller.task = makeTask(config);
-  controller.weights = config.weights
-                           ? toJointVector(*config.weights, root, "redundancy.weights", chain)
-                           : JointVector(JointVector::Ones(q_start.size()));
+  controller.weights =
+      config.weights
+          ? withoutScale(toJointVector(*config.weights, root, "redundancy.weights", chain))
+          : JointVector(JointVector::Ones(q_start.size()));
   controller.has_joint_limit_avoidance = config.has_joint_limit_avoidance;
   controller.gains = config.gains;
   if (!config.controller) return controller;
@@ -187,6 +199,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
               .duration_s = config.simulation.duration_s,
               .stiffest_N_per_m = stiffness.stiffest_N_per_m.value_or(0.0),
               .plant = makePlant(root, config, robot, q_start),
+              .arm = describeArm(robot, q_start),
               .robot_name = robot.chain.robot_name,
               .joint_names = robot.chain.joint_names,
               .module_links = linksThatAreRead(config, robot.config),

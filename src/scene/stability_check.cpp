@@ -104,16 +104,6 @@ std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, doubl
                    kInside * ratio * report.stiffness_N_per_m, least_N_per_m, rule));
 }
 
-/// The modules' electronics, but the daemon's filter where the daemon filters.
-PlantConfig plantOf(const Scene& scene) {
-  PlantConfig plant = scene.plant;
-  if (!scene.hardware) return plant;
-  const std::vector<CanTactileConfig>& on_bus = scene.hardware->tactile_modules;
-  for (std::size_t i = 0; i < on_bus.size(); ++i)
-    plant.modules[i].filtered = !on_bus[i].filter_cutoff_hz;
-  return plant;
-}
-
 std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& report,
                                     double largest_ratio) {
   std::vector<std::string> warnings;
@@ -136,6 +126,15 @@ std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& r
 }
 
 }  // namespace
+
+PlantConfig plantOf(const Scene& scene) {
+  PlantConfig plant = scene.plant;
+  if (!scene.hardware) return plant;
+  const std::vector<CanTactileConfig>& on_bus = scene.hardware->tactile_modules;
+  for (std::size_t i = 0; i < on_bus.size(); ++i)
+    plant.modules[i].filtered = !on_bus[i].filter_cutoff_hz;
+  return plant;
+}
 
 std::optional<StabilityReport> checkStability(const Scene& scene) {
   const std::vector<VariantLoop> loops =

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kMaxAxis = 1e3;
 constexpr double kMaxLimit = 1e6;
+constexpr double kMaxEffort = 1e9;
 
 /// One joint of the chain while it is read.
 struct JointReader : UrdfNode {
@@ -32,7 +33,7 @@ Vector3 readAxis(const JointReader& reader) {
 
 struct MovingJoint {
   Joint joint;
-  double lower = -kNoLimit, upper = kNoLimit, max_velocity = kNoLimit;
+  double lower = -kNoLimit, upper = kNoLimit, max_velocity = kNoLimit, max_effort = kNoLimit;
 };
 
 MovingJoint readMovingJoint(const JointReader& reader) {
@@ -54,6 +55,8 @@ MovingJoint readMovingJoint(const JointReader& reader) {
     reader.fail(reader.child("limit"), "limit.velocity", "is not positive",
                 "a number > 0 in m/s or rad/s");
   }
+  const double effort = reader.number("limit", "effort", kMaxEffort, 0.0);
+  if (effort > 0.0) result.max_effort = effort;  // 0 is what exporters write for none
   return result;
 }
 
@@ -178,6 +181,9 @@ UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
   for (const MovingJoint& m : walk.moving) chain.joints.push_back(m.joint);
   chain.tip = walk.frame;
   setLimits(walk.moving, chain.limits);
+  chain.max_effort.resize(static_cast<Eigen::Index>(walk.moving.size()));
+  for (std::size_t i = 0; i < walk.moving.size(); ++i)
+    chain.max_effort[static_cast<Eigen::Index>(i)] = walk.moving[i].max_effort;
   for (const NamedFrame& link : module_links)
     chain.module_links.push_back(moduleFrame(tree, walk, link));
   return chain;

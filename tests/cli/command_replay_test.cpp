@@ -93,8 +93,21 @@ TEST_F(CommandReplay, ASettingShowsWhatItChanges) {
   EXPECT_EQ(run({"--set", "controller.time_constant_s=0.2", "-o", csv_.path()}), kExitDone);
   EXPECT_NE(output_.find("\nlargest difference of dq_"), std::string::npos) << output_;
   EXPECT_NE(output_.find("\nlargest difference of u_n: "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("\nforces are as recorded: "), std::string::npos) << output_;
   const std::string csv = csv_.content();
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 401);
+}
+
+/// Cycles of another length would be those of no run.
+TEST_F(CommandReplay, RefusesAnotherPeriod) {
+  writeLogOf({});
+  try {
+    run({"--set", "period_s=0.002"});
+    FAIL() << "replayed with another period";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("--set period_s:1:1: period_s: cannot be set"), 0u)
+        << error.what();
+  }
 }
 
 TEST_F(CommandReplay, TheLogHoldsEveryNumberAsAParameter) {

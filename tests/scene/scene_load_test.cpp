@@ -21,7 +21,7 @@ TEST(SceneLoad, PutsEveryValueInItsPlace) {
   EXPECT_EQ(scene.period_s, 0.001);
   EXPECT_EQ(scene.duration_s, 13.0);
   EXPECT_EQ(config.q_start, Vector3(0.1, 0.2, 0.3));
-  EXPECT_EQ(config.weights, Vector3(1, 2, 3));
+  EXPECT_EQ(config.weights, Vector3(0.5, 1, 1.5));
   EXPECT_EQ(config.limits.lower, Vector3(-1, -2, -kNoLimit));
   EXPECT_EQ(config.limits.upper, Vector3(0.5, 2, kNoLimit));
   EXPECT_EQ(config.limits.max_velocity, Vector3(0.7, 1.5, 2));

@@ -111,6 +111,18 @@ class BadInput(unittest.TestCase):
         result = self.run_tactus("simulate", scene, *SHORT, "-o", "out")
         self.assertEqual((result.returncode, result.stderr), (0, ""), result)
 
+    def test_covers_and_touches(self):
+        """What is printed is the same in both ways, and no number is missing."""
+        scene = CONFIG / "scenes/scenario1_multi_space.yaml"
+        report = json.loads(self.run_tactus("check", "--json", scene).stdout)
+        self.assertEqual([cover["link"] for cover in report["covers"]], ["link4"])
+        self.assertEqual([touch["obstacle"] for touch in report["touches"]], [0])
+        self.assertGreater(report["expected_peak"]["blow_peak_N"], 0)
+        text = self.run_tactus("check", scene).stdout
+        for name in ("cover", "touch", "peak", "gears"):
+            self.assertEqual(text.count(f"\n{name:9}"), 1, text)
+        self.assertNotIn("nan", text)
+
     def test_margins(self):
         multi_space = CONFIG / "scenes/scenario1_multi_space.yaml"
         report = json.loads(self.run_tactus("check", "--json", multi_space).stdout)["stability"]
@@ -180,12 +192,13 @@ class BadInput(unittest.TestCase):
         fast = ("--set", f"{line}.speed_m_per_s=10", "--set", f"{line}.ramp_s=0.05")
         for scene, settings, warnings in ((GOOD, (), 0), (GOOD, fast, 1)):
             report = json.loads(self.run_tactus("check", "--json", scene, *settings).stdout)
-            self.assertEqual(len(report["warnings"]), warnings)
+            self.assertEqual(len([w for w in report["warnings"] if w.startswith("path")]), warnings)
             text = self.run_tactus("check", scene, *settings).stdout
             self.assertEqual(text.count("\nwarning  path not followed: at "), warnings)
         both = (*fast, "--set", "stiffness.stiffest_N_per_m=25000")
         report = json.loads(self.run_tactus("check", "--json", GOOD, *both).stdout)
-        self.assertEqual([w.split(" ")[0] for w in report["warnings"]], ["path", "phase"], report)
+        first = [w.split(" ")[0] for w in report["warnings"]]
+        self.assertEqual([w for w in first if w in ("path", "phase")], ["path", "phase"], report)
         self.assertNotIn("warnings", report["stability"])
 
     def test_setting(self):

@@ -81,7 +81,7 @@ struct ControllerConfig {
   JointVector q_start{};
   JointLimits limits{};
   TaskConfig task{};
-  JointVector weights{};  ///< diagonal of W, > 0
+  JointVector weights{};  ///< diagonal of W, > 0, with a median of 1: see redundancy.weights
   bool has_joint_limit_avoidance = false;
   std::vector<TactileModuleConfig> tactile_modules{};  ///< at most kMaxTactileModules
   Vector3 gravity_Base = Vector3::Zero();              ///< m/s^2; only covers ask

@@ -17,4 +17,7 @@ std::optional<ArmDynamicsConfig> loadDynamics(const YamlNode& scene, SimulatedAr
 /// robot does not say enough, or a joint moves no mass.
 std::optional<GearedLinks> loadGearedLinks(const LoadedRobot& robot, const JointVector& q_start);
 
+/// What the robot says of itself, whatever is simulated; absent where that is not enough.
+std::optional<ArmDescription> describeArm(const LoadedRobot& robot, const JointVector& q_start);
+
 }  // namespace tactus

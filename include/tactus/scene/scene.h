@@ -31,6 +31,14 @@ struct Override {
 
 inline constexpr double kDefaultPeriod_s = 0.001;
 
+/// What robot.yaml and URDF say of the masses, rotors and gears of the arm, simulated or not.
+struct ArmDescription {
+  ArmDynamicsConfig dynamics;
+  bool has_gears = false;  ///< else they are rigid: the stiffness of none is said
+  double contact_stiffness_N_per_m = kNoLimit;  ///< of links and cover, what a blow meets of them
+  JointVector max_effort;                       ///< N or Nm; infinite where the URDF has none
+};
+
 /// One run: a robot, a task, a controller and, for simulation, a world.
 struct Scene {
   std::string name;  ///< file name without .yaml
@@ -40,6 +48,8 @@ struct Scene {
   double duration_s = 0.0;
   double stiffest_N_per_m = 0.0;  ///< contact that the gains are made for; 0: as assumed
   PlantConfig plant;
+  /// Absent without `dynamics` in robot.yaml, and where a joint moves no mass.
+  std::optional<ArmDescription> arm{};
   std::string robot_name;  ///< as the URDF spells it
   std::vector<std::string> joint_names;
   std::vector<std::string> module_links;  ///< of the tactile modules that the controller reads

@@ -30,6 +30,7 @@ struct UrdfChain {
   AttachedFrame tip;
   std::vector<AttachedFrame> module_links;
   std::vector<PlacedLink> links;  ///< from the root to the tip
+  JointVector max_effort;         ///< N or Nm; infinite where it is absent or 0
   JointLimits limits;             ///< accelerations unlimited; positions of continuous joints too
 };
 

@@ -1,0 +1,105 @@
+#include "tactus/cli/contact_report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace tactus {
+namespace {
+
+std::string pointText(const Vector3& p) {
+  return fmt::format("({:.4f}, {:.4f}, {:.4f})", p.x(), p.y(), p.z());
+}
+
+Json pointJson(const Vector3& p) { return {p.x(), p.y(), p.z()}; }
+
+std::string touchText(const TouchReport& report) {
+  std::string text =
+      fmt::format("obstacle {} at {:.3g} s with {:.3g} m/s: about {:.3g} N", report.obstacle,
+                  report.touch.t_s, report.touch.speed_m_per_s, report.peak_N);
+  if (!report.softer) return text;
+  text += fmt::format("; for {:.3g} N: {:.2g} m/s", report.softer->force_N,
+                      report.softer->speed_m_per_s);
+  if (!report.softer->cutoff_hz) return text;
+  return text + fmt::format(", or a filter of {:.2g} Hz", *report.softer->cutoff_hz);
+}
+
+std::string peakText(const PeakReport& peak) {
+  std::string text =
+      fmt::format("{:g} N/m met with {:.3g} m/s, the fastest of the covers: about {:.3g} N",
+                  peak.stiffness_N_per_m, peak.fastest.speed_m_per_s, peak.peak_N());
+  text += fmt::format(" ({:.3g} N by a delay of {:.3g} ms", peak.delay_peak_N, 1e3 * peak.delay_s);
+  if (peak.blow_peak_N)
+    text += fmt::format(", {:.3g} N by a mass of {:.3g} kg", *peak.blow_peak_N, *peak.mass_kg);
+  return text + fmt::format("); sensor up to {:g} N; up to {:g} N: {:.2g} m/s", peak.max_force_N,
+                            peak.target_N, peak.target_speed_m_per_s);
+}
+
+Json touchJson(const TouchReport& report) {
+  Json json = {{"obstacle", report.obstacle},
+               {"t_s", report.touch.t_s},
+               {"speed_m_per_s", report.touch.speed_m_per_s},
+               {"peak_force_N", report.peak_N}};
+  if (!report.softer) return json;
+  json["softer"] = {{"force_N", report.softer->force_N},
+                    {"speed_m_per_s", report.softer->speed_m_per_s}};
+  if (report.softer->cutoff_hz) json["softer"]["filter_cutoff_hz"] = *report.softer->cutoff_hz;
+  return json;
+}
+
+Json peakJson(const PeakReport& peak) {
+  Json json = {{"stiffness_N_per_m", peak.stiffness_N_per_m},
+               {"speed_m_per_s", peak.fastest.speed_m_per_s},
+               {"delay_s", peak.delay_s},
+               {"delay_peak_N", peak.delay_peak_N},
+               {"peak_force_N", peak.peak_N()},
+               {"max_force_N", peak.max_force_N},
+               {"target_force_N", peak.target_N},
+               {"target_speed_m_per_s", peak.target_speed_m_per_s}};
+  if (!peak.blow_peak_N) return json;
+  json["effective_mass_kg"] = *peak.mass_kg;
+  json["blow_peak_N"] = *peak.blow_peak_N;
+  return json;
+}
+
+}  // namespace
+
+std::string textLine(const std::string& name, const std::string& value) {
+  return fmt::format("{:<9}{}\n", name, value);
+}
+
+std::string coversText(const std::vector<CoverReport>& covers) {
+  std::string text;
+  for (const CoverReport& cover : covers) {
+    text += textLine(
+        "cover", fmt::format("{} from {} to {} m", cover.link, pointText(cover.ends.p_BaseStart),
+                             pointText(cover.ends.p_BaseEnd)));
+  }
+  return text;
+}
+
+std::string contactText(const ExpectedContact& report) {
+  std::string text;
+  for (const TouchReport& touch : report.touches) text += textLine("touch", touchText(touch));
+  if (report.peak) text += textLine("peak", peakText(*report.peak));
+  return text;
+}
+
+Json coversJson(const std::vector<CoverReport>& covers) {
+  Json json = Json::array();
+  for (const CoverReport& cover : covers) {
+    json.push_back({{"link", cover.link},
+                    {"start_m", pointJson(cover.ends.p_BaseStart)},
+                    {"end_m", pointJson(cover.ends.p_BaseEnd)}});
+  }
+  return json;
+}
+
+void addContact(const ExpectedContact& report, Json& json) {
+  Json touches = Json::array();
+  for (const TouchReport& touch : report.touches) touches.push_back(touchJson(touch));
+  json["touches"] = touches;
+  if (report.peak) json["expected_peak"] = peakJson(*report.peak);
+}
+
+}  // namespace tactus

@@ -1,0 +1,109 @@
+#include "tactus/scene/arm_check.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tactus {
+namespace {
+
+using Warnings = std::vector<std::string>;
+
+constexpr double kLongestLink_m = 20.0;  ///< longer ones are a URDF in mm, or in cm
+constexpr double kShortestArm_m = 0.02;  ///< a URDF in km, or one that was scaled twice
+constexpr double kMostOffLink = 0.75;    ///< of a cover; one leg of a bent link stays below 0.71
+
+ChainPose poseAtStart(const Scene& scene) {
+  ChainPose pose;
+  scene.controller.chain.computePose(scene.controller.q_start, pose);
+  return pose;
+}
+
+void checkSizes(const Scene& scene, Warnings& warnings) {
+  const ArmLengths lengths = armLengths(scene.controller.chain, poseAtStart(scene));
+  if (lengths.longest_m > kLongestLink_m) {
+    warnings.push_back(fmt::format(
+        "the link behind joint {} is {:.4g} m long, which no robot's is: is the URDF in mm? it "
+        "has to be in m",
+        scene.joint_names[lengths.longest_joint], lengths.longest_m));
+  }
+  if (lengths.all_m < kShortestArm_m) {
+    warnings.push_back(
+        fmt::format("the whole arm is {:.3g} mm long, which no robot's is: a URDF has to be in m",
+                    1e3 * lengths.all_m));
+  }
+}
+
+void checkCovers(const Scene& scene, Warnings& warnings) {
+  const ChainPose pose = poseAtStart(scene);
+  const ControllerConfig& config = scene.controller;
+  for (std::size_t i = 0; i < config.tactile_modules.size(); ++i) {
+    const TactileModuleConfig& module = config.tactile_modules[i];
+    const double share = shareOffLink(config.chain, pose, module);
+    if (share <= kMostOffLink) continue;
+    const CoverEnds ends = coverEnds(pose, module);
+    warnings.push_back(fmt::format(
+        "the cover leaves its link: the x axis of {} leads {:.0f} mm away from the line to the "
+        "next joint, as if it lay across the link or ended before it; x has to point along it",
+        scene.module_links[i], 1e3 * share * (ends.p_BaseEnd - ends.p_BaseStart).norm()));
+  }
+}
+
+/// A joint that speeds up alone: together they may need more, never all of them less.
+void checkEfforts(const Scene& scene, Warnings& warnings) {
+  if (!scene.arm) return;
+  const ControllerConfig& config = scene.controller;
+  const ArmDynamicsConfig& arm = scene.arm->dynamics;
+  const MassMatrix M = massMatrixAt(config.chain, arm.bodies, config.q_start);
+  Warnings joints;
+  for (int i = 0; i < config.chain.size(); ++i) {
+    const double inertia = M(i, i) + arm.rotor_inertia[i];
+    const double effort = scene.arm->max_effort[i];
+    const double acceleration = config.limits.max_acceleration[i];
+    if (!(acceleration < kNoLimit) || !(inertia * acceleration > effort)) continue;
+    const bool is_prismatic = config.chain.type(i) == JointType::kPrismatic;
+    joints.push_back(fmt::format("{} needs {:.3g} of {:g} {} (at most {:.3g} {})",
+                                 scene.joint_names[i], inertia * acceleration, effort,
+                                 is_prismatic ? "N" : "Nm", effort / inertia,
+                                 is_prismatic ? "m/s^2" : "rad/s^2"));
+  }
+  if (joints.empty()) return;
+  warnings.push_back(fmt::format("limits.acceleration asks for more than the URDF's effort: {}",
+                                 fmt::join(joints, ", ")));
+}
+
+/// Without an integral a drive keeps an error that only tracking takes away.
+void checkDrives(const Scene& scene, Warnings& warnings) {
+  if (!scene.arm || scene.arm->dynamics.servo_integral_hz > 0.0) return;
+  Warnings joints;
+  if (!scene.hardware) joints = scene.joint_names;
+  if (scene.hardware) {
+    for (const DriveConfig& drive : scene.hardware->drives)
+      if (drive.tracking_gain_per_s == 0.0) joints.push_back(scene.joint_names[drive.joint]);
+  }
+  if (joints.empty()) return;
+  warnings.push_back(fmt::format(
+      "drives without an integral part (dynamics.servo_integral_hz) and without "
+      "tracking_gain_per_s give way for good under load, so that the tool leaves its path: {}",
+      fmt::join(joints, " ")));
+}
+
+}  // namespace
+
+std::vector<CoverReport> coversAtStart(const Scene& scene) {
+  const ChainPose pose = poseAtStart(scene);
+  std::vector<CoverReport> covers;
+  for (std::size_t i = 0; i < scene.controller.tactile_modules.size(); ++i)
+    covers.push_back({scene.module_links[i], coverEnds(pose, scene.controller.tactile_modules[i])});
+  return covers;
+}
+
+std::vector<std::string> checkArm(const Scene& scene) {
+  Warnings warnings;
+  checkSizes(scene, warnings);
+  checkCovers(scene, warnings);
+  checkEfforts(scene, warnings);
+  checkDrives(scene, warnings);
+  return warnings;
+}
+
+}  // namespace tactus

@@ -1,0 +1,150 @@
+#include "tactus/scene/touch_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tactus/analysis/contact_peak.h"
+#include "tactus/analysis/effective_mass.h"
+#include "tactus/analysis/variant_loops.h"
+#include "tactus/scene/stability_check.h"
+
+namespace tactus {
+namespace {
+
+bool hasActivationForce(Variant variant) {
+  return variant == Variant::kNullTask || variant == Variant::kNullJoint ||
+         variant == Variant::kNullLimit;
+}
+
+/// A touch of this spring by the scene's arm, whose loop of one space has its delays.
+TouchedSpring touchedSpring(const Scene& scene, const ObstacleConfig& obstacle,
+                            double robot_stiffness_N_per_m) {
+  const PlantConfig plant = plantOf(scene);
+  return {variantLoops(scene.controller, plant, scene.period_s).front().loop,
+          scene.controller.gains.force.contact_threshold_N,
+          ContactSpring(obstacle, robot_stiffness_N_per_m)};
+}
+
+/// F_act + F_th where the law keeps to it, else half of the peak.
+std::optional<SofterTouch> softerTouch(const Scene& scene, const TouchedSpring& touched,
+                                       double speed_m_per_s, double peak_N) {
+  const ForceGains& gains = scene.controller.gains.force;
+  SofterTouch softer{0.5 * peak_N, 0.0, {}};
+  if (hasActivationForce(scene.controller.force_control->variant))
+    softer.force_N = gains.activation_force_N + gains.contact_threshold_N;
+  if (peak_N <= softer.force_N) return std::nullopt;
+  softer.speed_m_per_s = touchSpeed_m_per_s(touched, softer.force_N);
+  if (softer.speed_m_per_s <= 0.0) return std::nullopt;
+  softer.cutoff_hz = touchCutoff_hz(touched, speed_m_per_s, softer.force_N);
+  return softer;
+}
+
+std::vector<TouchReport> touchesOf(const Scene& scene, const PathContacts& contacts) {
+  std::vector<TouchReport> reports;
+  for (std::size_t i = 0; i < contacts.touches.size(); ++i) {
+    const std::optional<PathTouch>& touch = contacts.touches[i];
+    if (!touch || touch->t_s == 0.0 || touch->speed_m_per_s <= 0.0) continue;
+    const TouchedSpring touched =
+        touchedSpring(scene, scene.plant.obstacles[i], scene.plant.robot_stiffness_N_per_m);
+    // One that appears in the arm pushes at once.
+    const double peak_N = std::max(touchPeak_N(touched, touch->speed_m_per_s),
+                                   touched.spring.force_N(touch->depth_m));
+    reports.push_back({static_cast<int>(i), *touch, peak_N,
+                       softerTouch(scene, touched, touch->speed_m_per_s, peak_N)});
+  }
+  return reports;
+}
+
+/// The stiffness that a blow meets: c_e has the whole arm in it, whose gears do not matter to it.
+double blowStiffness(const Scene& scene, double stiffest_N_per_m) {
+  double stiffest = stiffest_N_per_m;
+  for (const ObstacleConfig& obstacle : scene.plant.obstacles)
+    stiffest = std::max(stiffest,
+                        inSeries(obstacle.stiffness_N_per_m, scene.arm->contact_stiffness_N_per_m));
+  return stiffest;
+}
+
+double massAt(const Scene& scene, const FastestCover& fastest) {
+  const ControllerConfig& config = scene.controller;
+  const ArmDescription& arm = *scene.arm;
+  ChainPose pose;
+  config.chain.computePose(fastest.q, pose);
+  const JointVector rotors =
+      arm.has_gears ? JointVector(JointVector::Zero(fastest.q.size())) : arm.dynamics.rotor_inertia;
+  return effectiveMass_kg(
+      config.chain, pose, massMatrixAt(config.chain, arm.dynamics.bodies, fastest.q), rotors,
+      config.tactile_modules[fastest.module].link.joint, fastest.p_Base, fastest.direction);
+}
+
+PeakReport peakOf(const Scene& scene, const FastestCover& fastest, double stiffest_N_per_m) {
+  const ForceGains& gains = scene.controller.gains.force;
+  const double v = fastest.speed_m_per_s;
+  ObstacleConfig stiffest;
+  stiffest.stiffness_N_per_m = stiffest_N_per_m;
+  const TouchedSpring touched = touchedSpring(scene, stiffest, kNoLimit);
+  PeakReport report{.fastest = fastest,
+                    .stiffness_N_per_m = stiffest_N_per_m,
+                    .delay_s = touchDelay_s(touched, v),
+                    .delay_peak_N = touchPeak_N(touched, v),
+                    .mass_kg = {},
+                    .blow_peak_N = {},
+                    .max_force_N = scene.controller.tactile_modules[fastest.module].max_force_N,
+                    .target_N = 0.0,
+                    .target_speed_m_per_s = 0.0};
+  const bool has_activation = hasActivationForce(scene.controller.force_control->variant);
+  report.target_N =
+      has_activation ? gains.activation_force_N + gains.contact_threshold_N : report.max_force_N;
+  report.target_speed_m_per_s = touchSpeed_m_per_s(touched, report.target_N);
+  if (!scene.arm) return report;
+  report.mass_kg = massAt(scene, fastest);
+  const double k = blowStiffness(scene, stiffest_N_per_m);
+  report.blow_peak_N = blowPeak_N(v, k, *report.mass_kg);
+  report.target_speed_m_per_s =
+      std::min(report.target_speed_m_per_s, report.target_N / blowPeak_N(1.0, k, *report.mass_kg));
+  return report;
+}
+
+std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& contacts,
+                                    const std::optional<PeakReport>& peak) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < contacts.touches.size(); ++i) {
+    const std::optional<PathTouch>& touch = contacts.touches[i];
+    if (!touch && contacts.is_complete) {
+      warnings.push_back(
+          fmt::format("obstacle {} is never touched: no cover comes to it on the scene's path", i));
+    }
+    if (touch && touch->t_s == 0.0) {
+      warnings.push_back(
+          fmt::format("obstacle {} is touched at the start, {:.3g} mm deep in the cover of {}", i,
+                      1e3 * touch->depth_m, scene.module_links[touch->module]));
+    }
+  }
+  if (peak && peak->peak_N() > peak->max_force_N) {
+    warnings.push_back(fmt::format(
+        "the stiffest contact may come to {:.3g} N, the sensor's max_force_N is {:g}: that ends in "
+        "a fault",
+        peak->peak_N(), peak->max_force_N));
+  }
+  return warnings;
+}
+
+}  // namespace
+
+double PeakReport::peak_N() const { return std::max(delay_peak_N, blow_peak_N.value_or(0.0)); }
+
+ExpectedContact checkContacts(const Scene& scene, double stiffest_N_per_m) {
+  ExpectedContact report;
+  if (scene.controller.tactile_modules.empty()) return report;
+  const PathContacts contacts =
+      followPath(scene.controller, scene.plant, scene.period_s, scene.duration_s);
+  if (scene.controller.force_control) {
+    report.touches = touchesOf(scene, contacts);
+    if (contacts.fastest.speed_m_per_s > 0.0)
+      report.peak = peakOf(scene, contacts.fastest, stiffest_N_per_m);
+  }
+  report.warnings = warningsOf(scene, contacts, report.peak);
+  return report;
+}
+
+}  // namespace tactus

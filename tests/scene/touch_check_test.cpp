@@ -1,0 +1,158 @@
+#include "tactus/scene/touch_check.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "support/shipped_scene.h"
+#include "tactus/control/controller.h"
+#include "tactus/sim/simulated_robot.h"
+
+namespace tactus {
+namespace {
+
+using Warnings = std::vector<std::string>;
+
+constexpr double kStiffest_N_per_m = 7000.0;
+
+bool has(const Warnings& warnings, const std::string& part) {
+  return std::ranges::any_of(warnings, [&](const std::string& warning) {
+    return warning.find(part) != std::string::npos;
+  });
+}
+
+ExpectedContact expectedOf(const std::string& name, const std::vector<Override>& settings = {}) {
+  return checkContacts(test::shippedScene(name, settings), kStiffest_N_per_m);
+}
+
+Override obstacle(const std::string& x_m, const std::string& y_m, const std::string& more = "") {
+  return {"simulation.obstacles",
+          "[{x_m: " + x_m + ", y_m: " + y_m + ", stiffness_N_per_m: 5000" + more + "}]"};
+}
+
+/// When the simulated arm first touches, s, and how hard until 60 ms later.
+struct SimulatedTouch {
+  double t_s = -1.0, peak_N = 0.0;
+};
+
+SimulatedTouch simulateTouch(const Scene& scene) {
+  SimulatedTouch touch;
+  const Controller controller(scene.controller);
+  ControllerState state = controller.initialState();
+  SimulatedRobot robot(scene.controller, scene.plant, scene.period_s);
+  RobotInput input;
+  ControllerOutput output;
+  for (double t_s = 0.0; t_s < scene.duration_s; t_s += scene.period_s) {
+    robot.read(input);
+    controller.update(input, scene.controller.gains, t_s, scene.period_s, state, output);
+    robot.write(output.velocity);
+    if (touch.t_s < 0.0 && robot.trueForce_N() > 0.0) touch.t_s = t_s;
+    if (touch.t_s >= 0.0 && t_s < touch.t_s + 0.06)
+      touch.peak_N = std::max(touch.peak_N, robot.trueForce_N());
+  }
+  return touch;
+}
+
+TEST(TouchCheck, HasNothingAgainstTheScenesThatComeAlong) {
+  int scenes = 0;
+  const std::filesystem::path folder = TACTUS_SOURCE_DIR "/config/scenes";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".yaml") continue;
+    const Scene scene = loadScene(entry.path().string(), {});
+    EXPECT_EQ(checkContacts(scene, kStiffest_N_per_m).warnings, Warnings{}) << entry.path();
+    ++scenes;
+  }
+  EXPECT_GT(scenes, 20);
+}
+
+TEST(TouchCheck, KnowsWhenAndHowHardTheArmTouches) {
+  for (const std::string speed : {"0.05", "0.15", "0.4"}) {
+    const std::vector<Override> settings{
+        {"task.trajectory.line.speed_m_per_s", speed},
+        {"simulation.obstacles", "[{x_m: 0.70771, y_m: 0.00265, stiffness_N_per_m: 5000}]"}};
+    for (const std::string name : {"scenario1_null_space", "scenario1_multi_space"}) {
+      const Scene scene = test::shippedScene(name, settings);
+      const ExpectedContact expected = checkContacts(scene, kStiffest_N_per_m);
+      ASSERT_EQ(expected.touches.size(), 1u);
+      const SimulatedTouch touch = simulateTouch(scene);
+      EXPECT_NEAR(expected.touches[0].touch.t_s, touch.t_s, 0.012) << "the drives lag behind";
+      EXPECT_NEAR(expected.touches[0].peak_N, touch.peak_N, 0.25 * touch.peak_N) << name << speed;
+    }
+  }
+}
+
+TEST(TouchCheck, NamesASpeedThatKeepsTheForceOfTheLaw) {
+  const std::vector<Override> fast{{"task.trajectory.line.speed_m_per_s", "0.3"},
+                                   obstacle("0.70771", "0.00265")};
+  const ExpectedContact expected = expectedOf("scenario1_multi_space", fast);
+  ASSERT_EQ(expected.touches.size(), 1u);
+  ASSERT_TRUE(expected.touches[0].softer);
+  const SofterTouch& softer = *expected.touches[0].softer;
+  EXPECT_NEAR(softer.force_N, 5.0, 1e-12);
+  EXPECT_GT(expected.touches[0].peak_N, 5.0);
+  EXPECT_LT(softer.speed_m_per_s, expected.touches[0].touch.speed_m_per_s);
+  EXPECT_GT(softer.speed_m_per_s, 0.0);
+}
+
+TEST(TouchCheck, HasMassesOnlyOfRobotsThatSayThem) {
+  const ExpectedContact with = expectedOf("scenario1_null_space");
+  ASSERT_TRUE(with.peak && with.peak->mass_kg);
+  EXPECT_GT(*with.peak->mass_kg, 1.0);
+  EXPECT_LT(*with.peak->mass_kg, 40.0);
+  const ExpectedContact without = expectedOf("robots/ur5e_contact");
+  ASSERT_TRUE(without.peak);
+  EXPECT_FALSE(without.peak->mass_kg);
+  EXPECT_EQ(without.peak->peak_N(), without.peak->delay_peak_N);
+}
+
+/// Both bounds grow with the speed; a slower path has its fastest place elsewhere.
+TEST(TouchCheck, KeepsBelowTheForceOfTheLawAtTheSpeedItNames) {
+  const std::string key = "task.trajectory.line.speed_m_per_s";
+  const ExpectedContact fast = expectedOf("scenario3_tactus", {{key, "0.2"}});
+  ASSERT_TRUE(fast.peak);
+  EXPECT_EQ(fast.peak->target_N, 5.0);
+  EXPECT_GT(fast.peak->peak_N(), 5.0);
+  const double share = fast.peak->target_speed_m_per_s / fast.peak->fastest.speed_m_per_s;
+  const ExpectedContact slow = expectedOf("scenario3_tactus", {{key, std::to_string(0.2 * share)}});
+  EXPECT_NEAR(slow.peak->peak_N(), 5.0, 0.75);
+}
+
+TEST(TouchCheck, WarnsOfObstaclesThatNothingTouches) {
+  EXPECT_EQ(expectedOf("scenario1_null_space", {obstacle("-2", "-2")}).warnings,
+            Warnings{"obstacle 0 is never touched: no cover comes to it on the scene's path"});
+}
+
+TEST(TouchCheck, WarnsOfObstaclesInTheArmAtItsStart) {
+  const Scene scene = test::shippedScene("scenario1_null_space");
+  ChainPose pose;
+  scene.controller.chain.computePose(scene.controller.q_start, pose);
+  const Pose X = framePose(pose, scene.controller.tactile_modules[0].link);
+  const Vector3 inside = X.p_AB + 0.2 * X.R_AB.col(0);
+  const Warnings warnings =
+      expectedOf("scenario1_null_space",
+                 {obstacle(std::to_string(inside.x()), std::to_string(inside.y()))})
+          .warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(
+      warnings[0].find("obstacle 0 is touched at the start, 60 mm deep in the cover of link4"),
+      std::string::npos)
+      << warnings[0];
+}
+
+TEST(TouchCheck, WarnsOfAPeakThatTheSensorCannotShow) {
+  EXPECT_TRUE(
+      has(expectedOf("scenario1_null_space", {{"robot.tactile_module.max_force_N", "3"}}).warnings,
+          "the sensor's max_force_N is 3"));
+}
+
+/// Speeds of zero, and paths that never end, are no numbers to divide by.
+TEST(TouchCheck, StandsAnArmThatHolds) {
+  const ExpectedContact held = expectedOf(
+      "scenario1_null_space",
+      {{"task.trajectory", "{hold: {}}"}, {"task.trajectory.line", "~"}, obstacle("-2", "-2")});
+  EXPECT_TRUE(held.touches.empty());
+  ASSERT_TRUE(!held.peak || std::isfinite(held.peak->peak_N()));
+}
+
+}  // namespace
+}  // namespace tactus
