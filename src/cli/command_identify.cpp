@@ -17,7 +17,7 @@ namespace tactus {
 namespace {
 
 struct IdentifyOptions {
-  std::string log;
+  std::string what, log;
   int module = 0;
   bool json = false;
 };
@@ -130,15 +130,18 @@ void identifyCover(const IdentifyOptions& options) {
 void addIdentifyCommand(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("identify", "Find what a robot.yaml has to say, from a log");
-  command->require_subcommand(1);
-  CLI::App* const cover = command->add_subcommand(
-      "cover", "Mass and centre of a tactile module's cover, from a slow motion without contact");
   const auto options = std::make_shared<IdentifyOptions>();
-  cover->add_option("log", options->log, "Log of a run (run.ulg)")->required();
-  cover->add_option("--module", options->module, "Which of several tactile modules, from 0")
+  command
+      ->add_option("what", options->what,
+                   "cover: mass and centre of a tactile module's cover, from a slow motion without "
+                   "contact")
+      ->required()
+      ->check(CLI::IsMember({"cover"}));
+  command->add_option("log", options->log, "Log of a run (run.ulg)")->required();
+  command->add_option("--module", options->module, "Which of several tactile modules, from 0")
       ->check(CLI::NonNegativeNumber);
-  cover->add_flag("--json", options->json, "Print JSON");
-  cover->callback([options, &exit_code] {
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &exit_code] {
     identifyCover(*options);
     exit_code = kExitDone;
   });
