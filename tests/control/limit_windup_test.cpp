@@ -31,8 +31,8 @@ ControllerConfig limitedArm(Variant variant, Gate gate) {
   return config;
 }
 
-struct PushedArm {
-  explicit PushedArm(const ControllerConfig& config)
+struct ArmAtALimit {
+  explicit ArmAtALimit(const ControllerConfig& config)
       : controller(config), state(controller.initialState()) {}
 
   /// Peak speed of a joint meanwhile.
@@ -68,7 +68,7 @@ struct WayBack {
   double time_s = 0.0, peak = 0.0;
 };
 
-WayBack wayBack(PushedArm& arm) {
+WayBack wayBack(ArmAtALimit& arm) {
   WayBack back;
   for (int i = 0; i < 100000; ++i) {
     back.peak = std::max(back.peak, arm.run(0.0, 0.001));
@@ -85,10 +85,10 @@ TEST(LimitWindup, TheWayBackAfterMinutesIsThatAfterAMoment) {
     for (const Gate gate : {Gate::kVelocity, Gate::kPosition}) {
       SCOPED_TRACE(std::to_string(static_cast<int>(variant)) + kGateNames[static_cast<int>(gate)]);
       const ControllerConfig config = limitedArm(variant, gate);
-      PushedArm minutes(config);
+      ArmAtALimit minutes(config);
       minutes.run(15.0, 60.0);
       EXPECT_GT(minutes.cut_cycles, 1000);
-      PushedArm moment(config);
+      ArmAtALimit moment(config);
       moment.state = moment.controller.initialState(minutes.state.q_desired);
       moment.run(15.0, 0.1);
       const WayBack after_minutes = wayBack(minutes);
@@ -104,7 +104,7 @@ TEST(LimitWindup, TheWayBackAfterMinutesIsThatAfterAMoment) {
 
 TEST(LimitWindup, NothingGrowsWhileAccelerationIsCut) {
   for (const Variant variant : kLaws) {
-    PushedArm arm(limitedArm(variant, Gate::kAcceleration));
+    ArmAtALimit arm(limitedArm(variant, Gate::kAcceleration));
     arm.run(15.0, 3.0);
     EXPECT_GT(arm.cut_cycles, 100) << static_cast<int>(variant);
   }
