@@ -99,7 +99,8 @@ TEST(SimulatedRobot, ModuleKeepsItsOwnTimeAtAnyPeriod) {
 
 TEST(SimulatedRobot, EveryModuleFeelsWhatItsOwnCoverMeets) {
   ControllerConfig config = test::crops9Controller(Variant::kNone);
-  config.tactile_modules.resize(3, config.tactile_modules.front());
+  const TactileModuleConfig first = config.tactile_modules.front();
+  config.tactile_modules = {first, first, first};
   config.tactile_modules[2].link.joint = 0;  // out of reach
   std::vector<ObstacleConfig> obstacles = test::scenario1();
   obstacles[0].x_m = 0.55;
