@@ -116,8 +116,8 @@ TEST(LyingDrive, ThatWentFurtherThanAnyStopIsNotInPlace) {
 }
 
 /// A fault of another drive while this one ignores what it is told, and moves on.
-/// Its position stands still from the start of motion on, until that is a following error. Once limp
-/// the joint may be pushed to just where its feedback stood: nobody held it there.
+/// Its position stands still from the start of motion on, until that is a following error. Once
+/// limp the joint may be pushed to just where its feedback stood: nobody held it there.
 TEST(LyingDrive, WhosePositionStoodStillIsNotInPlaceThere) {
   Scene scene = sceneWith({}, true);
   for (DriveConfig& drive : scene.hardware->drives) drive.max_following_error = 0.05;
