@@ -138,8 +138,10 @@ std::string fullRobot() {
   const std::string robot =
       test::replaced(test::kHardwareRobotText, "  brake: {line: 5}",
                      "  enable: {line: 4}\n  brake: {line: 5}\n  heartbeat: {line: 6}");
-  return test::withModules(
-      robot, test::moduleEntry("cover", "  interface: can1\n  first_id: 0x110\n  tare: {}\n"));
+  return test::withModules(robot,
+                           test::moduleEntry("cover",
+                                             "  interface: can1\n  first_id: 0x110\n  tare: {}\n"
+                                             "  cover: {mass_kg: 1}\n"));
 }
 
 TEST(KeyTable, NoNumberOutsideItsRangeIsRead) {

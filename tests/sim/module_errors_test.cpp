@@ -113,7 +113,7 @@ TEST(ModuleErrors, SamplesJitterByAllThatTheyMayAndComeInOrder) {
   EXPECT_EQ(late.size(), 10000u) << "none is lost";
   EXPECT_EQ(*late.begin(), 0);
   EXPECT_EQ(*late.rbegin(), 2);
-  EXPECT_NEAR(late.count(1), 5000, 300) << "rounded from 0.5 to 1.5 ms";
+  EXPECT_NEAR(static_cast<double>(late.count(1)), 5000.0, 300.0) << "rounded from 0.5 to 1.5 ms";
   EXPECT_EQ(late, latenesses(0.002, 5)) << "the same each time";
   EXPECT_EQ(latenesses(0.0, 5).count(0), 10000u);
   EXPECT_LE(*latenesses(0.02, 5).rbegin(), 4) << "at the latest with the next one";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 #include "support/closed_loop.h"
 
@@ -99,7 +100,7 @@ TEST(SimulatedRobot, ModuleKeepsItsOwnTimeAtAnyPeriod) {
 
 TEST(SimulatedRobot, EveryModuleFeelsWhatItsOwnCoverMeets) {
   ControllerConfig config = test::crops9Controller(Variant::kNone);
-  config.tactile_modules.resize(3, config.tactile_modules.front());
+  config.tactile_modules = std::vector(3, config.tactile_modules.front());
   config.tactile_modules[2].link.joint = 0;  // out of reach
   std::vector<ObstacleConfig> obstacles = test::scenario1();
   obstacles[0].x_m = 0.55;
