@@ -1,22 +1,27 @@
 #!/usr/bin/env python3
 """Plays the tactile module on a CAN bus, untouched, until it is told to stop.
 
-usage: tactile.py BUS
+usage: tactile.py BUS SYNC_BUS
 
-A sample each 20 ms: frames 0x100 + k, k = 0..3, with sequence number, status 0 and two channels of
-24 bits. The channels carry a few counts of noise, as strain gauges do; 100 000 counts are 1 N.
+A sample for each SYNC on SYNC_BUS, and ten a second where there is none: a machine too slow for the
+daemon slows the module down, too, instead of making a flood of it. Frames 0x100 + k, k = 0..3, with
+sequence number, status 0 and two channels of 24 bits. The channels carry a few counts of noise, as
+strain gauges do; 100 000 counts are 1 N.
 """
+import itertools
 import random
+import select
 import signal
 import socket
 import struct
 import sys
-import time
 
 FIRST_ID = 0x100
-PERIOD_S = 0.02
+SYNC_ID = 0x080
+LONGEST_PAUSE_S = 0.1
 NOISE_COUNTS = 50
 FRAME = struct.Struct("<IB3x8s")  # struct can_frame
+FILTER = struct.Struct("<II")  # struct can_filter
 
 
 def frames(sequence, noise):
@@ -28,21 +33,32 @@ def frames(sequence, noise):
         yield FRAME.pack(FIRST_ID + k, len(data), data)
 
 
+def open_bus(name, filters):
+    bus = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
+    bus.setsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_FILTER, filters)
+    bus.bind((name,))
+    return bus
+
+
+def wait_for_sync(bus):
+    """Several that wait are one: a module sends its next sample, not the missed ones."""
+    select.select([bus], [], [], LONGEST_PAUSE_S)
+    try:
+        while True:
+            bus.recv(FRAME.size, socket.MSG_DONTWAIT)
+    except BlockingIOError:
+        pass
+
+
 def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
     noise = random.Random(1)
-    sequence = 0
-    with socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW) as bus:
-        bus.setsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_FILTER, b"")  # it only sends
-        bus.bind((sys.argv[1],))
-        due_s = time.monotonic()
-        while True:
-            for frame in frames(sequence, noise):
-                bus.send(frame)
-            sequence = (sequence + 1) % 256
-            # A module that could not send in time sends its next sample, not the missed ones.
-            due_s = max(due_s + PERIOD_S, time.monotonic() - PERIOD_S)
-            time.sleep(max(0.0, due_s - time.monotonic()))
+    bus = open_bus(sys.argv[1], b"")  # it only sends
+    syncs = open_bus(sys.argv[2], FILTER.pack(SYNC_ID, 0x7FF))
+    for sequence in itertools.cycle(range(256)):
+        for frame in frames(sequence, noise):
+            bus.send(frame)
+        wait_for_sync(syncs)
 
 
 if __name__ == "__main__":
