@@ -12,7 +12,12 @@
 namespace tactus {
 namespace {
 
+using Eigen::Index;
+
+using Number = std::complex<double>;
+
 constexpr int kMaxSteps = 10000;
+constexpr Index kLoopSize = 13;  ///< numbers of state but the arm's
 
 /// How often things happen, in steps of the plant: the shorter of cycle and filter period.
 struct Rates {
@@ -51,14 +56,21 @@ class LiftedLoop {
         stiffness_ratio_(stiffness_ratio),
         turn_(std::polar(1.0, -phase_lag_rad)),
         is_sample_new_(rates_.sample <= rates_.cycle) {
-    int i = 0;
+    if (loop.geared)
+      arm_step_ = gearedStep(*loop.geared, stiffness_ratio, rates_.step_s).cast<Number>();
+    const Index arm_size = std::max<Index>(0, arm_step_.rows() - 2);  // the command is apart
+    const Index size = kLoopSize + arm_size;
+    arm_ = LoopMatrix::Identity(size, size).bottomRows(arm_size);
+    velocity_ = Form::Zero(size);
+    Index i = 0;
     for (Form* form :
          {&commanded_, &position_, &delays_[0], &delays_[1], &delays_[2], &sample_, &integral_,
           &tool_, &lagged_, &model_delays_[0], &model_delays_[1], &model_delays_[2], &sensed_})
-      *form = Form::Unit(i++);
+      *form = Form::Unit(size, i++);
     // What is not there, or there twice, must not appear as an eigenvalue 1.
     if (loop.order == 1) integral_.setZero();
     if (!isToolApart()) tool_.setZero();
+    if (loop.geared) followLinks();
     if (loop.law == LoopLaw::kApproachLimit) return;
     for (Form* form : {&lagged_, &model_delays_[0], &model_delays_[1], &model_delays_[2], &sensed_})
       form->setZero();
@@ -71,9 +83,9 @@ class LiftedLoop {
   }
 
   LoopMatrix state() const {
-    LoopMatrix matrix;
+    LoopMatrix matrix(velocity_.size(), velocity_.size());
     matrix << commanded_, position_, delays_[0], delays_[1], delays_[2], sample_, integral_, tool_,
-        lagged_, model_delays_[0], model_delays_[1], model_delays_[2], sensed_;
+        lagged_, model_delays_[0], model_delays_[1], model_delays_[2], sensed_, arm_;
     return matrix;
   }
 
@@ -104,8 +116,21 @@ class LiftedLoop {
   }
 
   void move() {
+    if (loop_.geared) {
+      const Index n = arm_.rows();
+      arm_ = arm_step_.topLeftCorner(n, n) * arm_ + arm_step_.block(0, n, n, 1) * commanded_ +
+             arm_step_.block(0, n + 1, n, 1) * velocity_;
+      commanded_ += rates_.step_s * velocity_;
+      followLinks();
+      return;
+    }
     commanded_ += rates_.step_s * velocity_;
     position_ += drive_share_ * (commanded_ - position_);
+  }
+
+  void followLinks() {
+    const JointVector& a = loop_.geared->a;
+    position_ = a.transpose() * arm_.topRows(a.size());
   }
 
   void sense(bool is_sample) {
@@ -141,7 +166,9 @@ class LiftedLoop {
   Form lagged_;
   std::array<Form, 3> model_delays_;
   Form sensed_;
-  Form velocity_ = Form::Zero();  ///< no state: a common period starts with a cycle
+  Form velocity_;  ///< no state: a common period starts with a cycle
+  LoopMatrix arm_step_;
+  LoopMatrix arm_;  ///< of links and motors, a form a row; in place of position_
 };
 
 }  // namespace
@@ -164,6 +191,10 @@ LoopMatrix commonPeriodMatrix(const ContactLoop& loop, double stiffness_ratio,
 bool isStable(const ContactLoop& loop, double stiffness_ratio, double phase_lag_rad) {
   const LoopMatrix matrix = commonPeriodMatrix(loop, stiffness_ratio, phase_lag_rad);
   if (!matrix.allFinite()) return false;
+  if (phase_lag_rad == 0.0) {
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix.real(), false);
+    return solver.eigenvalues().cwiseAbs().maxCoeff() < 1.0;
+  }
   const Eigen::ComplexEigenSolver<LoopMatrix> solver(matrix, false);
   return solver.eigenvalues().cwiseAbs().maxCoeff() < 1.0;
 }

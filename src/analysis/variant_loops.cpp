@@ -1,5 +1,7 @@
 #include "tactus/analysis/variant_loops.h"
 
+#include "tactus/analysis/cover_geometry.h"
+
 namespace tactus {
 namespace {
 
@@ -17,6 +19,14 @@ ContactLoop loopOf(const ControllerConfig& config, const PlantConfig& plant, dou
           .filters_at_samples = !module.filtered};
 }
 
+Vector3 acrossLink(const ControllerConfig& config) {
+  ChainPose pose;
+  config.chain.computePose(config.q_start, pose);
+  const CoverEnds cover = coverEnds(pose, config.tactile_modules.front());
+  const Vector3 across = (cover.p_BaseEnd - cover.p_BaseStart).cross(Vector3::UnitZ());
+  return across.norm() > 1e-6 ? across.normalized() : Vector3::UnitX();
+}
+
 }  // namespace
 
 std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const PlantConfig& plant,
@@ -29,27 +39,41 @@ std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const Plan
     loop.drift_gain_per_s = config.gains.task.drift_gain_per_s;
     return loop;
   };
+  using enum AnswerSpace;
   switch (config.force_control->variant) {
     case Variant::kNone:
       return {};
     case Variant::kNullSpace:
+      return {{"one space", one, kNull}};
     case Variant::kJointSpace:
-      return {{"one space", one}};
+      return {{"one space", one, kJoint}};
     case Variant::kTaskSpace:
-      return {{"one space", one}, {"one space, with beta", pulled(one)}};
+      return {{"one space", one, kTask}, {"one space, with beta", pulled(one), {}}};
     case Variant::kNullTask:
     case Variant::kNullJoint:
-      return {{"both spaces", both}, {"both spaces, with beta", pulled(both)}, {"one space", one}};
+      return {{"both spaces", both, {}},
+              {"both spaces, with beta", pulled(both), {}},
+              {"one space", one, kNull}};
     case Variant::kNullLimit: {
       ContactLoop limit = one;
       limit.law = LoopLaw::kApproachLimit;
       limit.order = 1;
       limit.model_drive_lag_s = config.drive_lag_s;
       limit.model_filter_cutoff_hz = config.tactile_modules.front().filter_cutoff_hz;
-      return {{"one space", one}, {"approach limit", limit}};
+      return {{"one space", one, kNull}, {"approach limit", limit, kNull}};
     }
   }
   return {};
+}
+
+void addGears(const ControllerConfig& config, const ArmDynamicsConfig& arm, double law_N_per_m,
+              std::vector<VariantLoop>& loops) {
+  const Vector3 n_Base = acrossLink(config);
+  for (VariantLoop& loop : loops) {
+    if (!loop.space) continue;
+    loop.loop.geared = gearedContact(config, arm, config.q_start, n_Base, *loop.space);
+    loop.loop.geared->law_N_per_m = law_N_per_m;
+  }
 }
 
 }  // namespace tactus

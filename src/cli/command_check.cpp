@@ -115,11 +115,14 @@ Json stabilityJson(const StabilityReport& stability) {
     loops.push_back({{"name", loop.name},
                      {"largest_stiffness_ratio", loop.margins.largest_stiffness_ratio},
                      {"gain_margin", loop.margins.gain_margin},
-                     {"phase_margin_deg", loop.phaseMargin_deg()}});
+                     {"phase_margin_deg", loop.phaseMargin_deg()},
+                     {"largest_stiffness_ratio_with_gears",
+                      loop.ratio_with_gears ? Json(*loop.ratio_with_gears) : Json()}});
   }
   return {{"stiffest_N_per_m", stability.stiffest_N_per_m},
           {"stiffness_N_per_m", stability.stiffness_N_per_m},
           {"stiffness_ratio", stability.ratio()},
+          {"gear_mode_hz", stability.gear_mode_hz ? Json(*stability.gear_mode_hz) : Json()},
           {"loops", loops}};
 }
 
@@ -153,6 +156,17 @@ Json checkJson(const Scene& scene, const Findings& findings) {
   return json;
 }
 
+std::string gearsText(const StabilityReport& stability) {
+  if (!stability.gear_mode_hz)
+    return textLine("gears", "rigid in these margins: flexible ones take about half of them");
+  std::string text = fmt::format("rigid in these margins; the arm's, {:.3g} Hz at the start",
+                                 *stability.gear_mode_hz);
+  for (const LoopReport& loop : stability.loops)
+    if (loop.ratio_with_gears)
+      text += fmt::format(", {} stable to c_e/c = {:.3g}", loop.name, *loop.ratio_with_gears);
+  return textLine("gears", text);
+}
+
 std::string stabilityText(const StabilityReport& stability) {
   std::string text =
       textLine("contact", fmt::format("up to c_e = {:g} N/m, taken for c = {:g} N/m",
@@ -165,8 +179,7 @@ std::string stabilityText(const StabilityReport& stability) {
                     loop.name, margins.largest_stiffness_ratio, margins.gain_margin,
                     20.0 * std::log10(margins.gain_margin), loop.phaseMargin_deg()));
   }
-  if (!stability.loops.empty())
-    text += textLine("gears", "rigid in these margins: flexible ones take about half of them");
+  if (!stability.loops.empty()) text += gearsText(stability);
   return text;
 }
 

@@ -125,6 +125,22 @@ std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& r
   return warnings;
 }
 
+/// Only a warning: the posture may be another one in contact.
+void checkWithGears(const Scene& scene, std::vector<VariantLoop>& loops, StabilityReport& report) {
+  addGears(scene.controller, scene.arm->dynamics, report.stiffness_N_per_m, loops);
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (!loops[i].loop.geared) continue;
+    const double ratio = largestStiffnessRatio(loops[i].loop, 0.0);
+    report.loops[i].ratio_with_gears = ratio;
+    report.gear_mode_hz = firstGearMode_hz(*loops[i].loop.geared);
+    if (ratio > report.ratio()) continue;
+    report.warnings.push_back(
+        fmt::format("unstable in the stiffest contact with the arm's gears at its start ({}): "
+                    "stable to c_e/c = {:.3g}; more time_constant_s, or a larger c",
+                    loops[i].name, ratio));
+  }
+}
+
 }  // namespace
 
 PlantConfig plantOf(const Scene& scene) {
@@ -137,8 +153,7 @@ PlantConfig plantOf(const Scene& scene) {
 }
 
 std::optional<StabilityReport> checkStability(const Scene& scene) {
-  const std::vector<VariantLoop> loops =
-      variantLoops(scene.controller, plantOf(scene), scene.period_s);
+  std::vector<VariantLoop> loops = variantLoops(scene.controller, plantOf(scene), scene.period_s);
   if (loops.empty()) return std::nullopt;
   const StiffestContact stiffest = stiffestContact(scene);
   StabilityReport report;
@@ -158,6 +173,7 @@ std::optional<StabilityReport> checkStability(const Scene& scene) {
     failUnstable(scene, report, stiffest.key, loops, *worst);
   }
   report.warnings = warningsOf(scene, report, largest_ratio);
+  if (scene.arm && scene.arm->has_gears) checkWithGears(scene, loops, report);
   return report;
 }
 

@@ -6,6 +6,7 @@
 
 #include "support/crops9.h"
 #include "support/rail_robot.h"
+#include "support/shipped_scene.h"
 #include "tactus/analysis/stability_margins.h"
 #include "tactus/sim/simulated_robot.h"
 
@@ -18,6 +19,7 @@ constexpr double kC_N_per_m = 7000.0;
 constexpr double kRest_N = 2.0;  ///< force about which all oscillates
 constexpr double kKick = 0.01;   ///< of it, at the start
 constexpr double kRadius_m = 0.06;
+constexpr double kSettling_s = 0.48;  ///< of the sensor, at rest
 
 /// The loop as a controller meets it.
 struct LoopCase {
@@ -73,7 +75,8 @@ struct Range {
 bool calmsDown(const Controller& controller, SimulatedRobot& robot, ControllerState state,
                double period_s, double t_s) {
   const JointVector at_rest = JointVector::Zero(state.q_desired.size());
-  const long settling = std::lround(0.48 / period_s);  // a multiple of the sample period, too
+  const long settling =
+      std::lround(kSettling_s / period_s);  // a multiple of the sample period, too
   for (long i = 0; i < settling; ++i) robot.write(at_rest);
   RobotInput input;
   ControllerOutput output;
@@ -165,30 +168,72 @@ bool calmsDownOnRail(const LoopCase& c, double stiffness_ratio) {
 
 /// The nine-joint arm in the pose of the paper's scenes, with all it has of geometry; both spaces,
 /// the motion of the task fed forward. The elbow is pushed away from the path.
-bool calmsDownOnArm(const LoopCase& c, double stiffness_ratio) {
+ControllerConfig armController(const LoopCase& c) {
   ControllerConfig config = test::crops9Controller(c.variant);
   config.has_joint_limit_avoidance = false;
   config.task.trajectory = {};
   config.gains.task.drift_gain_per_s = 5.0;
   setForceControl(c, config);
   config.gains.force.activation_force_N = 1.0;
-  const double rest_N = 0.5 * config.gains.force.activation_force_N;
+  return config;
+}
 
+struct Side {
+  Vector3 p_BaseContact, normal;  ///< the middle of the cover's axis, and out of the cover
+};
+
+Side sideOf(const ControllerConfig& config) {
   ChainPose pose;
   config.chain.computePose(config.q_start, pose);
   const Pose X_BaseModule = framePose(pose, config.tactile_modules.front().link);
   const Vector3 axis = X_BaseModule.R_AB.col(0);
-  const Vector3 side = Vector3(-axis.y(), axis.x(), 0.0).normalized();
-  const double depth_m = (1.0 + kKick) * rest_N / (stiffness_ratio * kC_N_per_m);
-  const Vector3 p_Base = X_BaseModule.p_AB + 0.2 * axis + (kRadius_m - depth_m) * side;
+  return {X_BaseModule.p_AB + 0.5 * config.tactile_modules.front().length_m * axis,
+          Vector3(-axis.y(), axis.x(), 0.0).normalized()};
+}
+
+/// Of gears that sag under the force, m/N.
+double gearCompliance(const LoopCase& c) {
+  if (!c.loop.geared) return 0.0;
+  const JointVector& a = c.loop.geared->a;
+  return a.dot(a.cwiseQuotient(c.loop.geared->arm.gear_stiffness));
+}
+
+/// For minutes at this speed; what a first-order law follows, pressed by a constant force.
+void pushAt(double speed_m_per_s, const Vector3& direction, ObstacleConfig& obstacle) {
+  constexpr double kSwing_hz = 1e-3;
+  const Vector3 way = speed_m_per_s / (2.0 * std::numbers::pi * kSwing_hz) * direction;
+  obstacle.swing = {way.x(), way.y(), kSwing_hz};
+}
+
+bool calmsDownOnArm(const LoopCase& c, double stiffness_ratio) {
+  ControllerConfig config = armController(c);
+  const double rest_N = 0.5 * config.gains.force.activation_force_N;
+  const Side side = sideOf(config);
+  const double depth_m =
+      (1.0 + kKick) * rest_N * (1.0 / (stiffness_ratio * kC_N_per_m) + gearCompliance(c));
+  const double push_m_per_s = c.isTwoSpaces() ? 0.0 : c.P() * rest_N;
+  const Vector3 p_Base =
+      side.p_BaseContact + (kRadius_m - depth_m + kSettling_s * push_m_per_s) * side.normal;
 
   const Controller controller(config);
   ControllerState state = controller.initialState();
-  state.contact.law = {-0.03, 0.03, {}};
-  SimulatedRobot robot(config,
-                       plantAt(p_Base.x(), p_Base.y(), stiffness_ratio * kC_N_per_m, c.loop),
-                       c.loop.period_s);
+  if (c.isTwoSpaces()) state.contact.law = {-0.03, 0.03, {}};
+  PlantConfig plant = plantAt(p_Base.x(), p_Base.y(), stiffness_ratio * kC_N_per_m, c.loop);
+  if (c.loop.geared) plant.dynamics = c.loop.geared->arm;
+  pushAt(push_m_per_s, -side.normal, plant.obstacles.front());
+  SimulatedRobot robot(config, plant, c.loop.period_s);
   return calmsDown(controller, robot, state, c.loop.period_s, 8.0 * c.loop.time_constant_s);
+}
+
+/// With the masses and gears of the arm that is shipped.
+LoopCase geared(LoopCase c) {
+  const ControllerConfig config = armController(c);
+  const Scene scene =
+      test::shippedScene("scenario1_null_space", {{"simulation.arm", "flexible_gears"}});
+  c.loop.geared = gearedContact(config, *scene.plant.dynamics, config.q_start,
+                                sideOf(config).normal, AnswerSpace::kNull);
+  c.loop.geared->law_N_per_m = kC_N_per_m;
+  return c;
 }
 
 template <typename CalmsDown>
@@ -292,6 +337,21 @@ TEST(SimulatedArm, BecomesUnstableWhereTheMarginsSay) {
 
 TEST(SimulatedArm, BecomesUnstableWhereTheMarginsSayWithMoreDamping) {
   expectAgreement({"d_1", {.law = kTwo, .damping = 1.0}, kNullTask, true}, calmsDownOnArm, 0.05);
+}
+
+TEST(SimulatedArm, WithMassesAndGearsBecomesUnstableWhereTheMarginsSay) {
+  const LoopCase null_space{"null", {.order = 1}, Variant::kNullSpace};
+  const double rigid = computeMargins(null_space.loop, 1.0).largest_stiffness_ratio;
+  const LoopCase flexible = geared(null_space);
+  expectAgreement(flexible, calmsDownOnArm, 0.05);
+  EXPECT_LT(computeMargins(flexible.loop, 1.0).largest_stiffness_ratio, 0.6 * rigid);
+}
+
+TEST(SimulatedArm, WithMassesAndGearsAndOtherTimesBecomesUnstableWhereTheMarginsSay) {
+  for (const double T_s : {0.05, 0.2}) {
+    const ContactLoop loop{.order = 1, .time_constant_s = T_s};
+    expectAgreement(geared({"T", loop, Variant::kNullSpace}), calmsDownOnArm, 0.05);
+  }
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ LAYERS = {
     "math": (set(), {"Eigen"}),
     "control": ({"math"}, {"Eigen"}),
     "sim": ({"control", "math"}, {"Eigen"}),
-    "analysis": ({"sim", "control", "math"}, {"Eigen"}),
+    "analysis": ({"sim", "control", "math"}, {"Eigen", "unsupported"}),  # Eigen's exp of matrices
     "canopen": ({"control", "math"}, {"Eigen"}),
     "supervisor": ({"canopen", "control", "math"}, {"Eigen"}),
     "plant": ({"canopen", "sim", "control", "math"}, {"Eigen"}),

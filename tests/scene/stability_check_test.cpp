@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "support/scene_files.h"
+#include "support/shipped_scene.h"
 
 /// The scene of SceneFiles: both spaces, estimated, assumed 7000 N/m, arm 5000 N/m, drives 10 ms, a
 /// sample every 5 ms.
@@ -207,7 +208,10 @@ TEST(StabilityCheck, FindsNothingInTheScenesThatComeAlong) {
       continue;
     const auto report = checkStability(loadScene(entry.path().string(), {}));
     if (!report) continue;
-    EXPECT_EQ(report->warnings, std::vector<std::string>{}) << entry.path();
+    // The arm's gears stand less than the 7000 N/m that joint space is said to meet; the band of
+    // this scene is far softer.
+    const bool is_for_soft_contacts = entry.path().stem() == "scenario1_joint_space";
+    EXPECT_EQ(report->warnings.size(), is_for_soft_contacts ? 1u : 0u) << entry.path();
     ++with_force_control;
   }
   EXPECT_GT(with_force_control, 10);
@@ -221,6 +225,52 @@ TEST(StabilityCheck, SaysSoWhereMarginsCannotBeComputed) {
   const StabilityReport report = check(files.load());
   EXPECT_TRUE(report.loops.empty());
   EXPECT_EQ(report.warnings.size(), 1u);
+}
+
+TEST(StabilityCheck, TakesTheArmsGearsIntoLoopsOfOneSpace) {
+  const StabilityReport report = check(test::shippedScene("scenario1_tactus"));
+  ASSERT_EQ(report.loops.size(), 2u);
+  for (const LoopReport& loop : report.loops) {
+    ASSERT_TRUE(loop.ratio_with_gears) << loop.name;
+    EXPECT_LT(*loop.ratio_with_gears, 0.7 * loop.margins.largest_stiffness_ratio) << loop.name;
+    EXPECT_GT(*loop.ratio_with_gears, 0.2 * loop.margins.largest_stiffness_ratio) << loop.name;
+  }
+  EXPECT_NEAR(report.gear_mode_hz.value(), 6.2, 0.1);
+  const StabilityReport both = check(test::shippedScene("scenario1_multi_space"));
+  EXPECT_FALSE(both.loops.front().ratio_with_gears);
+  EXPECT_TRUE(both.loops.back().ratio_with_gears);
+}
+
+TEST(StabilityCheck, KnowsNothingOfGearsThatNobodyDescribes) {
+  const StabilityReport report = check(assumed().load());
+  EXPECT_FALSE(report.gear_mode_hz);
+  for (const LoopReport& loop : report.loops) EXPECT_FALSE(loop.ratio_with_gears);
+}
+
+/// Stiffer gears come closer and closer to rigid ones, and soft ones stand less.
+TEST(StabilityCheck, LosesMarginWithSofterGears) {
+  Scene scene = test::shippedScene("scenario1_null_space");
+  double before = 0.0;
+  for (const double factor : {0.3, 1.0, 10.0, 100.0}) {
+    SCOPED_TRACE(factor);
+    Scene changed = scene;
+    changed.arm->dynamics.gear_stiffness *= factor;
+    const LoopReport loop = check(changed).loops.front();
+    EXPECT_GT(*loop.ratio_with_gears, before);
+    before = *loop.ratio_with_gears;
+  }
+}
+
+TEST(StabilityCheck, WarnsOfGearsTooSoftForTheStiffestContact) {
+  Scene scene = test::shippedScene("scenario1_null_space");
+  const auto warns = [](const Scene& checked) {
+    return std::ranges::any_of(check(checked).warnings, [](const std::string& warning) {
+      return warning.find("with the arm's gears") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(warns(scene));
+  scene.controller.gains.force.time_constant_s = 0.06;
+  EXPECT_TRUE(warns(scene));
 }
 
 }  // namespace

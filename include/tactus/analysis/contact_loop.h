@@ -2,6 +2,9 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <optional>
+
+#include "tactus/analysis/geared_contact.h"
 
 namespace tactus {
 
@@ -32,6 +35,9 @@ struct ContactLoop {
   // What the approach-speed limit takes drives and filter for.
   double model_drive_lag_s = 0.005;
   double model_filter_cutoff_hz = 15.0;
+
+  /// An arm with mass, in place of drive_lag_s; for one space, whose tool stays where it is.
+  std::optional<GearedContact> geared{};
 };
 
 // clang-format off: equations
@@ -54,9 +60,12 @@ struct ContactLoop {
 /// The loop runs at several rates, so it is lifted: what one common period of cycle and sample
 /// makes of the state is a constant matrix, and the loop is stable where its eigenvalues are inside
 /// the unit circle. Nothing is approximated.
+///
+/// With masses and gears x is that of the links, which motors move as GearedContact says, and c_e
+/// bends the gears, too: there the ratio alone does not tell, and c counts.
 // clang-format on
-using LoopState = Eigen::Matrix<std::complex<double>, 1, 13>;
-using LoopMatrix = Eigen::Matrix<std::complex<double>, 13, 13>;
+using LoopState = Eigen::Matrix<std::complex<double>, 1, Eigen::Dynamic>;
+using LoopMatrix = Eigen::Matrix<std::complex<double>, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// Steps of the plant in a common period; 0 if there are too many (more than 10000) to be lifted,
 /// or if the rates do not fit each other.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace tactus {
 struct VariantLoop {
   std::string name;  ///< for people: "both spaces"
   ContactLoop loop;
+  std::optional<AnswerSpace> space;  ///< whose answer it is, where the tool does not come back
 };
 
 /// The loops of a variant as far as they differ, the least stable first; none without force
@@ -21,5 +23,10 @@ struct VariantLoop {
 /// joint space all motion is fed forward, its pull too, while it is towards the obstacle.
 std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const PlantConfig& plant,
                                       double period_s);
+
+/// Puts masses, servos and gears into those of one space: for a push across the cover's link and
+/// the vertical, on the middle of the first module's cover at q_start. law_N_per_m: c.
+void addGears(const ControllerConfig& config, const ArmDynamicsConfig& arm, double law_N_per_m,
+              std::vector<VariantLoop>& loops);
 
 }  // namespace tactus

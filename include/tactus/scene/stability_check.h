@@ -14,7 +14,9 @@ inline constexpr double kMinPhaseMargin_deg = 30.0;  ///< below: a warning
 
 struct LoopReport {
   std::string name;
-  StabilityMargins margins;
+  StabilityMargins margins;  ///< of rigid gears
+  /// The largest c_e/c with masses, servos and gears at the start; only of loops of one space.
+  std::optional<double> ratio_with_gears{};
 
   double phaseMargin_deg() const { return margins.phase_margin_rad * 180.0 / std::numbers::pi; }
 };
@@ -24,6 +26,8 @@ struct StabilityReport {
   double stiffest_N_per_m = 0.0;   ///< c_e: declared or assumed, or of a stiffer simulated obstacle
   double stiffness_N_per_m = 0.0;  ///< c: assumed, or where the estimate of c_e ends
   std::vector<LoopReport> loops;   ///< empty where the margins can't be computed; then a warning
+  /// The links' first mode behind motors held fast, where gears are known.
+  std::optional<double> gear_mode_hz;
   std::vector<std::string> warnings;
 
   double ratio() const { return stiffest_N_per_m / stiffness_N_per_m; }
