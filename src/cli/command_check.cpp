@@ -7,10 +7,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "tactus/cli/arm_check.h"
 #include "tactus/cli/commands.h"
 #include "tactus/cli/contact_report.h"
+#include "tactus/cli/touch_check.h"
 #include "tactus/record/log_size.h"
-#include "tactus/scene/arm_check.h"
 #include "tactus/scene/bus_load_text.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/json.h"
@@ -18,7 +19,6 @@
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/path_check.h"
 #include "tactus/scene/stability_check.h"
-#include "tactus/scene/touch_check.h"
 
 namespace tactus {
 namespace {

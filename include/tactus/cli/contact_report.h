@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "tactus/scene/arm_check.h"
+#include "tactus/cli/arm_check.h"
+#include "tactus/cli/touch_check.h"
 #include "tactus/scene/json.h"
-#include "tactus/scene/touch_check.h"
 
 namespace tactus {
 

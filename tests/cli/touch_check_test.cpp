@@ -1,4 +1,4 @@
-#include "tactus/scene/touch_check.h"
+#include "tactus/cli/touch_check.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "tactus/scene/arm_check.h"
+#include "tactus/cli/arm_check.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "tactus/scene/arm_check.h"
+#include "tactus/cli/arm_check.h"
 
 #include <gtest/gtest.h>
 
