@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tactus/analysis/cover_geometry.h"
+#include "tactus/math/contact_space.h"
 
 namespace tactus {
 namespace {
@@ -19,7 +20,7 @@ using Eigen::VectorXd;
 
 /// A motor without inertia would have no speed of its own; as a share of the joint's inertia.
 constexpr double kLeastRotor = 1e-3;
-constexpr double kImmovable = 1e-9;  ///< of a^T d: what a space does not move
+constexpr double kImmovable = 1e-9;  ///< of what all joints can: the space does not move it
 
 std::vector<Index> gearedJoints(const ArmDynamicsConfig& arm) {
   std::vector<Index> joints;
@@ -61,9 +62,12 @@ GearedContact gearedContact(const ControllerConfig& config, const ArmDynamicsCon
   contact.arm = arm;
   contact.M = massMatrixAt(config.chain, arm.bodies, q);
   contact.a = a.head(config.chain.size());
+  const VectorXd in_joints = answer(config, pose, contact.a, AnswerSpace::kJoint);
   const VectorXd way = answer(config, pose, contact.a, space);
-  const double moved = VectorXd(contact.a).dot(way);
-  contact.way = moved > kImmovable ? JointVector(way / moved) : JointVector::Zero(q.size());
+  const double k = VectorXd(contact.a).dot(way);
+  const double k_j = VectorXd(contact.a).dot(in_joints);
+  contact.way = k > kImmovable * k_j ? JointVector(way * invertRegularised(k, k_j))
+                                     : JointVector::Zero(q.size());
   return contact;
 }
 

@@ -71,8 +71,10 @@ void addGears(const ControllerConfig& config, const ArmDynamicsConfig& arm, doub
   const Vector3 n_Base = acrossLink(config);
   for (VariantLoop& loop : loops) {
     if (!loop.space) continue;
-    loop.loop.geared = gearedContact(config, arm, config.q_start, n_Base, *loop.space);
-    loop.loop.geared->law_N_per_m = law_N_per_m;
+    GearedContact contact = gearedContact(config, arm, config.q_start, n_Base, *loop.space);
+    if (contact.way.isZero(0.0)) continue;
+    contact.law_N_per_m = law_N_per_m;
+    loop.loop.geared = contact;
   }
 }
 

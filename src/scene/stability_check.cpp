@@ -125,19 +125,31 @@ std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& r
   return warnings;
 }
 
+/// Of the simulation's obstacles with links and cover; gears are apart. 0: there are none.
+double stiffestBeforeGears(const Scene& scene) {
+  double stiffest_N_per_m = 0.0;
+  for (const ObstacleConfig& obstacle : scene.plant.obstacles)
+    stiffest_N_per_m = std::max(stiffest_N_per_m, inSeries(obstacle.stiffness_N_per_m,
+                                                           scene.arm->contact_stiffness_N_per_m));
+  return stiffest_N_per_m;
+}
+
 /// Only a warning: the posture may be another one in contact.
 void checkWithGears(const Scene& scene, std::vector<VariantLoop>& loops, StabilityReport& report) {
-  addGears(scene.controller, scene.arm->dynamics, report.stiffness_N_per_m, loops);
+  const double stiffest_N_per_m = std::max(scene.stiffest_N_per_m, stiffestBeforeGears(scene));
+  const double law_N_per_m =
+      stiffnessOfLaw(scene.controller, std::max(report.stiffest_N_per_m, stiffest_N_per_m));
+  addGears(scene.controller, scene.arm->dynamics, law_N_per_m, loops);
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (!loops[i].loop.geared) continue;
     const double ratio = largestStiffnessRatio(loops[i].loop, 0.0);
     report.loops[i].ratio_with_gears = ratio;
     report.gear_mode_hz = firstGearMode_hz(*loops[i].loop.geared);
-    if (ratio > report.ratio()) continue;
-    report.warnings.push_back(
-        fmt::format("unstable in the stiffest contact with the arm's gears at its start ({}): "
-                    "stable to c_e/c = {:.3g}; more time_constant_s, or a larger c",
-                    loops[i].name, ratio));
+    if (ratio * law_N_per_m > stiffest_N_per_m) continue;
+    report.warnings.push_back(fmt::format(
+        "unstable with the arm's gears at its start ({}): in front of them stable to {:.0f} N/m, "
+        "not in {:.0f} N/m; more time_constant_s, or a larger c",
+        loops[i].name, ratio * law_N_per_m, stiffest_N_per_m));
   }
 }
 

@@ -12,24 +12,24 @@ namespace {
 
 constexpr double kGoal_N = 5.0;  // F_act + F_th
 
-RunFigures run(const std::string& scene, const std::string& log,
-               const std::vector<Override>& overrides = {}) {
+RunFigures runScene(const std::string& scene, const std::string& log,
+                    const std::vector<Override>& overrides = {}) {
   const std::string path = std::string(TACTUS_SOURCE_DIR) + "/config/scenes/" + scene + ".yaml";
   return simulate(loadScene(path, overrides), log, [](double) {}).figures;
 }
 
-struct Expectation {
+struct ScenePeaks {
   std::string scene;
   double peak_force_N, tcp_error_final_m;
 };
 
-void PrintTo(const Expectation& expectation, std::ostream* out) { *out << expectation.scene; }
+void PrintTo(const ScenePeaks& expectation, std::ostream* out) { *out << expectation.scene; }
 
-class TactusScene : public testing::TestWithParam<Expectation> {};
+class TactusScene : public testing::TestWithParam<ScenePeaks> {};
 
 TEST_P(TactusScene, NeverSlamsAndRestsAtTheActivationForce) {
   const test::TemporaryFile log(GetParam().scene);
-  const RunFigures figures = run(GetParam().scene, log.path());
+  const RunFigures figures = runScene(GetParam().scene, log.path());
   EXPECT_EQ(figures.end.fault, Fault::kNone);
   EXPECT_LT(figures.peak_force_N, GetParam().peak_force_N);
   EXPECT_NEAR(figures.final_force_N, kGoal_N, 0.01);
@@ -39,10 +39,10 @@ TEST_P(TactusScene, NeverSlamsAndRestsAtTheActivationForce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, TactusScene,
-                         testing::Values(Expectation{"scenario1_tactus", 5.01, 0.0633},
-                                         Expectation{"scenario2_tactus", 5.15, 0.0788},
-                                         Expectation{"scenario3_tactus", 5.02, 0.0702},
-                                         Expectation{"scenario3_tactus_fast", 5.02, 0.0702}),
+                         testing::Values(ScenePeaks{"scenario1_tactus", 5.01, 0.0633},
+                                         ScenePeaks{"scenario2_tactus", 5.15, 0.0788},
+                                         ScenePeaks{"scenario3_tactus", 5.02, 0.0702},
+                                         ScenePeaks{"scenario3_tactus_fast", 5.02, 0.0702}),
                          [](const auto& instance) { return instance.param.scene; });
 
 /// The last time at which the tool was further than 5 mm from its path.
@@ -73,7 +73,8 @@ TEST(TactusScenes, TheToolIsBackSoonAfterTheObstacleHasGone) {
       {"scenario3_tactus_fast", "[" + profile + "]"}};
   for (const auto& [scene, obstacles] : cases) {
     const test::TemporaryFile log(scene);
-    run(scene, log.path(), {{"simulation.obstacles", obstacles}, {"simulation.duration_s", "16"}});
+    runScene(scene, log.path(),
+             {{"simulation.obstacles", obstacles}, {"simulation.duration_s", "16"}});
     const double away_s = lastAway_s(log.path()) - 13.0;
     EXPECT_GT(away_s, 0.3) << scene;
     EXPECT_LT(away_s, 0.8) << scene;
@@ -84,9 +85,9 @@ TEST(TactusScenes, AWrongModelOfDrivesAndFilterDoesNotMakeItBounce) {
   for (const char* lag : {"0", "0.015"}) {
     for (const char* cutoff : {"10", "25"}) {
       const test::TemporaryFile log(std::string(lag) + "_" + cutoff);
-      const RunFigures figures = run("scenario2_tactus", log.path(),
-                                     {{"simulation.drive_lag_s", lag},
-                                      {"simulation.tactile_module.filter_cutoff_hz", cutoff}});
+      const RunFigures figures = runScene("scenario2_tactus", log.path(),
+                                          {{"simulation.drive_lag_s", lag},
+                                           {"simulation.tactile_module.filter_cutoff_hz", cutoff}});
       EXPECT_LT(figures.peak_force_N, 5.6) << lag << " s, " << cutoff << " Hz";
       EXPECT_NEAR(figures.final_force_N, kGoal_N, 0.02) << lag << " s, " << cutoff << " Hz";
     }

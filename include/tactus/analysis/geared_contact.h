@@ -13,7 +13,7 @@ struct GearedContact {
   ArmDynamicsConfig arm;
   MassMatrix M;              ///< there, without rotors
   JointVector a;             ///< x = a^T q
-  JointVector way;           ///< of the motors for each m of x that the law commands: a^T way = 1
+  JointVector way;           ///< of the motors for each m of x that the law commands; a^T way = 1 or less
   double law_N_per_m = 1.0;  ///< c, which stiffness ratios are of
 };
 
