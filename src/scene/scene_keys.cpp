@@ -82,8 +82,9 @@ Row<ForceControlConfig> orderRow() {
 Row<ForceControlConfig> frictionRow() {
   return withSymbol("mu_max",
                     number("friction_coefficient", "", within(0, 2),
-                           "of the cover on whatever it may touch, at most; null_limit bears that "
-                           "much, at the price of more give, and 0 stands for no friction",
+                           "what null_limit shall bear, at the price of more give: more than there "
+                           "is, 0.5 for contacts of 0.3, 0.7 with flexible gears; 0 stands for no "
+                           "friction",
                            &ForceControlConfig::friction_coefficient));
 }
 

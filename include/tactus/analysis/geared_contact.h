@@ -11,9 +11,9 @@ namespace tactus {
 /// posture, linear. The model is that of ArmDynamics.
 struct GearedContact {
   ArmDynamicsConfig arm;
-  MassMatrix M;              ///< there, without rotors
-  JointVector a;             ///< x = a^T q
-  JointVector way;           ///< of the motors for each m of x that the law commands; a^T way = 1 or less
+  MassMatrix M;     ///< there, without rotors
+  JointVector a;    ///< x = a^T q
+  JointVector way;  ///< of the motors for each m of x that the law commands; a^T way = 1 or less
   double law_N_per_m = 1.0;  ///< c, which stiffness ratios are of
 };
 

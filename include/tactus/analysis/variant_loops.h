@@ -24,8 +24,9 @@ struct VariantLoop {
 std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const PlantConfig& plant,
                                       double period_s);
 
-/// Puts masses, servos and gears into those of one space that moves the contact: for a push across the cover's link and
-/// the vertical, on the middle of the first module's cover at q_start. law_N_per_m: c.
+/// Puts masses, servos and gears into those of one space that moves the contact: for a push across
+/// the cover's link and the vertical, on the middle of the first module's cover at q_start.
+/// law_N_per_m: c.
 void addGears(const ControllerConfig& config, const ArmDynamicsConfig& arm, double law_N_per_m,
               std::vector<VariantLoop>& loops);
 
