@@ -57,6 +57,7 @@ Findings examine(const Scene& scene) {
                     checkStability(scene),
                     {},
                     checkArm(scene)};
+  if (findings.stability) addGearMargins(scene, *findings.stability);
   const auto add = [&](const std::vector<std::string>& more) {
     findings.warnings.insert(findings.warnings.end(), more.begin(), more.end());
   };

@@ -134,25 +134,6 @@ double stiffestBeforeGears(const Scene& scene) {
   return stiffest_N_per_m;
 }
 
-/// Only a warning: the posture may be another one in contact.
-void checkWithGears(const Scene& scene, std::vector<VariantLoop>& loops, StabilityReport& report) {
-  const double stiffest_N_per_m = std::max(scene.stiffest_N_per_m, stiffestBeforeGears(scene));
-  const double law_N_per_m =
-      stiffnessOfLaw(scene.controller, std::max(report.stiffest_N_per_m, stiffest_N_per_m));
-  addGears(scene.controller, scene.arm->dynamics, law_N_per_m, loops);
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (!loops[i].loop.geared) continue;
-    const double ratio = largestStiffnessRatio(loops[i].loop, 0.0);
-    report.loops[i].ratio_with_gears = ratio;
-    report.gear_mode_hz = firstGearMode_hz(*loops[i].loop.geared);
-    if (ratio * law_N_per_m > stiffest_N_per_m) continue;
-    report.warnings.push_back(fmt::format(
-        "unstable with the arm's gears at its start ({}): in front of them stable to {:.0f} N/m, "
-        "not in {:.0f} N/m; more time_constant_s, or a larger c",
-        loops[i].name, ratio * law_N_per_m, stiffest_N_per_m));
-  }
-}
-
 }  // namespace
 
 PlantConfig plantOf(const Scene& scene) {
@@ -185,8 +166,27 @@ std::optional<StabilityReport> checkStability(const Scene& scene) {
     failUnstable(scene, report, stiffest.key, loops, *worst);
   }
   report.warnings = warningsOf(scene, report, largest_ratio);
-  if (scene.arm && scene.arm->has_gears) checkWithGears(scene, loops, report);
   return report;
+}
+
+void addGearMargins(const Scene& scene, StabilityReport& report) {
+  if (!scene.arm || !scene.arm->has_gears || report.loops.empty()) return;
+  std::vector<VariantLoop> loops = variantLoops(scene.controller, plantOf(scene), scene.period_s);
+  const double stiffest_N_per_m = std::max(scene.stiffest_N_per_m, stiffestBeforeGears(scene));
+  const double law_N_per_m =
+      stiffnessOfLaw(scene.controller, std::max(report.stiffest_N_per_m, stiffest_N_per_m));
+  addGears(scene.controller, scene.arm->dynamics, law_N_per_m, loops);
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (!loops[i].loop.geared) continue;
+    const double ratio = largestStiffnessRatio(loops[i].loop, 0.0);
+    report.loops[i].ratio_with_gears = ratio;
+    report.gear_mode_hz = firstGearMode_hz(*loops[i].loop.geared);
+    if (ratio * law_N_per_m > stiffest_N_per_m) continue;
+    report.warnings.push_back(fmt::format(
+        "unstable with the arm's gears at its start ({}): in front of them stable to {:.0f} N/m, "
+        "not in {:.0f} N/m; more time_constant_s, or a larger c",
+        loops[i].name, ratio * law_N_per_m, stiffest_N_per_m));
+  }
 }
 
 }  // namespace tactus

@@ -15,7 +15,8 @@ inline constexpr double kMinPhaseMargin_deg = 30.0;  ///< below: a warning
 struct LoopReport {
   std::string name;
   StabilityMargins margins;  ///< of rigid gears
-  /// The largest c_e/c with masses, servos and gears at the start; only of loops of one space.
+  /// The largest c_e/c with masses, servos and gears at the start; of loops of one space, once
+  /// addGearMargins() was asked.
   std::optional<double> ratio_with_gears{};
 
   double phaseMargin_deg() const { return margins.phase_margin_rad * 180.0 / std::numbers::pi; }
@@ -39,5 +40,9 @@ PlantConfig plantOf(const Scene& scene);
 /// Absent for a scene without force control. Throws InputError if one of its loops is unstable in
 /// that contact. Not a part of loading: simulations and replays of unstable gains are of use.
 std::optional<StabilityReport> checkStability(const Scene& scene);
+
+/// What masses, servos and gears leave of the ratios, where robot.yaml knows them: takes some 0.2
+/// s. Beyond it only a warning, for in contact the arm may stand elsewhere than at its start.
+void addGearMargins(const Scene& scene, StabilityReport& report);
 
 }  // namespace tactus
