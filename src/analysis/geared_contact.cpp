@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
@@ -22,29 +21,50 @@ using Eigen::VectorXd;
 constexpr double kLeastRotor = 1e-3;
 constexpr double kImmovable = 1e-9;  ///< of what all joints can: the space does not move it
 
-std::vector<Index> gearedJoints(const ArmDynamicsConfig& arm) {
+std::vector<Index> gearedJoints(const JointVector& gear_stiffness) {
   std::vector<Index> joints;
-  for (Index i = 0; i < arm.gear_stiffness.size(); ++i)
-    if (std::isfinite(arm.gear_stiffness[i])) joints.push_back(i);
+  for (Index i = 0; i < gear_stiffness.size(); ++i)
+    if (std::isfinite(gear_stiffness[i])) joints.push_back(i);
   return joints;
 }
 
-MatrixXd taskJacobian(const ControllerConfig& config, const ChainPose& pose) {
-  TaskJacobian J;
-  computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()),
-                     config.task.components.data(), config.task.size, J);
-  return J;
+/// The motion W^-1/2 v^ of a space that answers a push, for each m of the contact's way.
+struct Answer {
+  ScaledVector v_scaled;
+  double k;  ///< a^T of it, before it is divided
+};
+
+Answer answerIn(AnswerSpace space, const WeightedPseudoinverse& pseudoinverse,
+                const ContactSpace& contact) {
+  const ScaledVector in_task = pseudoinverse.expand(contact.a_task);
+  switch (space) {
+    case AnswerSpace::kNull:
+      return {contact.a_scaled - in_task, contact.k_n};
+    case AnswerSpace::kTask:
+      return {in_task, contact.k_t};
+    case AnswerSpace::kJoint:
+      break;
+  }
+  return {contact.a_scaled, contact.k_j};
 }
 
-/// Joint speeds with which this space answers a push along a.
-VectorXd answer(const ControllerConfig& config, const ChainPose& pose, const VectorXd& a,
-                AnswerSpace space) {
-  const VectorXd in_joints = VectorXd(config.weights).cwiseInverse().cwiseProduct(a);
-  if (space == AnswerSpace::kJoint) return in_joints;
-  const MatrixXd J = taskJacobian(config, pose);
-  const MatrixXd W_inv_JT = VectorXd(config.weights).cwiseInverse().asDiagonal() * J.transpose();
-  const VectorXd in_task = W_inv_JT * (J * W_inv_JT).ldlt().solve(J * in_joints);
-  return space == AnswerSpace::kTask ? in_task : VectorXd(in_joints - in_task);
+/// As the controller answers: `way` of GearedContact.
+JointVector wayOf(AnswerSpace space, const ControllerConfig& config, const ChainPose& pose,
+                  const ScaledVector& a) {
+  const ScaledVector inv_sqrt_weights =
+      scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones());
+  ScaledJacobian J;
+  computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()),
+                     config.task.components.data(), config.task.size, inv_sqrt_weights, J);
+  WeightedPseudoinverse pseudoinverse;
+  pseudoinverse.factorise(J, config.chain.size(), config.task.size);
+  ContactSpace contact;
+  computeContactSpace(pseudoinverse, a, inv_sqrt_weights, PaddedTaskVector::Zero(), contact);
+  const Answer answer = answerIn(space, pseudoinverse, contact);
+  if (answer.k <= kImmovable * contact.k_j) return JointVector::Zero(config.chain.size());
+  const ScaledVector way =
+      invertRegularised(answer.k, contact.k_j) * inv_sqrt_weights.cwiseProduct(answer.v_scaled);
+  return way.head(config.chain.size());
 }
 
 }  // namespace
@@ -62,18 +82,13 @@ GearedContact gearedContact(const ControllerConfig& config, const ArmDynamicsCon
   contact.arm = arm;
   contact.M = massMatrixAt(config.chain, arm.bodies, q);
   contact.a = a.head(config.chain.size());
-  const VectorXd in_joints = answer(config, pose, contact.a, AnswerSpace::kJoint);
-  const VectorXd way = answer(config, pose, contact.a, space);
-  const double k = VectorXd(contact.a).dot(way);
-  const double k_j = VectorXd(contact.a).dot(in_joints);
-  contact.way = k > kImmovable * k_j ? JointVector(way * invertRegularised(k, k_j))
-                                     : JointVector::Zero(q.size());
+  contact.way = wayOf(space, config, pose, a);
   return contact;
 }
 
 Eigen::MatrixXd gearedStep(const GearedContact& contact, double stiffness_ratio, double step_s) {
   const ArmDynamicsConfig& arm = contact.arm;
-  const std::vector<Index> geared = gearedJoints(arm);
+  const std::vector<Index> geared = gearedJoints(arm.gear_stiffness);
   const Index n = contact.a.size();
   const auto m = static_cast<Index>(geared.size());
   const Index theta = n, v = n + m, w = 2 * n + m, p = 2 * n + 2 * m, u = p + 1;
@@ -118,13 +133,12 @@ Eigen::MatrixXd gearedStep(const GearedContact& contact, double stiffness_ratio,
   return (step_s * A).exp();
 }
 
-double firstGearMode_hz(const GearedContact& contact) {
-  const std::vector<Index> geared = gearedJoints(contact.arm);
-  if (geared.empty()) return std::numeric_limits<double>::infinity();
-  const MatrixXd M = MatrixXd(contact.M)(geared, geared);
-  const MatrixXd K = VectorXd(VectorXd(contact.arm.gear_stiffness)(geared)).asDiagonal();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(K, M, Eigen::EigenvaluesOnly);
-  return std::sqrt(modes.eigenvalues().minCoeff()) / (2.0 * std::numbers::pi);
+VectorXd gearModes_hz(const MassMatrix& M, const JointVector& gear_stiffness) {
+  const std::vector<Index> geared = gearedJoints(gear_stiffness);
+  const MatrixXd K = VectorXd(VectorXd(gear_stiffness)(geared)).asDiagonal();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(K, MatrixXd(M)(geared, geared),
+                                                                 Eigen::EigenvaluesOnly);
+  return modes.eigenvalues().cwiseSqrt() / (2.0 * std::numbers::pi);
 }
 
 }  // namespace tactus

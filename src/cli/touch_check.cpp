@@ -7,6 +7,7 @@
 #include "tactus/analysis/contact_peak.h"
 #include "tactus/analysis/effective_mass.h"
 #include "tactus/analysis/variant_loops.h"
+#include "tactus/scene/dynamics_loader.h"
 #include "tactus/scene/stability_check.h"
 
 namespace tactus {
@@ -58,11 +59,7 @@ std::vector<TouchReport> touchesOf(const Scene& scene, const PathContacts& conta
 
 /// The stiffness that a blow meets: c_e has the whole arm in it, whose gears do not matter to it.
 double blowStiffness(const Scene& scene, double stiffest_N_per_m) {
-  double stiffest = stiffest_N_per_m;
-  for (const ObstacleConfig& obstacle : scene.plant.obstacles)
-    stiffest = std::max(stiffest,
-                        inSeries(obstacle.stiffness_N_per_m, scene.arm->contact_stiffness_N_per_m));
-  return stiffest;
+  return std::max(stiffest_N_per_m, stiffestBeforeGears(scene));
 }
 
 double massAt(const Scene& scene, const FastestCover& fastest) {
@@ -70,11 +67,10 @@ double massAt(const Scene& scene, const FastestCover& fastest) {
   const ArmDescription& arm = *scene.arm;
   ChainPose pose;
   config.chain.computePose(fastest.q, pose);
-  const JointVector rotors =
-      arm.has_gears ? JointVector(JointVector::Zero(fastest.q.size())) : arm.dynamics.rotor_inertia;
-  return effectiveMass_kg(
-      config.chain, pose, massMatrixAt(config.chain, arm.dynamics.bodies, fastest.q), rotors,
-      config.tactile_modules[fastest.module].link.joint, fastest.p_Base, fastest.direction);
+  return effectiveMass_kg(config.chain, pose,
+                          massMatrixAt(config.chain, arm.dynamics.bodies, fastest.q),
+                          rotorsOfLinks(arm), config.tactile_modules[fastest.module].link.joint,
+                          fastest.p_Base, fastest.direction);
 }
 
 PeakReport peakOf(const Scene& scene, const FastestCover& fastest, double stiffest_N_per_m) {

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <cmath>
-#include <numbers>
 
+#include "tactus/analysis/geared_contact.h"
 #include "tactus/scene/tactile_loader.h"
 
 namespace tactus {
@@ -49,9 +47,7 @@ void checkMass(const LoadedRobot& robot, const MassMatrix& M, const JointVector&
 /// The modes of the links behind motors that are held fast.
 void checkGearModes(const LoadedRobot& robot, const MassMatrix& M, const JointVector& stiffness,
                     double period_s) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(
-      Eigen::MatrixXd(stiffness.asDiagonal()), Eigen::MatrixXd(M), Eigen::EigenvaluesOnly);
-  const double fastest_hz = std::sqrt(modes.eigenvalues().maxCoeff()) / (2.0 * std::numbers::pi);
+  const double fastest_hz = gearModes_hz(M, stiffness).maxCoeff();
   if (fastest_hz <= 0.5 / period_s) return;
   failAtRobot(robot, "dynamics.gear_stiffness",
               fmt::format("a gear rings with {:.4g} Hz at the start", fastest_hz),
@@ -120,6 +116,11 @@ std::optional<ArmDynamicsConfig> loadDynamics(const YamlNode& scene, SimulatedAr
   return config;
 }
 
+JointVector rotorsOfLinks(const ArmDescription& arm) {
+  const JointVector& rotors = arm.dynamics.rotor_inertia;
+  return arm.has_gears ? JointVector(JointVector::Zero(rotors.size())) : rotors;
+}
+
 std::optional<ArmDescription> describeArm(const LoadedRobot& robot, const JointVector& q_start) {
   const auto& section = robot.config.dynamics;
   if (!section) return std::nullopt;
@@ -130,9 +131,7 @@ std::optional<ArmDescription> describeArm(const LoadedRobot& robot, const JointV
                                       ? section->contact_stiffness_N_per_m.value_or(kNoLimit)
                                       : robot.config.stiffness_N_per_m;
   arm.max_effort = robot.chain.max_effort;
-  const JointVector moved_with_links =
-      arm.has_gears ? JointVector(JointVector::Zero(q_start.size())) : arm.dynamics.rotor_inertia;
-  if (!isMassive(massMatrix(robot, q_start), moved_with_links)) return std::nullopt;
+  if (!isMassive(massMatrix(robot, q_start), rotorsOfLinks(arm))) return std::nullopt;
   return arm;
 }
 

@@ -125,15 +125,6 @@ std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& r
   return warnings;
 }
 
-/// Of the simulation's obstacles with links and cover; gears are apart. 0: there are none.
-double stiffestBeforeGears(const Scene& scene) {
-  double stiffest_N_per_m = 0.0;
-  for (const ObstacleConfig& obstacle : scene.plant.obstacles)
-    stiffest_N_per_m = std::max(stiffest_N_per_m, inSeries(obstacle.stiffness_N_per_m,
-                                                           scene.arm->contact_stiffness_N_per_m));
-  return stiffest_N_per_m;
-}
-
 }  // namespace
 
 PlantConfig plantOf(const Scene& scene) {
@@ -169,6 +160,14 @@ std::optional<StabilityReport> checkStability(const Scene& scene) {
   return report;
 }
 
+double stiffestBeforeGears(const Scene& scene) {
+  double stiffest_N_per_m = 0.0;
+  for (const ObstacleConfig& obstacle : scene.plant.obstacles)
+    stiffest_N_per_m = std::max(stiffest_N_per_m, inSeries(obstacle.stiffness_N_per_m,
+                                                           scene.arm->contact_stiffness_N_per_m));
+  return stiffest_N_per_m;
+}
+
 void addGearMargins(const Scene& scene, StabilityReport& report) {
   if (!scene.arm || !scene.arm->has_gears || report.loops.empty()) return;
   std::vector<VariantLoop> loops = variantLoops(scene.controller, plantOf(scene), scene.period_s);
@@ -180,7 +179,8 @@ void addGearMargins(const Scene& scene, StabilityReport& report) {
     if (!loops[i].loop.geared) continue;
     const double ratio = largestStiffnessRatio(loops[i].loop, 0.0);
     report.loops[i].ratio_with_gears = ratio;
-    report.gear_mode_hz = firstGearMode_hz(*loops[i].loop.geared);
+    const GearedContact& contact = *loops[i].loop.geared;
+    report.gear_mode_hz = gearModes_hz(contact.M, contact.arm.gear_stiffness).minCoeff();
     if (ratio * law_N_per_m > stiffest_N_per_m) continue;
     report.warnings.push_back(fmt::format(
         "unstable with the arm's gears at its start ({}): in front of them stable to {:.0f} N/m, "

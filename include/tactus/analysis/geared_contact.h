@@ -30,7 +30,8 @@ GearedContact gearedContact(const ControllerConfig& config, const ArmDynamicsCon
 /// the same. Of rigid joints the motor is the link: their motors are left out. Exact.
 Eigen::MatrixXd gearedStep(const GearedContact& contact, double stiffness_ratio, double step_s);
 
-/// Of the links behind motors that are held fast, Hz; infinite without gears.
-double firstGearMode_hz(const GearedContact& contact);
+/// Of the links behind motors that are held fast, Hz, slowest first; one at
+/// least is finite.
+Eigen::VectorXd gearModes_hz(const MassMatrix& M, const JointVector& gear_stiffness);
 
 }  // namespace tactus

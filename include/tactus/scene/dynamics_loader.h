@@ -17,6 +17,9 @@ std::optional<ArmDynamicsConfig> loadDynamics(const YamlNode& scene, SimulatedAr
 /// robot does not say enough, or a joint moves no mass.
 std::optional<GearedLinks> loadGearedLinks(const LoadedRobot& robot, const JointVector& q_start);
 
+/// Of the motors that a blow on the links meets, too: none behind gears that give way.
+JointVector rotorsOfLinks(const ArmDescription& arm);
+
 /// What the robot says of itself, whatever is simulated; absent where that is not enough.
 std::optional<ArmDescription> describeArm(const LoadedRobot& robot, const JointVector& q_start);
 

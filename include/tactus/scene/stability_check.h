@@ -41,6 +41,10 @@ PlantConfig plantOf(const Scene& scene);
 /// that contact. Not a part of loading: simulations and replays of unstable gains are of use.
 std::optional<StabilityReport> checkStability(const Scene& scene);
 
+/// Of the simulation's obstacles with links and cover; gears are apart. 0: there are none. Needs
+/// scene.arm.
+double stiffestBeforeGears(const Scene& scene);
+
 /// What masses, servos and gears leave of the ratios, where robot.yaml knows them: takes some 0.2
 /// s. Beyond it only a warning, for in contact the arm may stand elsewhere than at its start.
 void addGearMargins(const Scene& scene, StabilityReport& report);
