@@ -14,6 +14,7 @@ constexpr double kMaxPeakMore = 0.25;  ///< than without a trouble, m/s or rad/s
 /// Where a hand leans on, which the arm is to give way to, in the posture in which it stands then.
 constexpr double kMaxHandMore = 0.5;
 constexpr double kMaxHandShare = 0.25;
+constexpr double kMaxHandRate = 0.5;  ///< m/s^2 or rad/s^2, while it leans on
 constexpr int kBefore_ms = 200;
 
 struct Peaks {
@@ -135,7 +136,8 @@ void GoingOnJudge::look(const Look& look) {
   if (all.empty() || all.back().end_ms != 0) return;
   is_calm.back() = is_calm.back() && now.is_calm;
   all.back().has_hand = all.back().has_hand || now.has_hand;
-  all.back().peak = std::max(all.back().peak, speedOf(now));
+  const double by_hand = now.has_hand ? kMaxHandRate * 1e-3 * (now.t_ms - all.back().return_ms) : 0;
+  all.back().peak = std::max(all.back().peak, speedOf(now) - by_hand);
 }
 
 void GoingOnJudge::end(int now_ms) {
