@@ -70,9 +70,10 @@ ContactController::ContactController(const ControllerConfig& config,
       law_(*config.force_control, config.chain, inv_sqrt_weights) {
   if (config.force_control->variant != Variant::kNullLimit) return;
   approach_limit_.emplace(config);
-  if (config.force_control->friction_coefficient > 0.0)
-    friction_cone_.emplace(config.tactile_modules.front(),
-                           config.force_control->friction_coefficient);
+  if (config.force_control->friction_coefficient <= 0.0) return;
+  friction_cone_.emplace(config.tactile_modules.front(),
+                         config.force_control->friction_coefficient);
+  limit_rows_.emplace(config.limits, config.chain);
 }
 
 ContactControllerState ContactController::initialState() const {
@@ -119,7 +120,8 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
   motion.y += (u.u_n - u.u_t) * contact.space.a_task;
   motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
-  if (friction_cone_) u.u_t = limitCorners(gains.force, kinematics, input.F_p_N, state, motion);
+  if (friction_cone_)
+    u.u_t = limitCorners(gains.force, kinematics, commanded.q, input.F_p_N, state, motion);
 
   if (is_multi_space_ && commanded.is_followed && hasReturnSpeed(gains.task)) {
     state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * contact.space.a_task);
@@ -156,15 +158,18 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
 }
 
 double ContactController::limitCorners(const ForceGains& gains, const TaskKinematics& kinematics,
-                                       double F_p_N, ContactControllerState& state,
+                                       const JointVector& q_desired, double F_p_N,
+                                       ContactControllerState& state,
                                        Motion& motion) const noexcept {
   state.approach.is_limiting = false;
   if (state.approach.memory_N_per_m == 0.0) return 0.0;
   SpeedRows rows;
   friction_cone_->corners(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_,
                           rows);
-  approach_limit_->limitRows(gains, F_p_N, state.approach, rows);
-  const double sum = keepSpeedRows(rows, task_.size, motion).sum();
+  approach_limit_->limitRows(gains, F_p_N, friction_cone_->cosine(), state.approach, rows);
+  const int corners = rows.size;
+  limit_rows_->add(q_desired, kinematics, inv_sqrt_weights_, rows);
+  const double sum = keepSpeedRows(rows, task_.size, motion).head(corners).sum();
   state.approach.is_limiting = sum > 0.0;
   return -sum;
 }

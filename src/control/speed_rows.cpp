@@ -55,7 +55,7 @@ RowVector keepSpeedRows(const SpeedRows& rows, int task_size, Motion& motion) no
   K.diagonal() += delta;
   for (int i = 0; i < kRepetitions; ++i) {
     const RowVector d = lacking + delta.cwiseProduct(l);
-    solveComplementarity(K, d, l);
+    if (!solveComplementarity(K, d, l)) break;  // l then keeps the rows that it holds
   }
   for (int i = 0; i < rows.size; ++i) {
     motion.v_scaled += kNullSpaceShare * l[i] * rows.row[i].a_scaled;

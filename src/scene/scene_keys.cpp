@@ -81,7 +81,7 @@ Row<ForceControlConfig> orderRow() {
 
 Row<ForceControlConfig> frictionRow() {
   return withSymbol("mu_max",
-                    number("friction_coefficient", "", within(0, 2),
+                    number("friction_coefficient", "", within(0, 1),
                            "what null_limit shall bear, at the price of more give: more than there "
                            "is, 0.5 for contacts of 0.3, 0.7 with flexible gears; 0 stands for no "
                            "friction",

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "support/closed_loop.h"
@@ -9,22 +10,35 @@ namespace {
 struct RubbedRun {
   double peak_N = 0.0;
   double rest_N = 0.0;
+  JointVector lowest, highest;  ///< where the joints were, m or rad
 };
 
-/// The true force in a scene whose obstacles all rub.
-RubbedRun rub(const std::string& name, const std::string& arm, double mu, double mu_max) {
+RubbedRun rub(const Scene& scene) {
+  test::ClosedLoop loop(scene.controller, scene.plant, scene.period_s);
+  RubbedRun run;
+  run.lowest = run.highest = scene.controller.q_start;
+  while (loop.time_s() < scene.duration_s) {
+    loop.step();
+    EXPECT_EQ(loop.output().fault, Fault::kNone);
+    run.peak_N = std::max(run.peak_N, loop.robot().trueForce_N());
+    run.lowest = run.lowest.cwiseMin(loop.output().q_desired);
+    run.highest = run.highest.cwiseMax(loop.output().q_desired);
+  }
+  run.rest_N = loop.robot().trueForce_N();
+  return run;
+}
+
+/// A scene whose obstacles all rub.
+Scene rubbing(const std::string& name, const std::string& arm, double mu, double mu_max) {
   Scene scene = test::shippedScene(name, {{"simulation.arm", arm}});
   for (ObstacleConfig& obstacle : scene.plant.obstacles) obstacle.friction_coefficient = mu;
   scene.controller.force_control->friction_coefficient = mu_max;
   scene.controller.tactile_modules.front().max_force_N = kNoLimit;
-  test::ClosedLoop loop(scene.controller, scene.plant, scene.period_s);
-  RubbedRun run;
-  while (loop.time_s() < scene.duration_s) {
-    loop.step();
-    run.peak_N = std::max(run.peak_N, loop.robot().trueForce_N());
-  }
-  run.rest_N = loop.robot().trueForce_N();
-  return run;
+  return scene;
+}
+
+RubbedRun rub(const std::string& name, const std::string& arm, double mu, double mu_max) {
+  return rub(rubbing(name, arm, mu, mu_max));
 }
 
 TEST(FrictionScenes, KeepTheForceWhereTheLawWithoutFrictionSlidesOn) {
@@ -33,6 +47,7 @@ TEST(FrictionScenes, KeepTheForceWhereTheLawWithoutFrictionSlidesOn) {
     const RubbedRun run = rub(scene, "quasi_static", 0.3, 0.5);
     EXPECT_LT(run.peak_N, 1.05 * 5.0) << scene;
     EXPECT_LT(run.rest_N, 1.05 * 5.0) << scene;
+    EXPECT_GT(run.rest_N, 0.9 * 5.0) << scene;
   }
 }
 
@@ -41,6 +56,38 @@ TEST(FrictionScenes, KeepItWithMassAndFlexibleGears) {
     const RubbedRun run = rub("scenario3_tactus_fast", arm, 0.3, 0.7);
     EXPECT_LT(run.peak_N, 1.1 * 5.0) << arm;
     EXPECT_LT(run.rest_N, 1.05 * 5.0) << arm;
+    EXPECT_GT(run.rest_N, 0.5 * 5.0) << arm;
+  }
+}
+
+/// Each joint in turn is left a part of the way that it takes else: the others have to do it.
+void leaveLessWay(const Scene& free, double share) {
+  const RubbedRun undisturbed = rub(free);
+  for (int joint = 0; joint < 9; ++joint) {
+    const double start = free.controller.q_start[joint];
+    for (const double end : {undisturbed.lowest[joint], undisturbed.highest[joint]}) {
+      if (std::abs(end - start) < 0.02) continue;
+      Scene scene = free;
+      JointLimits& limits = scene.controller.limits;
+      (end < start ? limits.lower : limits.upper)[joint] = start + share * (end - start);
+      const RubbedRun run = rub(scene);
+      EXPECT_LT(run.peak_N, 1.05 * 5.0) << joint;
+      EXPECT_LT(run.rest_N, 1.05 * 5.0) << joint;
+    }
+  }
+}
+
+/// Without rows for them: up to 146 N.
+TEST(FrictionScenes, KeepItWhereAJointComesToItsLimit) {
+  for (const char* name : {"scenario3_tactus", "scenario3_tactus_fast"}) {
+    for (const bool is_avoided : {true, false}) {
+      for (const double share : {0.05, 0.5}) {
+        SCOPED_TRACE(fmt::format("{}, {}, {}", name, is_avoided, share));
+        Scene free = rubbing(name, "quasi_static", 0.3, 0.5);
+        free.controller.has_joint_limit_avoidance = is_avoided;
+        leaveLessWay(free, share);
+      }
+    }
   }
 }
 

@@ -96,6 +96,8 @@ TEST(FrictionCone, EveryNormalLiesBetweenItsCorners) {
     const double edge = std::atan(c.mu);
     const double share[] = {std::sin(edge + angle) / std::sin(2.0 * edge),
                             std::sin(edge - angle) / std::sin(2.0 * edge)};
+    // Of what the corners let, see ApproachLimit::limitRows().
+    ASSERT_LE((share[0] + share[1]) * FrictionCone(c.module, c.mu).cosine(), 1.0 + 1e-12);
     ScaledVector sum = ScaledVector::Zero();
     for (int row = 0; row < 4; ++row) {
       const double end = 0.5 * (row < 2 ? 1.0 + shift : 1.0 - shift);

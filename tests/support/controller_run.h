@@ -87,6 +87,8 @@ inline ControllerConfig fullController(Random& random, int count, Variant varian
   config.force_control.emplace();
   config.force_control->variant = variant;
   config.force_control->has_estimator = true;
+  if (variant == Variant::kNullLimit && random.chance(0.5))
+    config.force_control->friction_coefficient = 0.5;
   Waypoint there;
   there.displacement_m = random.vector<Vector3>(3, -0.2, 0.2);
   there.rotation_vector_rad = random.vector<Vector3>(3, -0.2, 0.2);

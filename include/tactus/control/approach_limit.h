@@ -50,9 +50,10 @@ class ApproachLimit {
   double excess(const ForceGains& gains, double F_p_N, double v_res_m_per_s,
                 ApproachLimitState& state) const noexcept;
 
-  /// For rows that limit the approach instead: v_max of (1) and T m, of all alike.
-  void limitRows(const ForceGains& gains, double F_p_N, const ApproachLimitState& state,
-                 SpeedRows& rows) const noexcept;
+  /// For rows that limit the approach instead: v_max of (1) times the cosine of the angle between a
+  /// row and the true normal, which lies amid two of them, and T m, of all alike.
+  void limitRows(const ForceGains& gains, double F_p_N, double cosine,
+                 const ApproachLimitState& state, SpeedRows& rows) const noexcept;
 
  private:
   void estimate(const ForceGains& gains, const ScaledVector& a, int joints, double F_p_N,

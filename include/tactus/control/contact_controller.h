@@ -8,6 +8,7 @@
 #include "tactus/control/control_law.h"
 #include "tactus/control/controller_config.h"
 #include "tactus/control/friction_cone.h"
+#include "tactus/control/joint_limit_rows.h"
 #include "tactus/control/joint_space_transition.h"
 #include "tactus/control/motion.h"
 #include "tactus/control/stiffness_estimator.h"
@@ -85,9 +86,11 @@ class ContactController {
                              const Contact& contact, double return_share, double period_s,
                              ContactControllerState& state, ContactReport& report,
                              ControlLawInput& input, Motion& motion) const noexcept;
-  /// The approach limit with friction: all corners of the cone. Returns what stands for u_t.
-  double limitCorners(const ForceGains& gains, const TaskKinematics& kinematics, double F_p_N,
-                      ContactControllerState& state, Motion& motion) const noexcept;
+  /// The approach limit with friction: all corners of the cone, and the joints' limits. Returns
+  /// what stands for u_t.
+  double limitCorners(const ForceGains& gains, const TaskKinematics& kinematics,
+                      const JointVector& q_desired, double F_p_N, ContactControllerState& state,
+                      Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
   TaskVector pull(const Gains& gains, const PaddedTaskVector& error) const noexcept;
 
@@ -102,6 +105,7 @@ class ContactController {
   ControlLaw law_;
   std::optional<ApproachLimit> approach_limit_;
   std::optional<FrictionCone> friction_cone_;  ///< with the approach limit alone
+  std::optional<JointLimitRows> limit_rows_;   ///< with the friction cone alone
 };
 
 }  // namespace tactus

@@ -19,6 +19,8 @@ class FrictionCone {
  public:
   FrictionCone(const TactileModuleConfig& module, double friction_coefficient);
 
+  double cosine() const noexcept { return cos_; }  ///< of atan mu_max
+
   /// The rows' a; the rest of each stays as it is.
   void corners(const SerialChain& chain, const TaskKinematics& kinematics,
                const ContactPointState& contact, const ScaledVector& inv_sqrt_weights,

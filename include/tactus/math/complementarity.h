@@ -4,7 +4,7 @@
 
 namespace tactus {
 
-inline constexpr int kMaxRows = 16;  ///< that one motion has to keep
+inline constexpr int kMaxRows = 20;  ///< that one motion has to keep
 
 using RowVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxRows, 1>;
 using RowMatrix =

@@ -1,0 +1,101 @@
+#include "tactus/control/joint_limit_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/expanded_pseudoinverse.h"
+#include "support/random_jacobian.h"
+#include "support/random_robot.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kGamma_per_s = 5.0;
+
+/// An arm anywhere between its limits, and a motion that may lead anywhere.
+struct LimitedCase {
+  explicit LimitedCase(test::Random& random)
+      : n(random.integer(2, kMaxJoints)),
+        chain(test::randomChain(random, n)),
+        weights(test::randomWeights(random, n)),
+        inv_sqrt(test::inverseSquareRoot(weights)) {
+    const int m = random.integer(1, std::min(n - 1, kMaxTaskSize));
+    task_size = m;
+    kinematics.pseudoinverse.factorise(
+        test::randomJacobian(random, test::randomSpectrum(random, m, 0.1, 5.0), weights), inv_sqrt);
+    limits.lower = JointVector::Constant(n, -1.0);
+    limits.upper = JointVector::Constant(n, 1.0);
+    limits.max_velocity = random.vector(n, 0.2, 2.0);
+    limits.max_acceleration = JointVector::Constant(n, 10.0);
+    q = random.vector(n, -1.0, 1.0);
+    motion.v_scaled = scaled(random.vector(n, -1.0, 1.0), ScaledVector::Ones());
+    motion.y.setZero();
+    for (int i = 0; i < m; ++i) motion.y[i] = random.uniform(-1.0, 1.0);
+    rows.size = 0;
+    JointLimitRows(limits, chain).add(q, kinematics, inv_sqrt, rows);
+  }
+
+  double left(int joint) const { return 1.0 - std::abs(q[joint]); }
+  bool isNear(int joint) const { return kGamma_per_s * left(joint) < limits.max_velocity[joint]; }
+  JointVector velocity() const {
+    const ScaledVector v = motion.v_scaled + kinematics.pseudoinverse.expand(motion.y);
+    return v.cwiseProduct(inv_sqrt).head(n);
+  }
+
+  int n;
+  int task_size = 0;
+  SerialChain chain;
+  JointVector weights;
+  ScaledVector inv_sqrt;
+  JointLimits limits;
+  JointVector q;
+  TaskKinematics kinematics;
+  SpeedRows rows;
+  Motion motion;
+};
+
+TEST(JointLimitRows, AreThereWhereAJointCouldComeTooFast) {
+  test::Random random(331);
+  for (int i = 0; i < 500; ++i) {
+    const LimitedCase c(random);
+    int near = 0;
+    for (int joint = 0; joint < c.n; ++joint) near += c.isNear(joint) ? 1 : 0;
+    ASSERT_EQ(c.rows.size, near);
+  }
+}
+
+/// Whatever the motion was: no joint then goes to its limit faster than it may.
+TEST(JointLimitRows, SlowEachJointDownOnItsWayToTheLimit) {
+  test::Random random(332);
+  int slowed = 0;
+  for (int i = 0; i < 2000; ++i) {
+    LimitedCase c(random);
+    const JointVector before = c.velocity();
+    keepSpeedRows(c.rows, c.task_size, c.motion);
+    const JointVector after = c.velocity();
+    for (int joint = 0; joint < c.n; ++joint) {
+      if (!c.isNear(joint)) continue;
+      const double sign = c.q[joint] > 0.0 ? 1.0 : -1.0;
+      const double allowed = kGamma_per_s * c.left(joint);
+      ASSERT_LE(sign * after[joint], allowed + 1e-3 * (1.0 + before.norm())) << i;
+      slowed += sign * before[joint] > allowed ? 1 : 0;
+    }
+  }
+  EXPECT_GT(slowed, 500);
+}
+
+TEST(JointLimitRows, OfAJointBeyondItsLimitLetItOnlyBack) {
+  test::Random random(333);
+  LimitedCase c(random);
+  c.q.setZero();
+  c.q[0] = 1.1;
+  c.rows.size = 0;
+  JointLimitRows(c.limits, c.chain).add(c.q, c.kinematics, c.inv_sqrt, c.rows);
+  ASSERT_EQ(c.rows.size, 1);
+  EXPECT_EQ(c.rows.row[0].v_max_m_per_s, 0.0);
+  EXPECT_LT(c.rows.row[0].a_scaled[0], 0.0);
+}
+
+}  // namespace
+}  // namespace tactus
