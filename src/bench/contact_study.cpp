@@ -4,6 +4,7 @@
 
 #include "tactus/bench/law_grid.h"
 #include "tactus/bench/parallel.h"
+#include "tactus/bench/random.h"
 #include "tactus/bench/study.h"
 #include "tactus/scene/scene_loader.h"
 
@@ -17,12 +18,20 @@ constexpr std::array kContactSpeeds = {1.0, 2.4};                  // of the bas
 constexpr std::array kFrictions = {0.0, 0.1, 0.2, 0.3, 0.5, 0.6};  // mu
 constexpr std::array kBearables = {0.0, 0.5, 0.8};                 // mu_max
 constexpr std::array kNoises_N = {0.0, 0.05};
+constexpr std::array kMassiveFrictions = {0.0, 0.3, 0.6};
+constexpr std::array kArms = {"quasi_static", "rigid_gears", "flexible_gears"};
+constexpr int kDrawn = 48;
+constexpr std::uint64_t kDrawnSeed = 20'261'123;
 
 struct ContactTrial {
+  std::size_t arm = 0;  ///< of kArms
   double friction = 0.0;
   double noise_N = 0.0;
   double bearable = 0.0;
 };
+
+/// One scene, whose arm has no mass, rigid gears or flexible ones; only as many as its robot knows.
+using ArmBases = std::vector<RunSetup>;
 
 struct ContactFigures {
   int restless = 0;
@@ -52,8 +61,24 @@ std::vector<LawGridPoint> contactPoints(double robot_stiffness_N_per_m) {
   return points;
 }
 
-RunSetup contactSetup(const RunSetup& base, const LawGridPoint& point, const ContactTrial& trial) {
-  RunSetup setup = lawGridSetup(base, point, GridLaw::kLimited);
+/// Where nobody has looked when the law was made.
+std::vector<LawGridPoint> drawnPoints(double robot_stiffness_N_per_m) {
+  BenchRandom random(kDrawnSeed);
+  const auto logUniform = [&random](double low, double high) {
+    return low * std::pow(high / low, random.uniform(0.0, 1.0));
+  };
+  std::vector<LawGridPoint> points;
+  for (int i = 0; i < kDrawn; ++i) {
+    const double band = i % 3 == 0 ? 0.0 : logUniform(10.0, 600.0);
+    const double profile = logUniform(1e3, 1e6);
+    const double robot = i % 2 == 0 ? kNoLimit : robot_stiffness_N_per_m;
+    points.push_back({band, profile, robot, random.uniform(0.5, 3.0)});
+  }
+  return points;
+}
+
+RunSetup contactSetup(const ArmBases& bases, const LawGridPoint& point, const ContactTrial& trial) {
+  RunSetup setup = lawGridSetup(bases[trial.arm], point, GridLaw::kLimited);
   setup.controller.force_control->friction_coefficient = trial.bearable;
   for (ObstacleConfig& obstacle : setup.plant.obstacles)
     obstacle.friction_coefficient = trial.friction;
@@ -62,10 +87,10 @@ RunSetup contactSetup(const RunSetup& base, const LawGridPoint& point, const Con
   return setup;
 }
 
-ContactFigures runContactGrid(const RunSetup& base, const std::vector<LawGridPoint>& points,
-                              const ContactTrial& trial) {
+ContactFigures runContacts(const ArmBases& bases, const std::vector<LawGridPoint>& points,
+                           const ContactTrial& trial) {
   std::vector<RunSetup> setups;
-  for (const LawGridPoint& point : points) setups.push_back(contactSetup(base, point, trial));
+  for (const LawGridPoint& point : points) setups.push_back(contactSetup(bases, point, trial));
   std::vector<JudgedRun> runs(points.size());
   inParallel(runs.size(), [&](std::size_t i) { runs[i] = judgeRun(setups[i]); });
   ContactFigures figures;
@@ -73,61 +98,120 @@ ContactFigures runContactGrid(const RunSetup& base, const std::vector<LawGridPoi
   return figures;
 }
 
-void addContactRow(const ContactTrial& trial, std::size_t points, const ContactFigures& figures,
-                   Table& table) {
-  table.rows.push_back({trial.friction, trial.noise_N, trial.bearable, static_cast<double>(points),
+void addContactRow(const ArmBases& bases, const std::vector<LawGridPoint>& points,
+                   const ContactTrial& trial, Table& table) {
+  const ContactFigures figures = runContacts(bases, points, trial);
+  table.rows.push_back({static_cast<double>(trial.arm), trial.friction, trial.noise_N,
+                        trial.bearable, static_cast<double>(points.size()),
                         static_cast<double>(figures.restless), static_cast<double>(figures.high),
                         figures.peak_to_scale, figures.rest_to_limit, 1e3 * figures.tcp_error_m});
 }
 
-std::vector<Goal> contactGoals(const Table& table) {
-  const auto largest = [&table](const char* column, double mu, double mu_max) {
-    return std::max(
-        findNumber(table, column, {{"friction", mu}, {"noise_N", 0.0}, {"bears", mu_max}}),
-        findNumber(table, column, {{"friction", mu}, {"noise_N", 0.05}, {"bears", mu_max}}));
-  };
-  return {
-      {"friction 0.3, for which 0.5 is set: peak over the natural scale", 1.3,
-       largest("largest_peak_to_scale", 0.3, 0.5)},
-      {"the same: force at rest over the limit", 1.05, largest("largest_rest_to_limit", 0.3, 0.5)},
-      {"friction 0.6, for which 0.8 is set: peak over the natural scale", 2.0,
-       largest("largest_peak_to_scale", 0.6, 0.8)},
-      {"the same: force at rest over the limit", 1.2, largest("largest_rest_to_limit", 0.6, 0.8)},
-  };
+Table contactTable(const std::string& name) {
+  return {name,
+          {"arm", "friction", "noise_N", "bears", "points", "limit_cycles", "peaks_above_1_3",
+           "largest_peak_to_scale", "largest_rest_to_limit", "largest_tcp_error_mm"},
+          {}};
+}
+
+/// What is to be set for it: more than there is, for lag, mass and gears tilt the force, too.
+double bearableFor(double friction) { return friction > 0.3 ? 0.8 : 0.5; }
+
+/// Of arms with mass, which are rigid but for what gears they have.
+std::vector<LawGridPoint> massivePoints(std::vector<LawGridPoint> points) {
+  std::erase_if(points,
+                [](const LawGridPoint& x) { return x.robot_stiffness_N_per_m != kNoLimit; });
+  return points;
+}
+
+Table gridTable(const ArmBases& bases, const std::vector<LawGridPoint>& points) {
+  Table table = contactTable("contact_friction");
+  for (const double noise_N : kNoises_N) {
+    for (const double friction : kFrictions)
+      for (const double bearable : kBearables)
+        addContactRow(bases, points, {0, friction, noise_N, bearable}, table);
+    for (std::size_t arm = 1; arm < bases.size(); ++arm)
+      for (const double friction : kMassiveFrictions)
+        for (const double bearable : kBearables)
+          addContactRow(bases, massivePoints(points), {arm, friction, noise_N, bearable}, table);
+  }
+  return table;
+}
+
+Table drawnTable(const ArmBases& bases, const std::vector<LawGridPoint>& points) {
+  Table table = contactTable("contact_drawn");
+  for (std::size_t arm = 0; arm < bases.size(); ++arm)
+    for (const double noise_N : kNoises_N)
+      for (const double friction : kMassiveFrictions)
+        addContactRow(bases, arm > 0 ? massivePoints(points) : points,
+                      {arm, friction, noise_N, bearableFor(friction)}, table);
+  return table;
+}
+
+/// With and without noise, on the grid and where points were drawn.
+double largest(const std::vector<Table>& tables, const char* column, double arm, double friction) {
+  double found = 0.0;
+  for (const Table& table : tables)
+    for (const double noise_N : kNoises_N)
+      found = std::max(found, findNumber(table, column,
+                                         {{"arm", arm},
+                                          {"friction", friction},
+                                          {"noise_N", noise_N},
+                                          {"bears", bearableFor(friction)}}));
+  return found;
+}
+
+std::vector<Goal> contactGoals(const ArmBases& bases, const std::vector<Table>& tables) {
+  std::vector<Goal> goals;
+  for (std::size_t arm = 0; arm < bases.size(); ++arm) {
+    const std::string where = std::string(kArms[arm]) + ", friction ";
+    const auto number = static_cast<double>(arm);
+    goals.push_back({where + "0.3, for which 0.5 is set: peak over the natural scale", 1.3,
+                     largest(tables, "largest_peak_to_scale", number, 0.3)});
+    goals.push_back({where + "0.3: force at rest over the limit", 1.05,
+                     largest(tables, "largest_rest_to_limit", number, 0.3)});
+    goals.push_back({where + "0.6, for which 0.8 is set: peak over the natural scale", 2.0,
+                     largest(tables, "largest_peak_to_scale", number, 0.6)});
+    goals.push_back({where + "0.6: force at rest over the limit", 1.2,
+                     largest(tables, "largest_rest_to_limit", number, 0.6)});
+  }
+  return goals;
+}
+
+ArmBases contactBases(const std::string& path) {
+  ArmBases bases;
+  for (const char* arm : kArms) {
+    const Scene scene = loadScene(path, {{"simulation.arm", arm}}, SceneUse::kSimulation);
+    bases.push_back({scene.controller, scene.plant, scene.period_s, scene.duration_s});
+    if (!scene.arm) break;
+  }
+  return bases;
 }
 
 }  // namespace
 
 StudyResult studyContact(const BenchOptions& options) {
-  const std::string path =
-      options.scenes.empty() ? options.scenes_folder + kContactBase : options.scenes.front();
-  const Scene scene = loadScene(path, {}, SceneUse::kSimulation);
-  const RunSetup base{scene.controller, scene.plant, scene.period_s, scene.duration_s};
-  std::vector<LawGridPoint> points = contactPoints(scene.plant.robot_stiffness_N_per_m);
+  const ArmBases bases = contactBases(options.scenes.empty() ? options.scenes_folder + kContactBase
+                                                             : options.scenes.front());
+  const double robot_N_per_m = bases.front().plant.robot_stiffness_N_per_m;
+  std::vector<LawGridPoint> grid = contactPoints(robot_N_per_m);
+  std::vector<LawGridPoint> drawn = drawnPoints(robot_N_per_m);
   if (options.is_quick) {
     std::size_t i = 0;
-    std::erase_if(points, [&](const LawGridPoint&) { return i++ % 12 > 0; });
-  }
-  Table table{"contact_friction",
-              {"friction", "noise_N", "bears", "points", "limit_cycles", "peaks_above_1_3",
-               "largest_peak_to_scale", "largest_rest_to_limit", "largest_tcp_error_mm"},
-              {}};
-  for (const double noise_N : kNoises_N) {
-    for (const double friction : kFrictions) {
-      for (const double bearable : kBearables) {
-        const ContactTrial trial{friction, noise_N, bearable};
-        addContactRow(trial, points.size(), runContactGrid(base, points, trial), table);
-      }
-    }
+    std::erase_if(grid, [&](const LawGridPoint&) { return i++ % 12 > 0; });
+    drawn.resize(2);
   }
   StudyResult result;
   result.title = "Contacts that rub";
   result.text =
       "null_limit on bands and profiles with friction, with no friction_coefficient set and with "
       "two: the true force's peak over what no law could avoid, and the force at rest over F_act + "
-      "F_th. What the figures mean is in docs/approach_speed_limit.md.";
-  result.goals = contactGoals(table);
-  result.tables = {table};
+      "F_th; with an arm without mass (0), with masses and rigid gears (1), with flexible ones "
+      "(2). "
+      "First a grid, then points that were drawn. What the figures mean is in "
+      "docs/approach_speed_limit.md.";
+  result.tables = {gridTable(bases, grid), drawnTable(bases, drawn)};
+  result.goals = contactGoals(bases, result.tables);
   return result;
 }
 

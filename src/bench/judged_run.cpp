@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tactus/analysis/effective_mass.h"
 #include "tactus/bench/spread.h"
 #include "tactus/control/controller.h"
 #include "tactus/sim/simulated_robot.h"
@@ -27,12 +28,21 @@ class ProfileProbe {
                    setup.plant.obstacles.back().swing},
                   kNoLimit) {}
 
-  /// Way that the arm has gone into the obstacle, m.
-  double penetration_m(const JointVector& q, double t_s) {
-    ChainPose pose;
-    chain_.computePose(q, pose);
-    const Pose X = framePose(pose, module_.link);
-    return obstacle_.touch({X.p_AB, X.R_AB.col(0), module_.length_m, radius_m_}, t_s).force_N;
+  /// Its force is the way that the arm has gone into the obstacle, in m.
+  ObstacleContact touch(const JointVector& q, double t_s) {
+    chain_.computePose(q, pose_);
+    const Pose X = framePose(pose_, module_.link);
+    return obstacle_.touch({X.p_AB, X.R_AB.col(0), module_.length_m, radius_m_}, t_s);
+  }
+
+  /// Of the last touch, kg.
+  double mass_kg(const ArmDynamicsConfig& arm, const JointVector& q,
+                 const ObstacleContact& touch) const {
+    const Pose X = framePose(pose_, module_.link);
+    const JointVector rotors = arm.gear_stiffness.array().isFinite().select(0.0, arm.rotor_inertia);
+    return effectiveMass_kg(chain_, pose_, massMatrixAt(chain_, arm.bodies, q), rotors,
+                            module_.link.joint, X.p_AB + touch.position_m * X.R_AB.col(0),
+                            touch.force_Base.normalized());
   }
 
  private:
@@ -40,6 +50,7 @@ class ProfileProbe {
   TactileModuleConfig module_;
   double radius_m_;
   Obstacle obstacle_;  ///< of 1 N/m
+  ChainPose pose_;
 };
 
 }  // namespace
@@ -71,12 +82,14 @@ JudgedRun judgeRun(const RunSetup& setup) {
       last_forces.add(robot.trueForce_N());
     }
     if (run.touch_speed_m_per_s > 0.0) continue;
-    const double way_m = probe.penetration_m(input.q_measured, t_s);
-    if (depth_m > 0.0 && way_m > depth_m) {
-      run.touch_speed_m_per_s = (way_m - depth_m) / setup.period_s;
+    const ObstacleContact touch = probe.touch(input.q_measured, t_s);
+    if (depth_m > 0.0 && touch.force_N > depth_m) {
+      run.touch_speed_m_per_s = (touch.force_N - depth_m) / setup.period_s;
       run.touch_force_N = output.contact.force_contact_N;
+      if (setup.plant.dynamics)
+        run.touch_mass_kg = probe.mass_kg(*setup.plant.dynamics, input.q_measured, touch);
     }
-    depth_m = way_m;
+    depth_m = touch.force_N;
   }
   run.final_force_N = last_readings.mean;
   run.restlessness_N = last_forces.deviation();
@@ -99,8 +112,9 @@ double naturalScale(const RunSetup& setup, const JudgedRun& run) {
   const double stiffness =
       contactStiffness(setup.plant.obstacles.back(), setup.plant.robot_stiffness_N_per_m);
   const double unseen_N = stiffness * run.touch_speed_m_per_s * feedbackDelay_s(setup.plant);
+  const double blow_N = run.touch_speed_m_per_s * std::sqrt(stiffness * run.touch_mass_kg);
   return force.contact_threshold_N +
-         std::max(force.activation_force_N, run.touch_force_N + unseen_N);
+         std::max({force.activation_force_N, run.touch_force_N + unseen_N, blow_N});
 }
 
 }  // namespace tactus

@@ -29,6 +29,7 @@ struct JudgedRun {
   /// When the profile was first touched: the speed against it, and F_p of what was already there.
   double touch_speed_m_per_s = 0.0;
   double touch_force_N = 0.0;
+  double touch_mass_kg = 0.0;  ///< that it then met with; 0 where the arm has none
   Fault fault = Fault::kNone;  ///< of the last cycle
 
   static constexpr double kRest_s = 2.0;
@@ -46,7 +47,8 @@ double feedbackDelay_s(const PlantConfig& plant);
 double contactStiffness(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m);
 
 /// What no law could avoid: nothing is seen before the filtered force passes F_th, and by then the
-/// arm has gone on for the delay; and what is asked for, F_act. N.
+/// arm has gone on for the delay; the blow v sqrt(k m) of an arm with mass; and what is asked for,
+/// F_act. N.
 double naturalScale(const RunSetup& setup, const JudgedRun& run);
 
 }  // namespace tactus
