@@ -18,7 +18,7 @@ constexpr std::array kContactSpeeds = {1.0, 2.4};                  // of the bas
 constexpr std::array kFrictions = {0.0, 0.1, 0.2, 0.3, 0.5, 0.6};  // mu
 constexpr std::array kBearables = {0.0, 0.5, 0.8};                 // mu_max
 constexpr std::array kNoises_N = {0.0, 0.05};
-constexpr std::array kMassiveFrictions = {0.0, 0.3, 0.6};
+constexpr std::array kJudgedFrictions = {0.3, 0.6};
 constexpr std::array kArms = {"quasi_static", "rigid_gears", "flexible_gears"};
 constexpr int kDrawn = 48;
 constexpr std::uint64_t kDrawnSeed = 20'261'123;
@@ -117,6 +117,14 @@ Table contactTable(const std::string& name) {
 /// What is to be set for it: more than there is, for lag, mass and gears tilt the force, too.
 double bearableFor(double friction) { return friction > 0.3 ? 0.8 : 0.5; }
 
+/// With what is to be set, and, as they take their time, only where it counts.
+void addJudgedRows(const ArmBases& bases, std::size_t arm, const std::vector<LawGridPoint>& points,
+                   Table& table) {
+  for (const double noise_N : kNoises_N)
+    for (const double friction : kJudgedFrictions)
+      addContactRow(bases, points, {arm, friction, noise_N, bearableFor(friction)}, table);
+}
+
 /// Of arms with mass, which are rigid but for what gears they have.
 std::vector<LawGridPoint> massivePoints(std::vector<LawGridPoint> points) {
   std::erase_if(points,
@@ -126,25 +134,19 @@ std::vector<LawGridPoint> massivePoints(std::vector<LawGridPoint> points) {
 
 Table gridTable(const ArmBases& bases, const std::vector<LawGridPoint>& points) {
   Table table = contactTable("contact_friction");
-  for (const double noise_N : kNoises_N) {
+  for (const double noise_N : kNoises_N)
     for (const double friction : kFrictions)
       for (const double bearable : kBearables)
         addContactRow(bases, points, {0, friction, noise_N, bearable}, table);
-    for (std::size_t arm = 1; arm < bases.size(); ++arm)
-      for (const double friction : kMassiveFrictions)
-        for (const double bearable : kBearables)
-          addContactRow(bases, massivePoints(points), {arm, friction, noise_N, bearable}, table);
-  }
+  for (std::size_t arm = 1; arm < bases.size(); ++arm)
+    addJudgedRows(bases, arm, massivePoints(points), table);
   return table;
 }
 
 Table drawnTable(const ArmBases& bases, const std::vector<LawGridPoint>& points) {
   Table table = contactTable("contact_drawn");
   for (std::size_t arm = 0; arm < bases.size(); ++arm)
-    for (const double noise_N : kNoises_N)
-      for (const double friction : kMassiveFrictions)
-        addContactRow(bases, arm > 0 ? massivePoints(points) : points,
-                      {arm, friction, noise_N, bearableFor(friction)}, table);
+    addJudgedRows(bases, arm, arm > 0 ? massivePoints(points) : points, table);
   return table;
 }
 
