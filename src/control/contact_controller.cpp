@@ -73,7 +73,7 @@ ContactController::ContactController(const ControllerConfig& config,
   if (config.force_control->friction_coefficient <= 0.0) return;
   friction_cone_.emplace(config.tactile_modules.front(),
                          config.force_control->friction_coefficient);
-  limit_rows_.emplace(config.limits, config.chain);
+  limit_rows_.emplace(config.limits);
 }
 
 ContactControllerState ContactController::initialState() const {
@@ -106,7 +106,7 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
     passContact(gains.force, contact, period_s, state, report, input);
   }
   input.is_followed = commanded.is_followed;
-  input.cut_m_per_s = state.cut_m_per_s;
+  input.cut_m_per_s = state.cut_m_per_s + state.cut_by_rows_m_per_s;
   ControlLawOutput u;
   law_.update(gains.force, input, contact.space, period_s, state.law, u);
   if (approach_limit_ && !friction_cone_) {
@@ -121,7 +121,8 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   motion.y += (u.u_n - u.u_t) * contact.space.a_task;
   motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
   if (friction_cone_)
-    u.u_t = limitCorners(gains.force, kinematics, commanded.q, input.F_p_N, state, motion);
+    u.u_t = limitCorners(gains.force, kinematics, commanded.q, contact.space, input.F_p_N, state,
+                         motion);
 
   if (is_multi_space_ && commanded.is_followed && hasReturnSpeed(gains.task)) {
     state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * contact.space.a_task);
@@ -158,18 +159,28 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
 }
 
 double ContactController::limitCorners(const ForceGains& gains, const TaskKinematics& kinematics,
-                                       const JointVector& q_desired, double F_p_N,
-                                       ContactControllerState& state,
+                                       const JointVector& q_desired, const ContactSpace& space,
+                                       double F_p_N, ContactControllerState& state,
                                        Motion& motion) const noexcept {
   state.approach.is_limiting = false;
-  if (state.approach.memory_N_per_m == 0.0) return 0.0;
+  state.cut_by_rows_m_per_s = 0.0;
+  const double memory = state.approach.memory_N_per_m;
+  if (memory == 0.0) return 0.0;
   SpeedRows rows;
   friction_cone_->corners(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_,
                           rows);
   approach_limit_->limitRows(gains, F_p_N, friction_cone_->cosine(), state.approach, rows);
   const int corners = rows.size;
-  limit_rows_->add(q_desired, kinematics, inv_sqrt_weights_, rows);
+  const double in_contact =
+      std::max(state.approach.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
+  limit_rows_->add(q_desired, kinematics, inv_sqrt_weights_, std::min(1.0, memory / in_contact),
+                   rows);
+  const auto retreat = [&] {
+    return dot(space.a_scaled, motion.v_scaled) + dot(space.a_task, motion.y, task_.size);
+  };
+  const double retreat_before = retreat();
   const double sum = keepSpeedRows(rows, task_.size, motion).head(corners).sum();
+  state.cut_by_rows_m_per_s = std::max(0.0, retreat_before - retreat());
   state.approach.is_limiting = sum > 0.0;
   return -sum;
 }

@@ -55,7 +55,9 @@ RowVector keepSpeedRows(const SpeedRows& rows, int task_size, Motion& motion) no
   K.diagonal() += delta;
   for (int i = 0; i < kRepetitions; ++i) {
     const RowVector d = lacking + delta.cwiseProduct(l);
-    if (!solveComplementarity(K, d, l)) break;  // l then keeps the rows that it holds
+    RowVector next = l;
+    if (!solveComplementarity(K, d, next)) break;
+    l = next;
   }
   for (int i = 0; i < rows.size; ++i) {
     motion.v_scaled += kNullSpaceShare * l[i] * rows.row[i].a_scaled;

@@ -102,6 +102,26 @@ TEST(LimitWindup, TheWayBackAfterMinutesIsThatAfterAMoment) {
   }
 }
 
+/// With friction rows keep the joints off their limits, long before the gate would cut.
+TEST(LimitWindup, NorIsAnythingRememberedThatRowsOfJointsCut) {
+  for (const double force_N : {2.5, 15.0}) {
+    SCOPED_TRACE(force_N);
+    ControllerConfig config = limitedArm(Variant::kNullLimit, Gate::kPosition);
+    config.force_control->friction_coefficient = 0.5;
+    ArmAtALimit minutes(config);
+    minutes.run(force_N, 60.0);
+    ArmAtALimit moment(config);
+    moment.state = moment.controller.initialState(minutes.state.q_desired);
+    moment.run(force_N, 0.1);
+    const WayBack after_minutes = wayBack(minutes);
+    const WayBack after_moment = wayBack(moment);
+    std::printf("rows at %4.1f N  back %.3f s at %.5f, after a moment %.3f s at %.5f\n", force_N,
+                after_minutes.time_s, after_minutes.peak, after_moment.time_s, after_moment.peak);
+    EXPECT_LE(after_minutes.time_s, 1.1 * after_moment.time_s + 0.05);
+    EXPECT_LE(after_minutes.peak, 1.02 * after_moment.peak);
+  }
+}
+
 TEST(LimitWindup, NothingGrowsWhileAccelerationIsCut) {
   for (const Variant variant : kLaws) {
     ArmAtALimit arm(limitedArm(variant, Gate::kAcceleration));

@@ -55,10 +55,11 @@ struct StateVisitor {
 
   void answer(const ContactControllerState& contact) const {
     const auto& [held_point, push, has_push, transition, joint_space, estimator, approach, law, cut,
-                 is_resting] = contact;
+                 cut_by_rows, is_resting] = contact;
     point("held.force_N", "held.position_m", "held.direction", held_point);
     list("push", push);
     visit("cut", 0, cut);
+    visit("cut_by_rows", 0, cut_by_rows);
     const auto& [touched, p_lost, gamma] = transition;
     list("transition.p_lost", p_lost);
     visit("transition.gamma", 0, gamma);

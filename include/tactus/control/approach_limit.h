@@ -51,7 +51,7 @@ class ApproachLimit {
                 ApproachLimitState& state) const noexcept;
 
   /// For rows that limit the approach instead: v_max of (1) times the cosine of the angle between a
-  /// row and the true normal, which lies amid two of them, and T m, of all alike.
+  /// row and F^, see docs/approach_speed_limit.md, and T m, of all alike.
   void limitRows(const ForceGains& gains, double F_p_N, double cosine,
                  const ApproachLimitState& state, SpeedRows& rows) const noexcept;
 

@@ -37,8 +37,9 @@ struct ContactControllerState {
   StiffnessEstimatorState estimator;
   ApproachLimitState approach;  ///< with an estimator of its own, for null_limit
   ControlLawState law;
-  double cut_m_per_s = 0.0;  ///< of the retreat, by the limits of the last cycle
-  bool is_resting = false;   ///< the last cycle's command did not move the arm
+  double cut_m_per_s = 0.0;          ///< of the retreat, by the limits of the last cycle
+  double cut_by_rows_m_per_s = 0.0;  ///< likewise, by rows of joints near theirs
+  bool is_resting = false;           ///< the last cycle's command did not move the arm
 };
 
 /// Where earlier commands have led to.
@@ -89,8 +90,8 @@ class ContactController {
   /// The approach limit with friction: all corners of the cone, and the joints' limits. Returns
   /// what stands for u_t.
   double limitCorners(const ForceGains& gains, const TaskKinematics& kinematics,
-                      const JointVector& q_desired, double F_p_N, ContactControllerState& state,
-                      Motion& motion) const noexcept;
+                      const JointVector& q_desired, const ContactSpace& space, double F_p_N,
+                      ContactControllerState& state, Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
   TaskVector pull(const Gains& gains, const PaddedTaskVector& error) const noexcept;
 

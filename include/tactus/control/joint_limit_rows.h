@@ -7,23 +7,23 @@ namespace tactus {
 
 // clang-format off: equations
 /// The joints' position limits as rows, for a motion that keeps others, too: what a contact asks
-/// for then takes another way, instead of being cut behind the law's back.
-///   a_j = -+ s e_j,   v_max = s gamma d_j     that is   |q_dot_j| <= gamma d_j  towards the limit
-/// d_j: what is left to it; gamma = 5 / s, which a joint can brake to with 2.5 rad/s^2 from 0.1
-/// rad; s = 0.3 m/rad, 1 of a sliding joint, makes these rows comparable to those of a contact
-/// point.
+/// for then takes another way, instead of being cut behind the law's back. Of joints that are less
+/// than 0.25 (m or rad) from a limit:
+///   |q_dot_j| <= min(gamma d_j, sqrt(a_j d_j)) towards it
+/// d_j: what is left to it; gamma = 5 / s; a_j: max_acceleration, of which half brakes that. Scaled
+/// so that W^-1/2 a of a row is 0.3 long, as a contact point's may be.
 // clang-format on
 class JointLimitRows {
  public:
-  JointLimitRows(const JointLimits& limits, const SerialChain& chain);
+  explicit JointLimitRows(const JointLimits& limits) : limits_(limits) {}
 
-  /// Adds a row for each joint that could come to a limit faster than that.
+  /// Adds a row for each joint that its own limits let come faster than that. share: of the contact
+  /// that is left, 1 in contact; the rows widen as it fades.
   void add(const JointVector& q, const TaskKinematics& kinematics,
-           const ScaledVector& inv_sqrt_weights, SpeedRows& rows) const noexcept;
+           const ScaledVector& inv_sqrt_weights, double share, SpeedRows& rows) const noexcept;
 
  private:
   JointLimits limits_;
-  JointVector lever_m_;  ///< s
 };
 
 }  // namespace tactus
