@@ -80,6 +80,7 @@ JudgedRun judgeRun(const RunSetup& setup) {
     if (cycle >= rest_from) {
       last_readings.add(output.sensed[0].force_N);
       last_forces.add(robot.trueForce_N());
+      run.peak_at_rest_N = std::max(run.peak_at_rest_N, robot.trueForce_N());
     }
     if (run.touch_speed_m_per_s > 0.0) continue;
     const ObstacleContact touch = probe.touch(input.q_measured, t_s);
@@ -109,9 +110,11 @@ double contactStiffness(const ObstacleConfig& obstacle, double robot_stiffness_N
 
 double naturalScale(const RunSetup& setup, const JudgedRun& run) {
   const ForceGains& force = setup.controller.gains.force;
+  // A blow is over before gears and servos give way.
   const double stiffness =
       contactStiffness(setup.plant.obstacles.back(), setup.plant.robot_stiffness_N_per_m);
-  const double unseen_N = stiffness * run.touch_speed_m_per_s * feedbackDelay_s(setup.plant);
+  const double yielding = inSeries(stiffness, setup.arm_stiffness_N_per_m);
+  const double unseen_N = yielding * run.touch_speed_m_per_s * feedbackDelay_s(setup.plant);
   const double blow_N = run.touch_speed_m_per_s * std::sqrt(stiffness * run.touch_mass_kg);
   return force.contact_threshold_N +
          std::max({force.activation_force_N, run.touch_force_N + unseen_N, blow_N});

@@ -15,6 +15,8 @@ struct RunSetup {
   PlantConfig plant;
   double period_s = 0.001;
   double duration_s = 13.0;
+  /// Of what gives way in plant.dynamics, gears and servos; only for naturalScale().
+  double arm_stiffness_N_per_m = kNoLimit;
   /// What the tactile module says instead of what it felt; empty: just that.
   std::function<void(TactileSample& sample)> reading{};
 };
@@ -25,6 +27,7 @@ struct JudgedRun {
   double peak_true_force_N = 0.0;  ///< of the contact itself
   double final_force_N = 0.0;      ///< mean over the last kRest_s
   double restlessness_N = 0.0;     ///< standard deviation of the true force over them
+  double peak_at_rest_N = 0.0;     ///< of the true force, likewise
   double tcp_error_final_m = 0.0;
   /// When the profile was first touched: the speed against it, and F_p of what was already there.
   double touch_speed_m_per_s = 0.0;
