@@ -35,6 +35,11 @@ std::string peakText(const PeakReport& peak) {
                             peak.target_N, peak.target_speed_m_per_s);
 }
 
+std::string movingText(const MovingObstacle& moving) {
+  return fmt::format("obstacles that come or go by {:.2g} mm/s rest at {:.3g} N where m = {:g} N/m",
+                     1e3 * moving.speed_m_per_s, moving.force_N, moving.stiffness_N_per_m);
+}
+
 Json touchJson(const TouchReport& report) {
   Json json = {{"obstacle", report.obstacle},
                {"t_s", report.touch.t_s},
@@ -82,6 +87,7 @@ std::string contactText(const ExpectedContact& report) {
   std::string text;
   for (const TouchReport& touch : report.touches) text += textLine("touch", touchText(touch));
   if (report.peak) text += textLine("peak", peakText(*report.peak));
+  if (report.moving) text += textLine("moving", movingText(*report.moving));
   return text;
 }
 
@@ -100,6 +106,11 @@ void addContact(const ExpectedContact& report, Json& json) {
   for (const TouchReport& touch : report.touches) touches.push_back(touchJson(touch));
   json["touches"] = touches;
   if (report.peak) json["expected_peak"] = peakJson(*report.peak);
+  if (report.moving) {
+    json["moving_obstacle"] = {{"stiffness_N_per_m", report.moving->stiffness_N_per_m},
+                               {"speed_m_per_s", report.moving->speed_m_per_s},
+                               {"rest_force_N", report.moving->force_N}};
+  }
 }
 
 }  // namespace tactus

@@ -101,6 +101,12 @@ PeakReport peakOf(const Scene& scene, const FastestCover& fastest, double stiffe
   return report;
 }
 
+MovingObstacle bearableMotion(const ForceGains& gains, double stiffest_N_per_m) {
+  const double m = std::max(stiffest_N_per_m, gains.min_approach_stiffness_N_per_m);
+  const double limit_N = gains.activation_force_N + gains.contact_threshold_N;
+  return {m, limit_N / (2.0 * gains.time_constant_s * m), 1.5 * limit_N};
+}
+
 std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& contacts,
                                     const std::optional<PeakReport>& peak) {
   std::vector<std::string> warnings;
@@ -138,6 +144,8 @@ ExpectedContact checkContacts(const Scene& scene, double stiffest_N_per_m) {
     report.touches = touchesOf(scene, contacts);
     if (contacts.fastest.speed_m_per_s > 0.0)
       report.peak = peakOf(scene, contacts.fastest, stiffest_N_per_m);
+    if (scene.controller.force_control->variant == Variant::kNullLimit)
+      report.moving = bearableMotion(scene.controller.gains.force, stiffest_N_per_m);
   }
   report.warnings = warningsOf(scene, contacts, report.peak);
   return report;

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 
+#include "support/closed_loop.h"
 #include "support/shipped_scene.h"
 #include "tactus/control/controller.h"
 #include "tactus/sim/simulated_robot.h"
@@ -115,6 +118,40 @@ TEST(TouchCheck, KeepsBelowTheForceOfTheLawAtTheSpeedItNames) {
   const double share = fast.peak->target_speed_m_per_s / fast.peak->fastest.speed_m_per_s;
   const ExpectedContact slow = expectedOf("scenario3_tactus", {{key, std::to_string(0.2 * share)}});
   EXPECT_NEAR(slow.peak->peak_N(), 5.0, 0.75);
+}
+
+/// The force at the end of a scene whose obstacles move all the time, that fast.
+double forceWithMotion(Scene scene, const Vector3& velocity) {
+  constexpr double kSlow_hz = 0.003;  // so that the speed stays within 2 %
+  const Vector3 amplitude = velocity / (2.0 * std::numbers::pi * kSlow_hz);
+  for (ObstacleConfig& obstacle : scene.plant.obstacles) {
+    obstacle.swing = {amplitude.x(), amplitude.y(), kSlow_hz};
+    // At its place when the arm is there.
+    obstacle.x_m -= scene.duration_s * velocity.x();
+    obstacle.y_m -= scene.duration_s * velocity.y();
+  }
+  test::ClosedLoop loop(scene.controller, scene.plant, scene.period_s);
+  while (loop.time_s() < scene.duration_s) loop.step();
+  return loop.robot().trueForce_N();
+}
+
+/// From all sides, against a law that knows the stiffness.
+TEST(TouchCheck, SaysHowFastAnObstacleMayMove) {
+  EXPECT_FALSE(expectedOf("scenario1_null_space").moving);
+  const ExpectedContact expected = expectedOf("scenario3_tactus");
+  ASSERT_TRUE(expected.moving);
+  const MovingObstacle& moving = *expected.moving;
+  EXPECT_NEAR(moving.force_N, 7.5, 1e-12);
+  Scene scene = test::shippedScene("scenario3_tactus");
+  scene.controller.force_control->has_estimator = false;
+  scene.controller.gains.force.assumed_stiffness_N_per_m = moving.stiffness_N_per_m;
+  double largest_N = 0.0;
+  for (int i = 0; i < 16; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / 16.0;
+    const Vector3 velocity = moving.speed_m_per_s * Vector3(std::cos(angle), std::sin(angle), 0.0);
+    largest_N = std::max(largest_N, forceWithMotion(scene, velocity));
+  }
+  EXPECT_NEAR(largest_N, moving.force_N, 0.1 * moving.force_N);
 }
 
 TEST(TouchCheck, WarnsOfObstaclesThatNothingTouches) {

@@ -36,9 +36,18 @@ struct PeakReport {
   double peak_N() const;
 };
 
+/// How fast an obstacle may come or go: at v_o the approach limit lets the force rest off F_act by
+/// T m v_o, m being the stiffness that it counts on.
+struct MovingObstacle {
+  double stiffness_N_per_m;  ///< m
+  double speed_m_per_s;      ///< (F_act + F_th) / (2 T m)
+  double force_N;            ///< at rest then: 1.5 (F_act + F_th)
+};
+
 struct ExpectedContact {
-  std::vector<TouchReport> touches;  ///< only with force control
-  std::optional<PeakReport> peak;    ///< only with force control and covers that move
+  std::vector<TouchReport> touches;      ///< only with force control
+  std::optional<PeakReport> peak;        ///< only with force control and covers that move
+  std::optional<MovingObstacle> moving;  ///< only with the approach limit
   std::vector<std::string> warnings;
 };
 
