@@ -25,10 +25,14 @@ Matrix3 readInertia(const UrdfNode& inertial) {
   const auto entry = [&](const char* name) {
     return inertial.number("inertia", name, kMaxInertia_kgm2, kRequired);
   };
+  // One by one: Eigen's comma initializer asserts when one of them throws.
   Matrix3 I;
-  I << entry("ixx"), entry("ixy"), entry("ixz"), 0.0, entry("iyy"), entry("iyz"), 0.0, 0.0,
-      entry("izz");
-  I.triangularView<Eigen::StrictlyLower>() = I.transpose();
+  I(0, 0) = entry("ixx");
+  I(0, 1) = I(1, 0) = entry("ixy");
+  I(0, 2) = I(2, 0) = entry("ixz");
+  I(1, 1) = entry("iyy");
+  I(1, 2) = I(2, 1) = entry("iyz");
+  I(2, 2) = entry("izz");
   if (!isOfABody(I)) {
     inertial.fail(inertial.child("inertia"), "inertia", "no body has these moments",
                   "principal moments >= 0, none above the sum of the other two");

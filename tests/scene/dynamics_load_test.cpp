@@ -92,6 +92,7 @@ TEST(DynamicsLoad, EndsAsOneLine) {
            {"value=\"2\"", "value=\"-2\"", {"robot.urdf:", "link.link1.inertial.mass.value"}},
            {"ixx=\"0.02\"", "ixx=\"1.02\"", {"robot.urdf:", "no body has these moments"}},
            {"ixx=\"0.02\" ", "", {"robot.urdf:", "inertia.ixx: is missing"}},
+           {"iyy=\"0.03\" ", "", {"robot.urdf:", "inertia.iyy: is missing"}},
            {"ixx=\"0.02\"", "ixx=\"nan\"", {"robot.urdf:", "'nan' is no number"}}}) {
     MassiveFiles files;
     const std::size_t at = files.urdf.find(broken.from);
