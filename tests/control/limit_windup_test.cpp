@@ -80,24 +80,30 @@ WayBack wayBack(ArmAtALimit& arm) {
 constexpr Variant kLaws[] = {Variant::kNullSpace, Variant::kJointSpace, Variant::kTaskSpace,
                              Variant::kNullTask,  Variant::kNullJoint,  Variant::kNullLimit};
 
+/// Returns in how many cycles of the minutes the gate cut.
+int expectSameWayBack(const ControllerConfig& config, double force_N, const char* held_by) {
+  ArmAtALimit minutes(config);
+  minutes.run(force_N, 60.0);
+  const int cut_cycles = minutes.cut_cycles;
+  ArmAtALimit moment(config);
+  moment.state = moment.controller.initialState(minutes.state.q_desired);
+  moment.run(force_N, 0.1);
+  const WayBack after_minutes = wayBack(minutes);
+  const WayBack after_moment = wayBack(moment);
+  std::printf("%d %-12s back %.3f s at %.5f, after a moment %.3f s at %.5f\n",
+              static_cast<int>(config.force_control->variant), held_by, after_minutes.time_s,
+              after_minutes.peak, after_moment.time_s, after_moment.peak);
+  EXPECT_LE(after_minutes.time_s, 1.1 * after_moment.time_s + 0.05);
+  EXPECT_LE(after_minutes.peak, 1.02 * after_moment.peak);
+  return cut_cycles;
+}
+
 TEST(LimitWindup, TheWayBackAfterMinutesIsThatAfterAMoment) {
   for (const Variant variant : kLaws) {
     for (const Gate gate : {Gate::kVelocity, Gate::kPosition}) {
-      SCOPED_TRACE(std::to_string(static_cast<int>(variant)) + kGateNames[static_cast<int>(gate)]);
-      const ControllerConfig config = limitedArm(variant, gate);
-      ArmAtALimit minutes(config);
-      minutes.run(15.0, 60.0);
-      EXPECT_GT(minutes.cut_cycles, 1000);
-      ArmAtALimit moment(config);
-      moment.state = moment.controller.initialState(minutes.state.q_desired);
-      moment.run(15.0, 0.1);
-      const WayBack after_minutes = wayBack(minutes);
-      const WayBack after_moment = wayBack(moment);
-      std::printf("%d %-12s back %.3f s at %.5f, after a moment %.3f s at %.5f\n",
-                  static_cast<int>(variant), kGateNames[static_cast<int>(gate)],
-                  after_minutes.time_s, after_minutes.peak, after_moment.time_s, after_moment.peak);
-      EXPECT_LE(after_minutes.time_s, 1.1 * after_moment.time_s + 0.05);
-      EXPECT_LE(after_minutes.peak, 1.02 * after_moment.peak);
+      const char* name = kGateNames[static_cast<int>(gate)];
+      SCOPED_TRACE(std::to_string(static_cast<int>(variant)) + name);
+      EXPECT_GT(expectSameWayBack(limitedArm(variant, gate), 15.0, name), 1000);
     }
   }
 }
@@ -108,17 +114,7 @@ TEST(LimitWindup, NorIsAnythingRememberedThatRowsOfJointsCut) {
     SCOPED_TRACE(force_N);
     ControllerConfig config = limitedArm(Variant::kNullLimit, Gate::kPosition);
     config.force_control->friction_coefficient = 0.5;
-    ArmAtALimit minutes(config);
-    minutes.run(force_N, 60.0);
-    ArmAtALimit moment(config);
-    moment.state = moment.controller.initialState(minutes.state.q_desired);
-    moment.run(force_N, 0.1);
-    const WayBack after_minutes = wayBack(minutes);
-    const WayBack after_moment = wayBack(moment);
-    std::printf("rows at %4.1f N  back %.3f s at %.5f, after a moment %.3f s at %.5f\n", force_N,
-                after_minutes.time_s, after_minutes.peak, after_moment.time_s, after_moment.peak);
-    EXPECT_LE(after_minutes.time_s, 1.1 * after_moment.time_s + 0.05);
-    EXPECT_LE(after_minutes.peak, 1.02 * after_moment.peak);
+    expectSameWayBack(config, force_N, "rows");
   }
 }
 
