@@ -7,6 +7,7 @@
 #include "tactus/analysis/effective_mass.h"
 #include "tactus/bench/spread.h"
 #include "tactus/control/controller.h"
+#include "tactus/sim/obstacle.h"
 #include "tactus/sim/simulated_robot.h"
 
 namespace tactus {
@@ -104,15 +105,11 @@ double feedbackDelay_s(const PlantConfig& plant) {
          0.5 * plant.modules[0].channels.sample_period_s;
 }
 
-double contactStiffness(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m) {
-  return 1.0 / (1.0 / obstacle.stiffness_N_per_m + 1.0 / robot_stiffness_N_per_m);
-}
-
 double naturalScale(const RunSetup& setup, const JudgedRun& run) {
   const ForceGains& force = setup.controller.gains.force;
-  // A blow is over before gears and servos give way.
+  // Of the obstacle without its foam. A blow is over before gears and servos give way.
   const double stiffness =
-      contactStiffness(setup.plant.obstacles.back(), setup.plant.robot_stiffness_N_per_m);
+      inSeries(setup.plant.obstacles.back().stiffness_N_per_m, setup.plant.robot_stiffness_N_per_m);
   const double yielding = inSeries(stiffness, setup.arm_stiffness_N_per_m);
   const double unseen_N = yielding * run.touch_speed_m_per_s * feedbackDelay_s(setup.plant);
   const double blow_N = run.touch_speed_m_per_s * std::sqrt(stiffness * run.touch_mass_kg);

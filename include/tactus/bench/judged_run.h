@@ -46,9 +46,6 @@ JudgedRun judgeRun(const RunSetup& setup);
 /// age of a sample.
 double feedbackDelay_s(const PlantConfig& plant);
 
-/// Force per way of the obstacle, its foam left out, with the arm behind it.
-double contactStiffness(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m);
-
 /// What no law could avoid: nothing is seen before the filtered force passes F_th, and by then the
 /// arm has gone on for the delay; the blow v sqrt(k m) of an arm with mass; and what is asked for,
 /// F_act. N.
