@@ -173,6 +173,9 @@ void parse(CLI::App& app, Options& options, int argc, char** argv) {
   app.add_flag_callback(
       "--contact", [&options] { options.names.push_back("contact"); },
       "null_limit on contacts that rub: --study contact; SCENE: as for --law");
+  app.add_flag_callback(
+      "--physics", [&options] { options.names.push_back("physics"); },
+      "The simulated arm beside MuJoCo: --study physics; some ten minutes");
   app.add_flag("--quick", options.is_quick, "A look: few repetitions, short sweeps");
   app.add_flag("--json", options.json, "Print all tables as JSON");
   app.add_flag("--count-steps", options.counts_steps)->group("");  // how valgrind runs this

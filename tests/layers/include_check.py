@@ -33,7 +33,7 @@ LAYERS = {
     "cli": ({"daemon", "doctor", "record", "supervisor", "scene", "io", "rt", "analysis", "plant",
              "canopen", "sim", "control", "math"}, {"Eigen", "CLI", "fmt", "nlohmann"}),
     "bench": ({"cli", "record", "supervisor", "scene", "analysis", "sim", "control", "math"},
-              {"Eigen", "CLI", "fmt", "kdl", "nlohmann", "valgrind"}),
+              {"Eigen", "CLI", "fmt", "kdl", "mujoco", "nlohmann", "valgrind"}),
 }
 
 # The standard library is open to every layer but for these: what the cycle runs gets time and input

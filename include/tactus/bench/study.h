@@ -52,5 +52,6 @@ StudyResult studyClosedLoop(const BenchOptions& options);
 StudyResult studyStability(const BenchOptions& options);
 StudyResult studyLaw(const BenchOptions& options);
 StudyResult studyContact(const BenchOptions& options);
+StudyResult studyPhysics(const BenchOptions& options);
 
 }  // namespace tactus

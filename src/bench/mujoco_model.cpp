@@ -1,4 +1,4 @@
-#include "physics/mujoco_model.h"
+#include "tactus/bench/mujoco_model.h"
 
 #include <fmt/format.h>
 

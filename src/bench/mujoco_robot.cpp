@@ -1,4 +1,4 @@
-#include "physics/mujoco_robot.h"
+#include "tactus/bench/mujoco_robot.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

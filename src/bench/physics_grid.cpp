@@ -1,10 +1,8 @@
-#include "physics/grid.h"
-
-#include <fmt/format.h>
+#include "tactus/bench/physics_grid.h"
 
 #include <cmath>
 
-#include "physics/mujoco_robot.h"
+#include "tactus/bench/mujoco_robot.h"
 #include "tactus/scene/scene_loader.h"
 
 namespace tactus::physics {
@@ -30,18 +28,14 @@ ArmDynamicsConfig assumedMasses(const SerialChain& chain, bool is_flexible) {
   return arm;
 }
 
-std::string pathOf(const Case& one) {
-  return std::string(TACTUS_SOURCE_DIR) + "/config/scenes/" + one.scene + ".yaml";
-}
-
 /// With masses of its own, or else assumed ones.
-Scene loadArm(const Case& one) {
+Scene loadArm(const Case& one, const std::string& scenes_folder) {
   const bool is_flexible = one.gears == Gears::kFlexible;
+  const std::string path = scenes_folder + "/" + one.scene + ".yaml";
   if (!one.scene.starts_with("robots/"))
-    return loadScene(pathOf(one),
-                     {{"simulation.arm", is_flexible ? "flexible_gears" : "rigid_gears"}},
+    return loadScene(path, {{"simulation.arm", is_flexible ? "flexible_gears" : "rigid_gears"}},
                      SceneUse::kSimulation);
-  Scene scene = loadScene(pathOf(one), {}, SceneUse::kSimulation);
+  Scene scene = loadScene(path, {}, SceneUse::kSimulation);
   scene.plant.dynamics = assumedMasses(scene.controller.chain, is_flexible);
   if (is_flexible) scene.plant.robot_stiffness_N_per_m = kFlexible_N_per_m;
   return scene;
@@ -53,17 +47,13 @@ double change(double value, double reference) {
 
 }  // namespace
 
-std::string nameOf(const Case& one) {
-  const char* gears = one.gears == Gears::kRigid  ? "rigid"
-                      : one.gears == Gears::kBare ? "bare"
-                                                  : "flexible";
-  const std::string stiffness =
-      one.stiffness_N_per_m > 0.0 ? fmt::format("{:.3g} N/m", one.stiffness_N_per_m) : "its own";
-  return fmt::format("{} | {} | {} | {}", one.scene, stiffness, gears, one.friction_coefficient);
+const char* gearsName(Gears gears) {
+  if (gears == Gears::kRigid) return "rigid";
+  return gears == Gears::kBare ? "bare" : "flexible";
 }
 
-Scene sceneOf(const Case& one) {
-  Scene scene = loadArm(one);
+Scene sceneOf(const Case& one, const std::string& scenes_folder) {
+  Scene scene = loadArm(one, scenes_folder);
   if (one.gears == Gears::kBare) scene.plant.robot_stiffness_N_per_m = kNoLimit;
   if (one.stiffness_N_per_m > 0.0) {
     ObstacleConfig obstacle;
@@ -77,8 +67,8 @@ Scene sceneOf(const Case& one) {
   return scene;
 }
 
-Scene quasiStaticSceneOf(const Case& one) {
-  Scene scene = sceneOf(one);
+Scene quasiStaticSceneOf(const Case& one, const std::string& scenes_folder) {
+  Scene scene = sceneOf(one, scenes_folder);
   scene.plant.dynamics.reset();
   return scene;
 }
@@ -122,9 +112,9 @@ bool Comparison::isChaotic() const {
   return mujoco_half && std::abs(change(mujoco_half->peak_N, mujoco.peak_N)) > kChaotic;
 }
 
-Comparison compare(const Case& one) {
-  const Scene scene = sceneOf(one);
-  Comparison comparison{tryOut(quasiStaticSceneOf(one), Plant::kBuiltIn),
+Comparison compare(const Case& one, const std::string& scenes_folder) {
+  const Scene scene = sceneOf(one, scenes_folder);
+  Comparison comparison{tryOut(quasiStaticSceneOf(one, scenes_folder), Plant::kBuiltIn),
                         tryOut(scene, Plant::kBuiltIn),
                         tryOut(scene, Plant::kBuiltIn, 0.5 * scene.plant.dynamics->step_s),
                         tryOut(scene, Plant::kMujoco),

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "physics/mujoco_robot.h"
 #include "support/random.h"
 #include "support/shipped_scene.h"
+#include "tactus/bench/mujoco_robot.h"
 #include "tactus/sim/simulated_robot.h"
 
 namespace tactus::physics {

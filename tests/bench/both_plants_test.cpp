@@ -1,10 +1,11 @@
 #include <gtest/gtest.h>
 
-#include "physics/grid.h"
+#include "tactus/bench/physics_grid.h"
 
 namespace tactus::physics {
 namespace {
 
+const std::string kScenes = std::string(TACTUS_SOURCE_DIR) + "/config/scenes";
 constexpr double kCoarse_s = 0.00025;  ///< of MuJoCo, for the sake of time
 
 struct Sample {
@@ -12,13 +13,15 @@ struct Sample {
   double duration_s;
 };
 
-void PrintTo(const Sample& sample, std::ostream* stream) { *stream << nameOf(sample.one); }
+void PrintTo(const Sample& sample, std::ostream* stream) {
+  *stream << sample.one.scene << ' ' << gearsName(sample.one.gears);
+}
 
 class ClosedLoopOfBothPlants : public testing::TestWithParam<Sample> {};
 
-/// A few of what tools/physics compares.
+/// A few of what `tactus bench --physics` compares.
 TEST_P(ClosedLoopOfBothPlants, PeaksAndRestsAlike) {
-  Scene scene = sceneOf(GetParam().one);
+  Scene scene = sceneOf(GetParam().one, kScenes);
   scene.duration_s = GetParam().duration_s;
   const Trial expected = tryOut(scene, Plant::kMujoco, kCoarse_s);
   const Trial trial = tryOut(scene, Plant::kBuiltIn);
@@ -42,8 +45,8 @@ INSTANTIATE_TEST_SUITE_P(
 /// The same comparison tells an arm without mass from one with mass.
 TEST(ClosedLoopOfBothPlants, AreNotAlikeWithoutMass) {
   const Case one{"scenario3_tactus", Gears::kBare, 1e6, 0.0};
-  Scene scene = sceneOf(one);
-  Scene quasi_static = quasiStaticSceneOf(one);
+  Scene scene = sceneOf(one, kScenes);
+  Scene quasi_static = quasiStaticSceneOf(one, kScenes);
   scene.duration_s = quasi_static.duration_s = 6.5;
   EXPECT_LT(tryOut(scene, Plant::kMujoco, kCoarse_s).peak_N,
             0.8 * tryOut(quasi_static, Plant::kBuiltIn).peak_N);

@@ -1,4 +1,4 @@
-#include "physics/trial.h"
+#include "tactus/bench/physics_trial.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "physics/mujoco_robot.h"
+#include "tactus/bench/mujoco_robot.h"
 #include "tactus/control/controller.h"
 #include "tactus/sim/simulated_robot.h"
 

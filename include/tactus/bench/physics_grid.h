@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "physics/trial.h"
+#include "tactus/bench/physics_trial.h"
 
 namespace tactus::physics {
 
@@ -20,10 +20,11 @@ struct Case {
   double friction_coefficient = 0.0;
 };
 
-std::string nameOf(const Case& one);
-Scene sceneOf(const Case& one);
+const char* gearsName(Gears gears);
+/// scenes_folder: config/scenes, from here or as installed.
+Scene sceneOf(const Case& one, const std::string& scenes_folder);
 /// The same with an arm that follows its drives like a line.
-Scene quasiStaticSceneOf(const Case& one);
+Scene quasiStaticSceneOf(const Case& one, const std::string& scenes_folder);
 
 /// The paper's scenes.
 std::vector<Case> paperCases();
@@ -43,6 +44,6 @@ struct Comparison {
   bool isChaotic() const;
 };
 
-Comparison compare(const Case& one);
+Comparison compare(const Case& one, const std::string& scenes_folder);
 
 }  // namespace tactus::physics

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "physics/mujoco_robot.h"
 #include "support/shipped_scene.h"
+#include "tactus/bench/mujoco_robot.h"
 #include "tactus/sim/simulated_robot.h"
 
 /// The forearm is driven against a post without anything that gives way.

@@ -1,12 +1,12 @@
-#include "physics/mujoco_model.h"
+#include "tactus/bench/mujoco_model.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "physics/mujoco_robot.h"
 #include "support/random_robot.h"
 #include "support/shipped_scene.h"
+#include "tactus/bench/mujoco_robot.h"
 
 namespace tactus::physics {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "physics/mujoco_model.h"
+#include "tactus/bench/mujoco_model.h"
 #include "tactus/control/controller_config.h"
 #include "tactus/control/robot.h"
 #include "tactus/sim/obstacle.h"
