@@ -27,9 +27,8 @@ double stiffestSlope(const ObstacleConfig& obstacle, double robot_stiffness_N_pe
 
 /// As light as the step stands.
 MujocoPost postOf(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m, double step_s) {
-  if (obstacle.swing.frequency_hz > 0.0 || obstacle.appears_s > 0.0 ||
-      obstacle.vanishes_s != kNoLimit)
-    throw std::invalid_argument("obstacles have to stand still");
+  if (obstacle.appears_s > 0.0 || obstacle.vanishes_s != kNoLimit)
+    throw std::invalid_argument("obstacles have to be there all the time");
   const double mass_kg =
       stiffestSlope(obstacle, robot_stiffness_N_per_m) * std::pow(step_s / kPostPhase_rad, 2);
   return {obstacle.x_m, obstacle.y_m, mass_kg, obstacle.friction_coefficient};
@@ -103,7 +102,7 @@ void MujocoRobot::addPosts(const ControllerConfig& robot, const PlantConfig& pla
     const double stiffest_N_per_m = stiffestSlope(obstacle, plant.robot_stiffness_N_per_m);
     posts_.push_back({model_->body_geomadr[body], model_->body_dofadr[body],
                       ContactSpring(obstacle, others_N_per_m),
-                      shearStiffness(obstacle, plant.robot_stiffness_N_per_m),
+                      shearStiffness(obstacle, plant.robot_stiffness_N_per_m), obstacle.swing,
                       2.0 * kPostDamping * std::sqrt(stiffest_N_per_m * model_->body_mass[body])});
     ++body;
   }
@@ -156,11 +155,17 @@ void MujocoRobot::step(const JointVector& velocity_setpoint) noexcept {
   mj_step(model_.get(), data_.get());
 }
 
+/// Where a post's springs hold it by now, from its place.
+Vector3 MujocoRobot::homeOf(const Post& post) const noexcept {
+  const double turns = post.swing.frequency_hz * static_cast<double>(step_) * model_->opt.timestep;
+  return std::sin(2.0 * std::numbers::pi * turns) * Vector3(post.swing.x_m, post.swing.y_m, 0.0);
+}
+
 /// All joints have one coordinate, so that they are numbered in qpos as in qvel. Along the normal
 /// by the obstacle's curve, across it by its shear stiffness.
 void MujocoRobot::pushPostsBack() noexcept {
   for (const Post& post : posts_) {
-    const Vector3 way = Eigen::Map<const Vector3>(data_->qpos + post.dof);
+    const Vector3 way = Eigen::Map<const Vector3>(data_->qpos + post.dof) - homeOf(post);
     Vector3 normal = post.normal_Base;
     if (normal.isZero()) normal = Vector3(way.x(), way.y(), 0.0).normalized();
     const double in_m = way.dot(normal);

@@ -24,8 +24,7 @@ inline constexpr double kMujocoStep_s = 0.000125;
 class MujocoRobot final : public Robot {
  public:
   /// step_s: of MuJoCo's integration; filter periods and period_s are multiples of it. Throws
-  /// std::invalid_argument for what it cannot do: an arm without mass, obstacles that move, come or
-  /// go.
+  /// std::invalid_argument for what it cannot do: an arm without mass, obstacles that come or go.
   MujocoRobot(const ControllerConfig& robot, const PlantConfig& plant, double period_s,
               double step_s = kMujocoStep_s);
 
@@ -57,6 +56,7 @@ class MujocoRobot final : public Robot {
     int geom, dof;
     ContactSpring spring;
     double shear_stiffness_N_per_m;
+    Swing swing;
     double damping_N_s_per_m;
     Vector3 normal_Base = Vector3::Zero();  ///< into the post; zero while nothing touches it
   };
@@ -65,6 +65,7 @@ class MujocoRobot final : public Robot {
   void addModules(const ControllerConfig& robot, const PlantConfig& plant);
   void tuneServos(const ArmDynamicsConfig& arm);
   void step(const JointVector& velocity_setpoint) noexcept;
+  Vector3 homeOf(const Post& post) const noexcept;
   void pushPostsBack() noexcept;
   void feelContacts() noexcept;
   Pose inBase(const AttachedFrame& frame) const noexcept;
