@@ -27,4 +27,12 @@ void Controller::place(const JointVector& q, const Gains& gains,
   if (state.is_leaning) state.way_out_added -= state.way_out_before;
 }
 
+void Controller::goOn(const Gains& gains, ControllerState& state) const noexcept {
+  state.retreat.is_under_way = false;
+  if (!state.retreat.has_moved) return;
+  state.retreat.has_moved = false;
+  restart(gains, state);
+  place(JointVector(state.q_desired), gains, state);
+}
+
 }  // namespace tactus
