@@ -20,6 +20,7 @@ void Controller::place(const JointVector& q, const Gains& gains,
   state.q_desired = q.cwiseMax(config_.limits.lower).cwiseMin(config_.limits.upper);
   state.velocity_before = JointVector::Zero(config_.chain.size());
   state.fault = Fault::kNone;
+  state.retreat.velocity_at_fault = state.velocity_before;
   if (!joint_limit_avoidance_) return;
   state.is_leaning = contact_controller_ &&
                      state.modules.front().contact.force_N > gains.force.transition.release_force_N;

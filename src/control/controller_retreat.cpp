@@ -7,10 +7,10 @@
 namespace tactus {
 namespace {
 
-constexpr double kFilterOrder = 3.0;
 /// Between two samples, and until one that is there is read.
 constexpr double kSampleTime_s = 0.005;
 constexpr double kMaxWayBack_s = 0.25;
+constexpr double kStandstill = 1e-6;  ///< m/s or rad/s
 constexpr double kEstimateMargin = 2.0;
 constexpr double kAssumptionMargin = 8.0;
 
@@ -58,7 +58,7 @@ void Controller::beginRetreat(const Gains& gains, ControllerState& state) const 
   takePush(gains, state);
   if (state.retreat.has_push) return;
   // Where the last good sample felt no contact there is none; since then there may be.
-  state.retreat.is_over = velocity.isZero(0.0);
+  state.retreat.is_over = velocity.isZero(kStandstill);
   double longest_s = 0.0;
   for (int i = 0; i < modules(); ++i) longest_s = std::max(longest_s, untold_s(i, state));
   startWayBack(std::min(kMaxWayBack_s, longest_s), state.retreat);

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "support/controller_run.h"
 #include "support/retreat_run.h"
 
 /// When an arm retreats, when it does not, who ends it, and how it goes on.
@@ -138,6 +139,35 @@ TEST(Retreat, GoingOnIsGentleAndLeadsBackToThePath) {
   arm.run(12.0);
   EXPECT_EQ(arm.mode(), Mode::kRunning);
   EXPECT_LE(arm.output().error.norm(), 1e-3);
+}
+
+/// As in a log that nobody wrote: modes in any order, readings of any kind.
+TEST(Retreat, NoOrderOfModesTakesTheArmBeyondItsLimits) {
+  Random random(7000);
+  for (const Variant variant : test::kAllVariants) {
+    const ControllerConfig config = test::fullController(random, random.integer(3, 9), variant);
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    test::RandomTouches touches(random);
+    Mode mode = Mode::kRetreating, before = Mode::kBoot;
+    for (int cycle = 0; cycle < 3000; ++cycle) {
+      RobotInput input = touches.next(state.q_desired);
+      const double kinds[] = {0.0, 90.0, 150.0, 1e200, std::numeric_limits<double>::quiet_NaN()};
+      if (random.chance(0.3)) input.tactile[0].force_y_N += kinds[random.index(5)];
+      applyMode(controller, mode, before, input, config.gains, state);
+      const JointVector velocity_before = state.velocity_before;
+      controller.update(input, config.gains, 1e-3 * cycle, 1e-3, state, output);
+      ASSERT_EQ(output.velocity.size(), config.chain.size());
+      const JointVector change = (output.velocity - velocity_before).cwiseAbs();
+      ASSERT_LE((change - 1e-3 * config.limits.max_acceleration).maxCoeff(), 1e-9) << cycle;
+      ASSERT_LE((output.velocity.cwiseAbs() - config.limits.max_velocity).maxCoeff(), 1e-9);
+      ASSERT_LE((state.q_desired - config.limits.upper).maxCoeff(), 0.0);
+      ASSERT_GE((state.q_desired - config.limits.lower).minCoeff(), 0.0);
+      before = mode;
+      if (random.chance(0.02)) mode = static_cast<Mode>(random.index(kModeCount));
+    }
+  }
 }
 
 TEST(Retreat, IsReplayedToTheBit) {
