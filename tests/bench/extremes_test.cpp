@@ -115,7 +115,7 @@ TEST(Extremes, WatchEveryNumberOfTheState) {
   });
   EXPECT_EQ(count, 9 + 9 + 2 * kMaxJoints + 3 + 1 + 5 + 5 + 1 + 4 + 5 + 5 + 5 +
                        (26 + 7 * kMaxJoints + 5 + 2) + 2 + (1 + 2 * 3 + 4 * 4) + 1 +
-                       (5 + 5 + 3 + 9 + 2 + kMaxJoints + 7));
+                       (5 + 5 + 3 + 2 + kMaxJoints + 7));
   EXPECT_EQ(found[7.0], "law.It");
   EXPECT_EQ(found[8.0], "joint_space.direction");
 }
