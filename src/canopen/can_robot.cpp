@@ -64,7 +64,9 @@ void CanRobot::read(RobotInput& input) noexcept {
   }
   for (std::size_t i = 0; i < tactile_modules_.size(); ++i) {
     tactile_modules_[i].tick();
-    input.tactile[i] = tactile_modules_[i].sample();
+    // One that the module says is none is not worth more than silence.
+    if (tactile_modules_[i].fault() == Fault::kNone)
+      input.tactile[i] = tactile_modules_[i].sample();
   }
 }
 

@@ -16,6 +16,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// After a fault, until sensors tell what is left of the force.
+constexpr double kRest_s = 0.3;
 constexpr long long kCyclesBetweenReports = 8192;
 /// Longer runs pay for their memory as they go.
 constexpr long long kMaxReservedCycles = 1'000'000;
@@ -43,13 +45,24 @@ void judgeChannels(const SimulatedRobot& robot, double t_s, FaultReport& end) {
   }
 }
 
-/// What a controller finds in its own input it answers itself; any other fault is the mode's.
-Mode modeAfter(Fault fault) {
-  return fault == Fault::kTactileSaturated ? Mode::kHolding : Mode::kRunning;
+/// As the daemon's after the next cycle; but a command that is no number the controller answers
+/// itself.
+Mode modeAfter(Mode before, Fault fault, const RetreatState& retreat) {
+  if (faultRow(fault).reaction != Reaction::kRetreat) return Mode::kRunning;
+  const bool is_left = before == Mode::kRetreating && retreat.is_over;
+  return is_left || before == Mode::kHolding ? Mode::kHolding : Mode::kRetreating;
 }
 
-bool isOver(const FaultReport& end, const ControllerOutput& output) {
-  return end.fault != Fault::kNone && output.velocity.isZero(0.0);
+bool isAtRest(Mode mode, const FaultReport& end, const ControllerOutput& output) {
+  return end.fault != Fault::kNone && mode != Mode::kRetreating && output.velocity.isZero(0.0);
+}
+
+/// The newest that the module does not call none, as the daemon's receivers take them.
+void read(SimulatedRobot& robot, RobotInput& input) {
+  const auto before = input.tactile;
+  robot.read(input);
+  for (int i = 0; i < robot.modules(); ++i)
+    if (robot.module(i).isSaturated()) input.tactile[i] = before[i];
 }
 
 }  // namespace
@@ -66,28 +79,35 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
   ControllerOutput output;
   CycleRecord record;
   FaultReport end;
+  Mode mode = Mode::kRunning;
+  const auto cycles_at_rest = std::llround(kRest_s / scene.period_s);
+  long long task_cycle = 0, rest = 0;
 
   const Clock::time_point start = Clock::now();
   long long cycle = 0;
-  for (; cycle < cycles && !isOver(end, output); ++cycle) {
+  for (; cycle < cycles && rest < cycles_at_rest; ++cycle) {
     const double t_s = static_cast<double>(cycle) * scene.period_s;
-    robot.read(input);
-    const Mode mode_before = modeAfter(end.fault);
+    const double task_time_s = static_cast<double>(task_cycle) * scene.period_s;
+    read(robot, input);
     judgeChannels(robot, t_s, end);
-    const Mode mode = modeAfter(end.fault);
+    const Mode mode_before = mode;
+    mode = modeAfter(mode_before, end.fault, state.retreat);
     applyMode(controller, mode, mode_before, input, scene.controller.gains, state);
     const Clock::time_point before = Clock::now();
-    controller.update(input, scene.controller.gains, t_s, scene.period_s, state, output);
+    controller.update(input, scene.controller.gains, task_time_s, scene.period_s, state, output);
     record.step_ns = nanoseconds(Clock::now() - before);
     const Vector3 error = toolError(scene.controller.task, output.w_d, robot.toolPosition());
     noteFault(output, t_s, end);
     robot.write(output.velocity);
     fillRecord(t_s, input, scene.controller.gains, output, error, record);
     rotation_error.fill(record);
+    record.task_time_s = task_time_s;
     record.mode = static_cast<std::uint64_t>(mode);
     if (end.fault != Fault::kNone) record.fault = static_cast<std::uint64_t>(end.fault);
     sink(record);
     summary.add(record);
+    task_cycle += mode == Mode::kRunning ? 1 : 0;
+    rest = isAtRest(mode, end, output) ? rest + 1 : 0;
   }
   const double wall_s = 1e-9 * static_cast<double>(nanoseconds(Clock::now() - start));
   const double simulated_s = static_cast<double>(cycle) * scene.period_s;

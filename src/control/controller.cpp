@@ -47,7 +47,8 @@ Controller::Controller(const ControllerConfig& config)
       trajectory_(config.task.trajectory, tipPose(config.chain, config.q_start)),
       inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
       has_rotation_(config.task.hasRotation()),
-      limiter_(config.limits) {
+      limiter_(config.limits),
+      limit_rows_(config.limits) {
   if (config.has_joint_limit_avoidance)
     joint_limit_avoidance_.emplace(config.limits, inv_sqrt_weights_);
   if (std::ranges::any_of(config.tactile_modules,
@@ -138,6 +139,11 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
   output.velocity = motion.v_scaled.head(config_.chain.size());
+  if (!mayMove(state)) {
+    output.velocity.setZero();
+    if (state.retreat.is_under_way)
+      leaveContact(gains, kinematics, period_s, state, output.velocity);
+  }
   limit(motion, period_s, state, output);
 }
 
@@ -151,7 +157,6 @@ void Controller::coast(int missed_cycles, double period_s, ControllerState& stat
 
 void Controller::limit(const Motion& motion, double period_s, ControllerState& state,
                        ControllerOutput& output) const noexcept {
-  if (!mayMove(state)) output.velocity.setZero();
   state.contact.cut_m_per_s = 0.0;
   if (!limiter_.admits(state.q_desired, state.velocity_before, period_s, output.velocity))
     cut(motion, period_s, state, output);
@@ -191,7 +196,10 @@ void Controller::passTime(double duration_s, ControllerState& state) const noexc
     state.q_desired[i] = std::clamp(q, config_.limits.lower[i], config_.limits.upper[i]);
   }
   // Else the task's clock, of which waited_s is taken, stands still itself.
-  if (state.is_stopping) return;
+  if (state.is_stopping) {
+    if (state.retreat.is_under_way) goAway(state.velocity_before, duration_s, state.retreat);
+    return;
+  }
   state.waited_s += (1.0 - state.progress) * duration_s;
   state.return_share = std::min(1.0, state.return_share + duration_s / kReturnRise_s);
 }

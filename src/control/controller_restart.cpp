@@ -20,11 +20,20 @@ void Controller::place(const JointVector& q, const Gains& gains,
   state.q_desired = q.cwiseMax(config_.limits.lower).cwiseMin(config_.limits.upper);
   state.velocity_before = JointVector::Zero(config_.chain.size());
   state.fault = Fault::kNone;
+  state.retreat.velocity_at_fault = state.velocity_before;
   if (!joint_limit_avoidance_) return;
   state.is_leaning = contact_controller_ &&
                      state.modules.front().contact.force_N > gains.force.transition.release_force_N;
   state.way_out_added = -limitCost(gains, state).gradient;
   if (state.is_leaning) state.way_out_added -= state.way_out_before;
+}
+
+void Controller::goOn(const Gains& gains, ControllerState& state) const noexcept {
+  state.retreat.is_under_way = false;
+  if (!state.retreat.has_moved) return;
+  state.retreat.has_moved = false;
+  restart(gains, state);
+  place(JointVector(state.q_desired), gains, state);
 }
 
 }  // namespace tactus

@@ -33,6 +33,7 @@ void Controller::sense(const RobotInput& input, double period_s, ControllerState
     const Fault fault = read(i, input, period_s, reading);
     if (state.fault == Fault::kNone && fault != Fault::kNone) {
       state.fault = fault;
+      if (!state.is_stopping) state.retreat.velocity_at_fault = state.velocity_before;
       output.fault_detail = reading.detail;
       output.fault_detail.module = i;
     }

@@ -6,6 +6,9 @@
 namespace tactus {
 namespace {
 
+/// Beyond what any arm or obstacle bears, and far below where a square overflows.
+constexpr double kMaxBelievable_N = 1e6;
+
 /// |F|, N; not finite if any reading is.
 double judgedForce_N(const TactileSample& sample) noexcept {
   const bool is_finite = std::isfinite(sample.moment_y_Nm) && std::isfinite(sample.moment_z_Nm);
@@ -34,6 +37,8 @@ Fault readSample(const TactileModuleConfig& module, const TactileSample& sample,
     reading.contact.interval_s = interval_s;
   } else {
     reading.detail = {judgedForce_N(sample), module.max_force_N, "N"};
+    reading.has_excess = reading.detail.value < kMaxBelievable_N;
+    if (reading.has_excess) locateContact(sample, module.length_m, reading.excess);
   }
   return reading.fault;
 }

@@ -8,7 +8,7 @@ namespace {
 /// Drives answer and are configured, the module is tared.
 bool isUp(Mode mode) noexcept {
   return mode == Mode::kReady || mode == Mode::kEnabling || mode == Mode::kRunning ||
-         mode == Mode::kHolding;
+         mode == Mode::kRetreating || mode == Mode::kHolding;
 }
 
 }  // namespace

@@ -12,8 +12,13 @@ void applyMode(const Controller& controller, Mode mode, Mode before, const Robot
   // Where drives stop by themselves, the arm is where they say.
   if (!isCommanding(mode) || !isCommanding(before))
     controller.place(input.q_measured, gains, state);
-  // While holding, faults come and go: the mode remembers them.
-  if (mode == Mode::kHolding || before == Mode::kHolding) state.fault = Fault::kNone;
+  if (mode == Mode::kRetreating && before != Mode::kRetreating)
+    controller.beginRetreat(gains, state);
+  state.retreat.is_under_way = mode == Mode::kRetreating;
+  if (mode == Mode::kRunning && before != Mode::kRunning) controller.goOn(gains, state);
+  // While it retreats or holds, faults come and go: the mode remembers them.
+  const auto isStill = [](Mode m) { return m == Mode::kRetreating || m == Mode::kHolding; };
+  if (isStill(mode) || isStill(before)) state.fault = Fault::kNone;
   state.is_stopping = mode != Mode::kRunning;
 }
 

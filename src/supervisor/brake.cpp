@@ -12,6 +12,7 @@ bool mayBeOpen(const BrakeConfig& config, const ModeState& mode, const BrakeInpu
     case Mode::kEnabling:
       return input.are_enabled;
     case Mode::kRunning:
+    case Mode::kRetreating:
     case Mode::kHolding:
       return true;
     case Mode::kStopping:

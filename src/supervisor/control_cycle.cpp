@@ -40,6 +40,7 @@ ModeConfig modeConfig(const JointLimits& limits, const HardwareConfig& hardware,
   config.brake_cycles = cyclesCovering(brakeTime_s(hardware), period_s);
   config.boot_cycles = cyclesCovering(boot_s, period_s);
   config.enabling_cycles = cyclesCovering(kSwitchingTime_s, period_s) + config.brake_cycles;
+  config.retreating_cycles = cyclesCovering(kMaxRetreat_s, period_s);
   // Drives that do not switch off are cut off before this time is over.
   const double stopping_s = rampTime_s(limits) + hardware.canopen.stop_deadline_s;
   config.stopping_cycles = config.enabling_cycles + cyclesCovering(stopping_s, period_s);
@@ -168,6 +169,7 @@ ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept
   mode.are_enabled = drives.are_enabled;
   mode.are_disabled = drives.are_disabled;
   mode.is_at_rest = output_.velocity.isZero(0.0);
+  mode.is_retreat_over = state_.retreat.is_over;
   mode.missed_cycles = std::max(0, input.missed_cycles);
   return mode;
 }
@@ -209,6 +211,7 @@ DriveGoal ControlCycle::driveGoal() const noexcept {
       return DriveGoal::kConfigure;
     case Mode::kEnabling:
     case Mode::kRunning:
+    case Mode::kRetreating:
     case Mode::kHolding:
       return DriveGoal::kEnabled;
     case Mode::kStopping:

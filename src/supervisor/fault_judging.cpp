@@ -36,7 +36,8 @@ Fault ControlCycle::judge(const CycleInput& input) noexcept {
 /// Of the last cycle. At rest nothing starts on a reading that would stop it.
 Fault ControlCycle::judgeController() noexcept {
   if (mode_.mode == Mode::kBoot) return Fault::kNone;
-  if (mode_.mode == Mode::kRunning || mode_.mode == Mode::kHolding) {
+  if (mode_.mode == Mode::kRunning || mode_.mode == Mode::kRetreating ||
+      mode_.mode == Mode::kHolding) {
     if (output_.fault == Fault::kNone) return Fault::kNone;
     judged_.detail = output_.fault_detail;
     judged_.joint = judged_.detail.joint;

@@ -17,9 +17,13 @@ constexpr std::array<ModeTransition, kModeTransitionCount> kTransitions = {{
     {kEnabling, kRunning, "drives follow, brakes open"},
     {kEnabling, kStopping, "stop requested, enable line off, or a fault that ramps"},
     {kEnabling, kFault, "fault, or not switched on in time"},
-    {kRunning, kHolding, "enable line off, or a fault that holds"},
+    {kRunning, kRetreating, "a fault that retreats"},
+    {kRunning, kHolding, "enable line off"},
     {kRunning, kStopping, "stop requested, or a fault that ramps"},
     {kRunning, kFault, "a fault that stops at once"},
+    {kRetreating, kHolding, "out of the contact, enable line off, or time over"},
+    {kRetreating, kStopping, "stop requested, or a fault that ramps"},
+    {kRetreating, kFault, "a fault that stops at once"},
     {kHolding, kRunning, "enable line off and on, cause gone"},
     {kHolding, kStopping, "stop requested, a fault that ramps, or a fault and no enable line"},
     {kHolding, kFault, "a fault that stops at once"},
@@ -82,7 +86,15 @@ void enabling(const ModeConfig& config, const ModeInput& input, ModeState& state
 void running(const ModeInput& input, ModeState& state) noexcept {
   if (state.reaction >= Reaction::kQuickStop) return enter(state, kFault);
   if (input.stop_requested || state.reaction == Reaction::kRamp) return enter(state, kStopping);
-  if (!input.enable || state.reaction == Reaction::kHold) enter(state, kHolding);
+  if (!input.enable) return enter(state, kHolding);
+  if (state.reaction == Reaction::kRetreat) enter(state, kRetreating);
+}
+
+void retreating(const ModeConfig& config, const ModeInput& input, ModeState& state) noexcept {
+  if (state.reaction >= Reaction::kQuickStop) return enter(state, kFault);
+  if (input.stop_requested || state.reaction == Reaction::kRamp) return enter(state, kStopping);
+  const bool is_over = input.is_retreat_over || state.cycles_in_mode > config.retreating_cycles;
+  if (!input.enable || is_over) enter(state, kHolding);
 }
 
 void holding(const ModeInput& input, ModeState& state) noexcept {
@@ -116,12 +128,12 @@ void fault(const ModeConfig& config, const ModeInput& input, ModeState& state) n
 
 const char* modeName(Mode mode) noexcept {
   static constexpr std::array<const char*, kModeCount> kNames = {
-      "boot", "ready", "enabling", "running", "holding", "stopping", "fault", "off"};
+      "boot", "ready", "enabling", "running", "holding", "stopping", "fault", "off", "retreating"};
   return kNames[static_cast<std::size_t>(mode)];
 }
 
 bool isCommanding(Mode mode) noexcept {
-  return mode == kRunning || mode == kHolding || mode == kStopping;
+  return mode == kRunning || mode == kRetreating || mode == kHolding || mode == kStopping;
 }
 
 const std::array<ModeTransition, kModeTransitionCount>& modeTransitions() noexcept {
@@ -136,7 +148,7 @@ bool isLegal(Mode from, Mode to) noexcept {
 void updateMode(const ModeConfig& config, const ModeInput& input, ModeState& state) noexcept {
   note(state, input.fault);
   // Stops have deadlines of time; all else waits for what is heard in cycles that are there.
-  const bool is_stop = state.mode == kStopping || state.mode == kFault;
+  const bool is_stop = state.mode == kRetreating || state.mode == kStopping || state.mode == kFault;
   const long long cycles = 1LL + (is_stop ? input.missed_cycles : 0) + state.cycles_in_mode;
   state.cycles_in_mode = static_cast<int>(std::min<long long>(cycles, kMaxCyclesInMode));
   switch (state.mode) {
@@ -148,6 +160,8 @@ void updateMode(const ModeConfig& config, const ModeInput& input, ModeState& sta
       return enabling(config, input, state);
     case kRunning:
       return running(input, state);
+    case kRetreating:
+      return retreating(config, input, state);
     case kHolding:
       return holding(input, state);
     case kStopping:

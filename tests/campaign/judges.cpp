@@ -11,6 +11,7 @@ namespace {
 using enum Mode;
 
 constexpr int kRampMargin_cycles = 5;
+constexpr int kRetreat_ms = 1502;
 constexpr int kBrakeDeadline_ms = 500;
 constexpr int kRest_ms = 1000;
 constexpr double kRestVelocity = 1e-3;
@@ -67,7 +68,11 @@ void LimitsJudge::look(const Look& look) {
 
 void StopJudge::look(const Look& look) {
   const Observation& now = look.now;
-  if (now.mode == kRunning) return;
+  retreat_ms = now.mode == kRetreating && !look.entered(kRetreating)
+                   ? retreat_ms + now.t_ms - look.before.t_ms
+                   : 0;
+  if (retreat_ms > kRetreat_ms) look.complain("stop", "a retreat without end");
+  if (now.mode == kRunning || now.mode == kRetreating) return;
   const bool is_moving = !now.setpoint.isZero(0.0);
   const bool may_ramp = now.mode == kHolding || now.mode == kStopping;
   if (!may_ramp && is_moving)
@@ -99,7 +104,8 @@ void EnableJudge::look(const Look& look) {
       look.complain("enable",
                     fmt::format("{} without off and on after the cause", modeName(now.mode)));
   }
-  const bool is_stop = look.entered(kFault) || look.entered(kHolding) || look.entered(kStopping);
+  const bool is_stop = look.entered(kFault) || look.entered(kRetreating) ||
+                       look.entered(kHolding) || look.entered(kStopping);
   const bool is_new_fault = now.fault != Fault::kNone && now.fault != look.before.fault;
   if (is_stop || is_new_fault) last_stop_ms = now.t_ms;
   if (now.has_cause) last_cause_ms = now.t_ms;
@@ -144,9 +150,9 @@ void RestJudge::look(const Look& look) {
   if (torque_ms > kTorque_ms) look.complain("rest", "a drive has torque in ready");
   if (off_ms > kRest_ms && now.has_torque)
     look.complain("rest", "a drive has torque after the end");
-  if (is_anew) stopped_ms = 0;
+  if (is_anew || now.mode == kRetreating) stopped_ms = 0;
   stopped_ms += step_ms;
-  if (now.mode == kRunning) return;
+  if (now.mode == kRunning || now.mode == kRetreating) return;
   if (stopped_ms <= kSettle_ms || position.size() == 0) position = now.position;
   const JointVector way = now.position - position;
   const double braking = 0.5 * peak.cwiseProduct(stop_s).maxCoeff();
@@ -178,7 +184,7 @@ void NameJudge::look(const Look& look) {
     look.complain("name", "not in the table of modes: " + change);
   const bool has_name = now.fault != Fault::kNone;
   const bool is_stop = (look.entered(kHolding) || look.entered(kStopping)) ||
-                       (look.entered(kFault) || look.entered(kOff));
+                       (look.entered(kFault) || look.entered(kOff)) || look.entered(kRetreating);
   const bool may_be_unnamed = now.is_stop_requested || (!now.enable && now.mode != kFault);
   if (is_stop && !has_name && !may_be_unnamed) look.complain("name", "no reason: " + change);
   const bool is_cleared = (before.mode == kFault && now.mode == kBoot) ||

@@ -43,8 +43,10 @@ struct LimitsJudge {
   void look(const Look& look);
 };
 
-/// Setpoints are zero where nothing may move, and after the ramp of a hold or an end.
+/// Setpoints are zero where nothing may move, and after the ramp of a hold or an end; a retreat has
+/// one.
 struct StopJudge {
+  int retreat_ms = 0;
   int cycles = 0, allowed = 0;
   void look(const Look& look);
 };

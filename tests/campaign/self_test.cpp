@@ -126,6 +126,7 @@ std::vector<Harm> harms() {
       {"stop", "setpoint in enabling", kOpens, [](Observation& o, int) { o.setpoint[2] = 1e-6; }},
       {"stop", "setpoint after the ramp of holding", kHold,
        [](Observation& o, int) { o.setpoint[2] = 1e-6; }},
+      {"stop", "a retreat without end", kRun, always([](Observation& o) { o.mode = kRetreating; })},
       {"stop", "setpoint after the ramp of stopping", kEnds,
        [](Observation& o, int) { o.setpoint[2] = 1e-6; }},
       {"enable", "setpoint while the enable line is off", kHold,

@@ -46,6 +46,7 @@ class Expected:
 QUICK_STOP_LASTS = 130
 # The setpoint is zero at once; drives lag behind it, and the brake takes switching_s, 0.1 s, to hold.
 RAMP_LASTS = 150
+RETREAT_LASTS = 600
 DEADLINE = 500  # can.stop_deadline_s
 MOVES_ON = 100  # two windows in which a drive has to slow down
 EXPECTED = {
@@ -67,7 +68,8 @@ EXPECTED = {
                         lost=("can2",)),
     "drive_fault": Expected("fault", "drive_fault", "quick stop", 2, 2, QUICK_STOP_LASTS,
                             QUICK_STOP_LASTS, faulty=(("can0", 2),)),
-    "tactile_stale": Expected("holding", "tactile_stale", "hold", 26),  # max_sample_age_s: 20 ms
+    # max_sample_age_s: 20 ms; then the way out, without readings: 0.1 m at most and at 0.25 m/s.
+    "tactile_stale": Expected("retreating", "tactile_stale", "retreat", 26 + RETREAT_LASTS),
     # Sixteen attempts without acknowledgement, and the controller is error-passive.
     "power_cut": Expected("fault", "bus_unacknowledged", "quick stop", 5, 5, QUICK_STOP_LASTS,
                           QUICK_STOP_LASTS, lost=("can1",)),

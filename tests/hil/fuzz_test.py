@@ -16,7 +16,7 @@ from machine import REPOSITORY, Build, summary
 # The robot's limits, which are those of its URDF and robot_with_lines.yaml.
 MAX_SPEED, MAX_ACCELERATION, PERIOD_S = 5.0, 200.0, 0.001  # m or rad, and s
 ROUNDING = 2  # counts per second
-MODE = re.compile(r"tactusd: (boot|ready|enabling|running|holding|stopping|fault|off)(?:: (\w+).*)?")
+MODE = re.compile(r"tactusd: (boot|ready|enabling|running|retreating|holding|stopping|fault|off)(?:: (\w+).*)?")
 
 
 class Fuzz(unittest.TestCase):

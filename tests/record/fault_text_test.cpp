@@ -39,7 +39,7 @@ TEST_F(FaultText, TellsTimeValueAndLimit) {
   report.mode = Mode::kHolding;
   EXPECT_EQ(describeMode(report, scene_),
             "holding: tactile_invalid, at 3.214 s, 102.5 N, at most 100 N: a reading not finite or "
-            "beyond max_force_N; reaction: hold");
+            "beyond max_force_N; reaction: retreat");
   report.fault = Fault::kNone;
   EXPECT_EQ(describeMode(report, scene_), "holding");
 }

@@ -51,7 +51,8 @@ TEST(SafetyPage, HasTheFaultTable) {
     if (row.fault == Fault::kNone) continue;
     ++count;
     const std::string line = std::string("| `") + row.name + "` | " + row.detection + " | " +
-                             row.within + " | " + reactionName(row.reaction) + " |";
+                             row.within + " | " + reactionName(row.reaction) + " | " + row.remains +
+                             " |";
     EXPECT_NE(text.find(line), std::string::npos) << line;
   }
   EXPECT_EQ(rowsBelow(text, "## Faults"), count);
@@ -75,7 +76,8 @@ TEST(ManualOfTheDaemon, HasTheFaultTable) {
     if (row.fault == Fault::kNone) continue;
     ++count;
     const std::string entry = std::string(".TP\n.B ") + row.name + "\n" + row.detection + "; " +
-                              row.within + "; " + reactionName(row.reaction) + "\n";
+                              row.within + "; " + reactionName(row.reaction) + "; " + row.remains +
+                              "\n";
     EXPECT_NE((table + "\n").find(entry), std::string::npos) << entry;
   }
   EXPECT_EQ(countOf(table, ".TP\n"), count);

@@ -20,9 +20,10 @@ struct ObedientRobot {
 
   void step() {
     const bool has_power = state.mode == Mode::kEnabling || state.mode == Mode::kRunning ||
-                           state.mode == Mode::kHolding;
+                           state.mode == Mode::kRetreating || state.mode == Mode::kHolding;
     input.are_configured = state.mode == Mode::kBoot;
-    input.is_at_rest = state.mode != Mode::kRunning;
+    input.is_at_rest = state.mode != Mode::kRunning && state.mode != Mode::kRetreating;
+    input.is_retreat_over = state.cycles_in_mode > 3;
     input.are_enabled = has_power;
     input.are_disabled = !has_power;
     updateMode(config, input, state);
@@ -55,6 +56,7 @@ TEST(FaultTable, HasOneRowAFaultInTheOrderOfTheNumbers) {
     EXPECT_EQ(row.reaction == Reaction::kNone, row.fault == Fault::kNone);
     EXPECT_EQ(std::string(row.detection).empty(), row.fault == Fault::kNone);
     EXPECT_EQ(std::string(row.within).empty(), row.fault == Fault::kNone);
+    EXPECT_EQ(std::string(row.remains).empty(), row.fault == Fault::kNone);
   }
   EXPECT_EQ(faultRow(static_cast<Fault>(200)).fault, Fault::kNone);
   EXPECT_STREQ(faultName(static_cast<Fault>(200)), "unknown");
@@ -87,9 +89,9 @@ TEST(Mode, AnswersEveryFaultByItsRow) {
     ObedientRobot robot = running(true);
     ASSERT_EQ(robot.state.mode, Mode::kRunning);
     const Mode mode = robot.runWith(row.fault);
-    const Mode expected = row.reaction == Reaction::kHold   ? Mode::kHolding
-                          : row.reaction == Reaction::kRamp ? Mode::kStopping
-                                                            : Mode::kFault;
+    const Mode expected = row.reaction == Reaction::kRetreat ? Mode::kRetreating
+                          : row.reaction == Reaction::kRamp  ? Mode::kStopping
+                                                             : Mode::kFault;
     EXPECT_EQ(mode, expected) << row.name;
     EXPECT_EQ(robot.state.fault, row.fault);
   }
@@ -100,7 +102,7 @@ TEST(Mode, ClearsFaultsOnlyByEnableOffAndOn) {
     if (row.fault == Fault::kNone) continue;
     ObedientRobot robot = running(true);
     robot.runWith(row.fault);
-    const Mode rest = row.reaction == Reaction::kHold ? Mode::kHolding : Mode::kFault;
+    const Mode rest = row.reaction == Reaction::kRetreat ? Mode::kHolding : Mode::kFault;
     EXPECT_EQ(robot.run(5000), rest) << row.name;
     robot.input.enable = false;
     EXPECT_EQ(robot.run(10), rest) << row.name;
@@ -165,6 +167,36 @@ TEST(Mode, TimeLimitsEndWhatNeverHappens) {
   EXPECT_EQ(state.mode, Mode::kOff) << "the end comes even if drives never answer";
 }
 
+TEST(Mode, ARetreatEndsInAHoldWhoeverEndsIt) {
+  for (const bool has_time_limit : {false, true}) {
+    ModeState state;
+    state.mode = Mode::kRunning;
+    ModeInput input;
+    input.has_enable_line = true;
+    input.are_enabled = true;
+    input.is_at_rest = false;
+    input.fault = Fault::kTactileStale;
+    updateMode({}, input, state);
+    for (int i = 0; i < 1500; ++i) {
+      ASSERT_EQ(state.mode, Mode::kRetreating) << i;
+      input.is_retreat_over = !has_time_limit && i == 700;
+      updateMode({}, input, state);
+      if (input.is_retreat_over) break;
+    }
+    if (has_time_limit) updateMode({}, input, state);
+    EXPECT_EQ(state.mode, Mode::kHolding) << has_time_limit;
+  }
+}
+
+TEST(Mode, MissedCyclesAreOfARetreatsTime) {
+  ModeState state;
+  state.mode = Mode::kRetreating;
+  ModeInput input;
+  input.missed_cycles = 1500;
+  updateMode({}, input, state);
+  EXPECT_EQ(state.mode, Mode::kHolding);
+}
+
 ModeInput randomInput(test::Random& random) {
   ModeInput input;
   if (random.chance(0.05)) input.fault = static_cast<Fault>(random.integer(0, 21));
@@ -174,6 +206,7 @@ ModeInput randomInput(test::Random& random) {
   input.are_enabled = random.chance(0.5);
   input.are_disabled = random.chance(0.5);
   input.is_at_rest = random.chance(0.5);
+  input.is_retreat_over = random.chance(0.3);
   return input;
 }
 
@@ -181,6 +214,7 @@ TEST(Mode, ChangesOnlyAlongTheTableAndUsesAllOfIt) {
   test::Random random(1);
   ModeConfig config;
   config.boot_cycles = config.enabling_cycles = config.stopping_cycles = 4;
+  config.retreating_cycles = 4;
   std::set<std::pair<Mode, Mode>> seen;
   for (int run = 0; run < 2000; ++run) {
     ModeState state;

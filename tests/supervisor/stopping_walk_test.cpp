@@ -16,8 +16,11 @@
 namespace tactus {
 namespace {
 
-constexpr ModeConfig kModeConfig{
-    .boot_cycles = 3, .enabling_cycles = 4, .stopping_cycles = 5, .brake_cycles = 1};
+constexpr ModeConfig kModeConfig{.boot_cycles = 3,
+                                 .enabling_cycles = 4,
+                                 .retreating_cycles = 3,
+                                 .stopping_cycles = 5,
+                                 .brake_cycles = 1};
 constexpr BrakeConfig kBrakeConfig{.rest_cycles = 1, .deadline_cycles = 2};
 constexpr int kLongest = 7;  ///< cycles in a mode; more make no difference
 /// While a hold or a stop ramps: set by the acceleration limits.
@@ -70,13 +73,16 @@ constexpr Demand kDemands[] = {
     {"a fault that ramps leads to rest and closed brakes",
      [](const WalkInput& input) { return input.mode.fault == Fault::kOverrun; }, isStopped,
      kModeConfig.stopping_cycles + kBrakeConfig.deadline_cycles + 2},
+    {"a retreat ends, whatever else comes", [](const WalkInput&) { return true; },
+     [](const WalkState& state) { return state.mode.mode != Mode::kRetreating; },
+     kModeConfig.retreating_cycles + 1},
 };
 
 /// All that drives, lines and buses may say at once; a drive that holds is not off.
 std::vector<WalkInput> allInputs(bool has_enable_line) {
   std::vector<WalkInput> inputs;
   for (const FaultRow& row : faultTable()) {
-    for (unsigned bits = 0; bits < 1U << 9; ++bits) {
+    for (unsigned bits = 0; bits < 1U << 10; ++bits) {
       const auto bit = [bits](int i) { return (bits >> i & 1U) != 0; };
       WalkInput input;
       input.mode.fault = row.fault;
@@ -90,6 +96,7 @@ std::vector<WalkInput> allInputs(bool has_enable_line) {
       input.brake.is_at_rest = bit(6);
       input.brake.is_any_holding = bit(7);
       input.brake.is_any_moving_on = bit(8);
+      input.mode.is_retreat_over = bit(9);
       const bool is_idle_bit = !has_enable_line && bit(0);
       if (is_idle_bit || (bit(4) && bit(7))) continue;
       inputs.push_back(input);
@@ -103,7 +110,8 @@ bool canBe(const WalkState& state, const WalkInput& input) {
   const bool is_ramping =
       (state.mode.mode == Mode::kHolding || state.mode.mode == Mode::kStopping) &&
       state.mode.cycles_in_mode < kRampCycles;
-  const bool may_move = state.mode.mode == Mode::kRunning || is_ramping;
+  const bool may_move =
+      state.mode.mode == Mode::kRunning || state.mode.mode == Mode::kRetreating || is_ramping;
   return may_move || input.mode.is_at_rest;
 }
 
@@ -165,6 +173,11 @@ class StoppingWalk : public testing::TestWithParam<bool> {
     if (is_cleared && !(input.mode.has_enable_line && before.was_off && input.mode.enable))
       return "a fault forgotten without off and on";
     if (is_cleared && input.mode.fault != Fault::kNone) return "a fault forgotten that is there";
+    if (b.mode == Mode::kRetreating && !input.mode.enable) return "a retreat without enable";
+    if (b.mode == Mode::kRetreating && input.mode.stop_requested) return "a retreat, asked to stop";
+    if (b.mode == Mode::kRetreating && b.fault == Fault::kNone) return "a retreat from nothing";
+    if (b.mode == Mode::kRetreating && b.reaction != Reaction::kRetreat)
+      return "a retreat from what ramps";
     if (a.mode == Mode::kHolding && b.mode == Mode::kRunning && !before.was_off)
       return "a hold that ends without off and on";
     if (!is_cleared && b.reaction < a.reaction) return "a milder reaction";
@@ -178,7 +191,8 @@ class StoppingWalk : public testing::TestWithParam<bool> {
     const ModeState& mode = after.mode;
     const bool is_open = after.brake.is_open;
     const bool opens = is_open && !before.brake.is_open;
-    const bool holds = mode.mode == Mode::kRunning || mode.mode == Mode::kHolding ||
+    const bool holds = mode.mode == Mode::kRunning || mode.mode == Mode::kRetreating ||
+                       mode.mode == Mode::kHolding ||
                        (mode.mode == Mode::kEnabling && input.brake.are_enabled);
     if (opens && !holds) return "a brake opens where nothing holds";
     if (is_open && mode.reaction == Reaction::kBrake) return "a brake open after an e-stop";

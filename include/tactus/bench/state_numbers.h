@@ -25,7 +25,8 @@ struct StateVisitor {
 
   void all(const ControllerState& state) const {
     const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
-                 way_out_before, way_out_added, is_leaning, modules, contact, zones] = state;
+                 way_out_before, way_out_added, is_leaning, modules, contact, zones, retreat] =
+        state;
     visit("waited_s", 0, waited_s);
     visit("progress", 0, progress);
     visit("return_share", 0, return_share);
@@ -33,11 +34,33 @@ struct StateVisitor {
     list("way_out_added", way_out_added);
     list("q_desired", q_desired);
     list("velocity_before", velocity_before);
-    const auto& [sequence, age_s, sample_fault, detail, sensed_contact, cover] = modules.front();
+    const auto& [sequence, age_s, sample_fault, detail, sensed_contact, excess, has_excess, cover] =
+        modules.front();
     visit("sample_age_s", 0, age_s);
     point("force_N", "position_m", "direction", sensed_contact);
+    point("excess.force_N", "excess.position_m", "excess.direction", excess);
     compensation(cover);
     answer(contact);
+    wayOut(retreat);
+  }
+
+  void wayOut(const RetreatState& retreat) const {
+    const auto& [is_under_way, is_over, has_moved, is_felt, is_free, has_push, is_placed, module,
+                 push, direction, velocity_at_fault, stiffness, untold_s, row, time_s, free_s, way,
+                 way_to, speed, marked_N, way_at_mark] = retreat;
+    point("retreat.force_N", "retreat.position_m", "retreat.push", push);
+    list("retreat.direction", direction);
+    list("retreat.velocity", velocity_at_fault);
+    visit("retreat.stiffness", 0, stiffness);
+    visit("retreat.untold_s", 0, untold_s);
+    list("retreat.row", row);
+    visit("retreat.time_s", 0, time_s);
+    visit("retreat.free_s", 0, free_s);
+    visit("retreat.way", 0, way);
+    visit("retreat.way_to", 0, way_to);
+    visit("retreat.speed", 0, speed);
+    visit("retreat.marked_N", 0, marked_N);
+    visit("retreat.way_at_mark", 0, way_at_mark);
   }
 
   void compensation(const CoverCompensationState& cover) const {

@@ -10,7 +10,9 @@
 #include "tactus/control/controller_config.h"
 #include "tactus/control/fault.h"
 #include "tactus/control/joint_limit_avoidance.h"
+#include "tactus/control/joint_limit_rows.h"
 #include "tactus/control/motion.h"
+#include "tactus/control/retreat.h"
 #include "tactus/control/robot.h"
 #include "tactus/control/tactile_reading.h"
 
@@ -46,6 +48,7 @@ struct ControllerState {
   std::array<TactileReading, kMaxTactileModules> modules;
   ContactControllerState contact;
   JointLimitZones zones;  ///< of the last gains
+  RetreatState retreat;
 };
 
 /// The part of a cycle that needs no sensor: kinematics, factorisation and joint-limit cost of the
@@ -86,6 +89,13 @@ class Controller {
   void restart(const Gains& gains, ControllerState& state) const noexcept;
   /// For an arm that stands at q, wherever it was commanded to be, m or rad.
   void place(const JointVector& q, const Gains& gains, ControllerState& state) const noexcept;
+
+  /// For an arm that a tactile fault takes from its task, with is_stopping: out of the contact, or
+  /// back the way it came, until state.retreat.is_over; see retreat.h.
+  void beginRetreat(const Gains& gains, ControllerState& state) const noexcept;
+  /// For an arm that goes on where a stop has left it: if that was after a retreat, it returns to
+  /// its path as after restart().
+  void goOn(const Gains& gains, ControllerState& state) const noexcept;
 
   /// For a cycle in which the controller has nothing to do: only samples are taken over, or age.
   void watchSensors(const RobotInput& input, double period_s,
@@ -133,6 +143,15 @@ class Controller {
              TactileReading& reading) const noexcept;
   void sense(const RobotInput& input, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
+  double leastStiffness_N_per_m(const Gains& gains, const ControllerState& state) const noexcept;
+  double untold_s(int module, const ControllerState& state) const noexcept;
+  void takePush(const Gains& gains, ControllerState& state) const noexcept;
+  void computeRow(const ChainPose& pose, RetreatState& retreat) const noexcept;
+  RetreatReading readForRetreat(const ControllerState& state) const noexcept;
+  void leaveContact(const Gains& gains, const TaskKinematics& kinematics, double period_s,
+                    ControllerState& state, JointVector& velocity) const noexcept;
+  JointVector retreatVelocity(const Gains& gains, const TaskKinematics& kinematics,
+                              double speed_m_per_s, const ControllerState& state) const noexcept;
   FaultDetail notFinite(const Motion& motion) const noexcept;
   void limit(const Motion& motion, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
@@ -145,6 +164,7 @@ class Controller {
   ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
   bool has_rotation_;
   CommandLimiter limiter_;
+  JointLimitRows limit_rows_;              ///< of a retreat
   std::vector<CoverCompensation> covers_;  ///< one a module, or none
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
   std::optional<ContactController> contact_controller_;

@@ -35,8 +35,8 @@ enum class Fault : std::uint8_t {
 /// How the arm comes to rest, mildest first; a later fault can only make it harsher.
 enum class Reaction : std::uint8_t {
   kNone,
-  kHold,       ///< ramp to zero velocity within the acceleration limits, drives keep the position
-  kRamp,       ///< the same, then drives disabled
+  kRetreat,    ///< out of the contact, if there is one; then drives keep the position
+  kRamp,       ///< ramp to zero velocity within the acceleration limits, then drives disabled
   kQuickStop,  ///< zero setpoint and quick stop by the drives at once, then disabled
   kBrake,      ///< the same, and the brake line falls at once
 };
@@ -57,6 +57,7 @@ struct FaultRow {
   const char* detection;  ///< what is seen
   const char* within;     ///< time from there to the first command of the reaction
   Reaction reaction;
+  const char* remains;  ///< force of a contact in which it came, once the arm rests
 };
 
 const std::array<FaultRow, 22>& faultTable() noexcept;  ///< in the order of the numbers

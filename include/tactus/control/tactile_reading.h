@@ -17,6 +17,8 @@ struct TactileReading {
   Fault fault = Fault::kNone;    ///< of that sample; not of its age
   FaultDetail detail;            ///< of that fault, or of a sample too old
   ContactPointState contact;     ///< of the newest valid sample
+  ContactPointState excess;      ///< of the newest sample beyond the module's range
+  bool has_excess = false;       ///< the newest sample is one, and all of it is numbers
   CoverCompensationState cover;  ///< only of a module with one
 };
 

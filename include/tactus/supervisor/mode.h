@@ -7,19 +7,21 @@
 
 namespace tactus {
 
-/// Where the daemon is between power-up and rest. Numbers are part of the log's format.
+/// Where the daemon is between power-up and rest. Numbers are part of the log's format: only
+/// append.
 enum class Mode : std::uint8_t {
-  kBoot = 0,      ///< drives are being configured, the tactile module is tared
-  kReady = 1,     ///< all configured, power off; waits for the enable line
-  kEnabling = 2,  ///< drives switch on, brakes open
-  kRunning = 3,   ///< the controller follows its task
-  kHolding = 4,   ///< ramped to rest, drives keep the position
-  kStopping = 5,  ///< ramps to rest, then drives switch off
-  kFault = 6,     ///< quick stop or off; drives are off as soon as the arm rests
-  kOff = 7,       ///< the end: drives off, or out of reach
+  kBoot = 0,        ///< drives are being configured, the tactile module is tared
+  kReady = 1,       ///< all configured, power off; waits for the enable line
+  kEnabling = 2,    ///< drives switch on, brakes open
+  kRunning = 3,     ///< the controller follows its task
+  kHolding = 4,     ///< ramps to rest, drives keep the position
+  kStopping = 5,    ///< ramps to rest, then drives switch off
+  kFault = 6,       ///< quick stop or off; drives are off as soon as the arm rests
+  kOff = 7,         ///< the end: drives off, or out of reach
+  kRetreating = 8,  ///< leaves the contact in which a fault has stopped it
 };
 
-inline constexpr int kModeCount = 8;
+inline constexpr int kModeCount = 9;
 const char* modeName(Mode mode) noexcept;
 /// The controller's command moves the arm, or keeps it where it is.
 bool isCommanding(Mode mode) noexcept;
@@ -29,7 +31,7 @@ struct ModeTransition {
   Mode from, to;
   const char* when;
 };
-inline constexpr int kModeTransitionCount = 20;
+inline constexpr int kModeTransitionCount = 24;
 const std::array<ModeTransition, kModeTransitionCount>& modeTransitions() noexcept;
 bool isLegal(Mode from, Mode to) noexcept;
 
@@ -43,6 +45,7 @@ struct ModeInput {
   bool are_enabled = false;      ///< every drive follows setpoints
   bool are_disabled = true;      ///< no drive that can be reached has power
   bool is_at_rest = true;        ///< the commanded velocity is zero
+  bool is_retreat_over = false;  ///< the contact is left, or as far as it could be
   int missed_cycles = 0;         ///< just before this one; deadlines of a stop go on in them
 };
 
@@ -60,10 +63,11 @@ struct ModeState {
 
 /// Time limits, in cycles.
 struct ModeConfig {
-  int boot_cycles = 5000;      ///< to configure all drives: kDriveSetupRefused
-  int enabling_cycles = 2000;  ///< to switch on: kDriveStateLost
-  int stopping_cycles = 2000;  ///< to end: kDriveStateLost, and after as many again, off
-  int brake_cycles = 0;        ///< between switched on and moving, for the brakes to open
+  int boot_cycles = 5000;        ///< to configure all drives: kDriveSetupRefused
+  int enabling_cycles = 2000;    ///< to switch on: kDriveStateLost
+  int retreating_cycles = 1500;  ///< to leave a contact
+  int stopping_cycles = 2000;    ///< to end: kDriveStateLost, and after as many again, off
+  int brake_cycles = 0;          ///< between switched on and moving, for the brakes to open
 };
 
 /// The supervisor: one step of the mode table. A fault is answered by its row of the fault table; a
