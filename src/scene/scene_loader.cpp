@@ -103,6 +103,7 @@ ControllerConfig makeController(const YamlNode& root, const SceneConfig& config,
   if (!config.controller) return controller;
   for (const TactileModuleSection& module : robot.config.tactile_modules) {
     TactileModuleConfig& read = controller.tactile_modules.emplace_back(module.config);
+    read.feels_moment_x = module.channels.moment_x.has_value();
     if (module.cover) read.cover = makeCover(*module.cover, module.config.length_m);
   }
   controller.gravity_Base = robot.config.gravity_Base;

@@ -30,9 +30,9 @@ double shortestStep_s(const ControllerConfig& robot, const PlantConfig& plant, d
 }
 
 /// Of a force at a point, both in the module's frame, about its origin.
-Wrench4 wrenchAt(const Vector3& p, const Vector3& F) {
+Wrench5 wrenchAt(const Vector3& p, const Vector3& F) {
   const Vector3 M = p.cross(F);
-  return {F.y(), F.z(), M.y(), M.z()};
+  return Wrench5{{F.y(), F.z(), M.y(), M.z(), M.x()}};
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig&
     const SimulatedModuleConfig& module = plant.modules[i];
     const Pose X_BaseModule = framePose(pose_, config.link);
     std::optional<MovingCover> cover;
-    std::optional<Wrench4> at_rest;
+    std::optional<Wrench5> at_rest;
     if (module.cover) {
       cover.emplace(*module.cover, plant.gravity_Base, X_BaseModule);
       at_rest = cover->atRest();

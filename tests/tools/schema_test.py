@@ -225,7 +225,7 @@ class Schema(Case):
             "choice": ["nothing of the kind", 1, []],
             "choice list": ["x", [], ["x", "x"], ["w"], {}],
             "number list": [0.1, [], [0.1], [0.1, "yes", 0.1], [0.1, None, 0.1], {}],
-            "number table": [1, [[1] * 8] * 3, [[1] * 8] * 5, [[1] * 7] * 4, [["a"] * 8] * 4],
+            "number table": [1, [[1] * 8] * 3, [[1] * 8] * 6, [[1] * 7] * 4, [["a"] * 8] * 4],
             "section": [1, "text", [1]],
             "section list": [1, "text", {}, [1]],
         }

@@ -47,7 +47,7 @@ class SimulatedRobot final : public Robot {
     int steps_a_filter_step = 1;
     double true_force_N = 0.0;
     Vector3 force_Base = Vector3::Zero();  ///< of all contacts, and what they are to the module
-    Wrench4 wrench = Wrench4::Zero();
+    Wrench5 wrench = Wrench5::Zero();
   };
 
   void moveArm(double duration_s, const JointVector& velocity_setpoint) noexcept;
