@@ -202,7 +202,7 @@ void MujocoRobot::feelContacts() noexcept {
       const Vector3 p = X.R_AB.transpose() * (Eigen::Map<const Vector3>(contact.pos) - X.p_AB);
       const Vector3 M = p.cross(F);
       module.force_Base += F_Base;
-      module.wrench += Wrench4(F.y(), F.z(), M.y(), M.z());
+      module.wrench += Wrench5{{F.y(), F.z(), M.y(), M.z(), M.x()}};
     }
   }
 }

@@ -55,7 +55,7 @@ Eigen::VectorXd PlainController::taskVelocity(double t_s) const {
 Eigen::VectorXd PlainController::answer(const RobotInput& input, const Eigen::VectorXd& q_dot_eff,
                                         double period_s, PlainControllerState& state) const {
   if (input.tactile[0].sequence != state.sample_sequence)
-    locateContact(input.tactile[0], config_.tactile_modules.front().length_m, state.contact_point);
+    locateContact(input.tactile[0], config_.tactile_modules.front(), state.contact_point);
   state.sample_sequence = input.tactile[0].sequence;
   Vector3 p_BaseContact;
   const Eigen::VectorXd a = kinematics_->contactDirection(state.contact_point, p_BaseContact);

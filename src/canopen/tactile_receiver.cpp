@@ -104,17 +104,21 @@ void TactileReceiver::finish() noexcept {
   }
   fault_ = is_saturated ? Fault::kTactileSaturated : Fault::kNone;
   if ((assembly_.status & ~kSaturated) != 0) fault_ = Fault::kTactileCableBreak;
-  publish(config_.channels.calibration * counts / config_.channels.counts_per_N);
+  const TactileChannels& channels = config_.channels;
+  const Eigen::Vector4d known = channels.calibration * counts / channels.counts_per_N;
+  const double moment_x_Nm =
+      channels.moment_x ? channels.moment_x->dot(counts) / channels.counts_per_N : 0.0;
+  publish(Wrench5{{known[0], known[1], known[2], known[3], moment_x_Nm}});
 }
 
-void TactileReceiver::publish(const Wrench& raw) noexcept {
+void TactileReceiver::publish(const Wrench5& raw) noexcept {
   if (tare_state_ == TareState::kAveraging) average(raw);
-  Wrench wrench = raw - offset_;
-  for (int i = 0; i < 4; ++i) {
+  Wrench5 wrench = raw - offset_;
+  for (int i = 0; i < kReadings; ++i) {
     if (filters_[i]) wrench[i] = filters_[i]->update(wrench[i]);
   }
   if (++counters_.samples == 0) counters_.samples = 1;  // 0 says that there is none
-  sample_ = {wrench[0], wrench[1], wrench[2], wrench[3], counters_.samples};
+  sample_ = {wrench[0], wrench[1], wrench[2], wrench[3], counters_.samples, wrench[4]};
 }
 
 void TactileReceiver::startTare() noexcept {
@@ -123,7 +127,7 @@ void TactileReceiver::startTare() noexcept {
   tare_sum_.setZero();
 }
 
-void TactileReceiver::average(const Wrench& raw) noexcept {
+void TactileReceiver::average(const Wrench5& raw) noexcept {
   const Eigen::Vector2d force = raw.head<2>();
   tare_low_ = tare_count_ == 0 ? force : tare_low_.cwiseMin(force);
   tare_high_ = tare_count_ == 0 ? force : tare_high_.cwiseMax(force);

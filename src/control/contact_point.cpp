@@ -6,8 +6,21 @@
 #include "tactus/math/filter.h"
 
 namespace tactus {
+namespace {
 
-void locateContact(const TactileSample& sample, double link_length_m,
+/// From the force to its normal part.
+void turnToNormal(double moment_x_Nm, double cover_radius_m, ContactPointState& contact) noexcept {
+  const double ratio = flushed(moment_x_Nm) / (cover_radius_m * contact.force_N);
+  const double sine = std::clamp(ratio, -kMaxTiltSine, kMaxTiltSine);  // of -d
+  const double cosine = std::sqrt(1.0 - sine * sine);
+  const Vector3 F = contact.direction;
+  contact.direction = Vector3(0.0, cosine * F.y() - sine * F.z(), cosine * F.z() + sine * F.y());
+  contact.force_N *= cosine;
+}
+
+}  // namespace
+
+void locateContact(const TactileSample& sample, const TactileModuleConfig& module,
                    ContactPointState& contact) noexcept {
   const double F_y = flushed(sample.force_y_N);  // their squares shall be normal numbers
   const double F_z = flushed(sample.force_z_N);
@@ -15,14 +28,15 @@ void locateContact(const TactileSample& sample, double link_length_m,
   contact.force_N = std::sqrt(force_squared);
   if (contact.force_N <= kMinForceForDirection_N) return;
   const double x = (sample.moment_z_Nm * F_y - sample.moment_y_Nm * F_z) / force_squared;
-  contact.position_m = std::clamp(x, 0.0, link_length_m);
+  contact.position_m = std::clamp(x, 0.0, module.length_m);
   contact.direction = Vector3(0.0, F_y, F_z) / contact.force_N;
+  if (sample.moment_x_Nm != 0.0) turnToNormal(sample.moment_x_Nm, module.cover_radius_m, contact);
 }
 
 bool isValid(const TactileSample& sample, const TactileModuleConfig& config) noexcept {
   const double force = std::hypot(flushed(sample.force_y_N), flushed(sample.force_z_N));
   return force <= config.max_force_N && std::isfinite(sample.moment_y_Nm) &&
-         std::isfinite(sample.moment_z_Nm);
+         std::isfinite(sample.moment_z_Nm) && std::isfinite(sample.moment_x_Nm);
 }
 
 }  // namespace tactus

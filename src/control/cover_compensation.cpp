@@ -26,6 +26,7 @@ CoverCompensation::CoverCompensation(const ControllerConfig& config,
       geared_links_(config.geared_links),
       link_(module.link),
       cover_(module.cover.value_or(CoverConfig{})),
+      feels_moment_x_(module.feels_moment_x),
       gravity_Base_(config.gravity_Base),
       filter_cutoff_hz_(module.filter_cutoff_hz) {
   ChainPose pose;
@@ -36,19 +37,24 @@ CoverCompensation::CoverCompensation(const ControllerConfig& config,
 TactileSample CoverCompensation::relieve(const TactileSample& sample, const JointVector& q,
                                          double period_s,
                                          CoverCompensationState& state) const noexcept {
-  const Wrench4 input = load(q, period_s, state) - state.origin;
-  Wrench4 felt;
+  const Wrench5 input = load(q, period_s, state) - state.origin;
+  Wrench5 felt;
   butterworthStep(input, filterK(filter_cutoff_hz_, period_s), state.s0, state.s1, state.s2, felt);
-  for (Wrench4* fading : {&state.s0, &state.s1, &state.s2})
+  for (Wrench5* fading : {&state.s0, &state.s1, &state.s2})
     for (double& x : fading->array()) x = flushed(x);
   felt += state.origin - at_tare_;
-  return {sample.force_y_N - felt[0], sample.force_z_N - felt[1], sample.moment_y_Nm - felt[2],
-          sample.moment_z_Nm - felt[3], sample.sequence};
+  const double moment_x_Nm = feels_moment_x_ ? sample.moment_x_Nm - felt[4] : 0.0;
+  return {sample.force_y_N - felt[0],
+          sample.force_z_N - felt[1],
+          sample.moment_y_Nm - felt[2],
+          sample.moment_z_Nm - felt[3],
+          sample.sequence,
+          moment_x_Nm};
 }
 
 /// The first cycle's becomes the origin: the arm has stood there for long, or its motion is not
 /// known.
-Wrench4 CoverCompensation::load(const JointVector& q, double period_s,
+Wrench5 CoverCompensation::load(const JointVector& q, double period_s,
                                 CoverCompensationState& state) const noexcept {
   if (!state.has_started) state = {};
   const double step_s = period_s + state.missed_s;

@@ -11,7 +11,8 @@ constexpr double kMaxBelievable_N = 1e6;
 
 /// |F|, N; not finite if any reading is.
 double judgedForce_N(const TactileSample& sample) noexcept {
-  const bool is_finite = std::isfinite(sample.moment_y_Nm) && std::isfinite(sample.moment_z_Nm);
+  const bool is_finite = std::isfinite(sample.moment_y_Nm) && std::isfinite(sample.moment_z_Nm) &&
+                         std::isfinite(sample.moment_x_Nm);
   return is_finite ? std::hypot(sample.force_y_N, sample.force_z_N)
                    : std::numeric_limits<double>::quiet_NaN();
 }
@@ -33,7 +34,7 @@ Fault readSample(const TactileModuleConfig& module, const TactileSample& sample,
   const bool is_valid = isValid(sample, module);
   reading.fault = is_valid ? Fault::kNone : Fault::kTactileInvalid;
   if (is_valid) {
-    locateContact(sample, module.length_m, reading.contact);
+    locateContact(sample, module, reading.contact);
     reading.contact.interval_s = interval_s;
   } else {
     reading.detail = {judgedForce_N(sample), module.max_force_N, "N"};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -60,8 +61,14 @@ constexpr std::array kFields = {
     RecordField{"path_time_s", "s", kScalar, kDouble, kOutput, AT(path_time_s), true},
     RecordField{"tool_rotation_error_rad", "rad", kOfRotation, kDouble, kObservation,
                 AT(tool_rotation_error_rad), true},
+    RecordField{"tactile_moment_x_Nm", "Nm", kOfMomentX, kDouble, kInput, AT(tactile_moment_x_Nm),
+                true},
 };
 #undef AT
+
+bool isOfModule(const RecordField& field) noexcept {
+  return field.shape == kPerModule || field.shape == kOfMomentX;
+}
 
 }  // namespace
 
@@ -79,13 +86,15 @@ std::size_t RecordShape::entries(const RecordField& field) const noexcept {
       return has_rotation ? 1 : 0;
     case kPerModule:
       return static_cast<std::size_t>(modules);
+    case kOfMomentX:
+      return has_moment_x ? static_cast<std::size_t>(modules) : 0;
   }
   return 0;
 }
 
 bool RecordShape::isArray(const RecordField& field) const noexcept {
   return field.shape == kPerJoint || field.shape == kPerTaskComponent ||
-         (field.shape == kPerModule && modules > 1);
+         (isOfModule(field) && modules > 1);
 }
 
 const char* typeName(FieldType type) noexcept {
@@ -102,13 +111,14 @@ std::vector<RecordColumn> recordColumns(const RecordShape& shape) {
         {std::move(name), field.name, field.type, field.role, field.offset + entry * kWord});
   };
   for (const RecordField& field : kFields) {
-    const bool is_module = field.shape == kPerModule;
-    const std::size_t entries = is_module ? 1 : shape.entries(field);
+    const bool is_module = isOfModule(field);
+    const std::size_t entries =
+        is_module ? std::min<std::size_t>(1, shape.entries(field)) : shape.entries(field);
     for (std::size_t i = 0; i < entries; ++i) add(field, i, !is_module && shape.isArray(field));
   }
   for (std::size_t module = 1; module < static_cast<std::size_t>(shape.modules); ++module) {
     for (const RecordField& field : kFields)
-      if (field.shape == kPerModule) add(field, module, true);
+      if (isOfModule(field) && shape.entries(field) > 0) add(field, module, true);
   }
   return columns;
 }

@@ -101,7 +101,8 @@ std::string findShape(const std::vector<LoggedField>& fields, RecordShape& shape
         kMaxTactileModules);
   }
   shape = {static_cast<int>(q->entries), static_cast<int>(w->entries),
-           find(fields, "tool_rotation_error_rad") != nullptr, static_cast<int>(force->entries)};
+           find(fields, "tool_rotation_error_rad") != nullptr, static_cast<int>(force->entries),
+           find(fields, "tactile_moment_x_Nm") != nullptr};
   return {};
 }
 

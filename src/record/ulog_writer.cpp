@@ -131,8 +131,9 @@ LogDescription describeLog(const Scene& scene) {
   LogDescription description;
   const TaskConfig& task = scene.controller.task;
   const int modules = static_cast<int>(scene.controller.tactile_modules.size());
-  description.shape = {scene.controller.chain.size(), task.size, task.hasRotation(),
-                       std::max(1, modules)};
+  description.shape = {
+      scene.controller.chain.size(), task.size, task.hasRotation(), std::max(1, modules),
+      std::ranges::any_of(scene.controller.tactile_modules, &TactileModuleConfig::feels_moment_x)};
   description.infos = {{"ver_sw", TACTUS_VERSION},
                        {"scene", scene.name},
                        {"variant", scene.variant},

@@ -44,8 +44,8 @@ std::string describeExpectation(const KeySpec& spec) {
       return fmt::format("a list of {}{}{}", describeCount(spec.count, "number"),
                          describeRange(spec.range), unit);
     case ValueType::kNumberTable:
-      return fmt::format("a list of {} lists of {} numbers{}", spec.count.min, spec.columns,
-                         describeRange(spec.range));
+      return fmt::format("a list of {} of {} numbers{}", describeCount(spec.count, "list"),
+                         spec.columns, describeRange(spec.range));
     case ValueType::kSection:
       return "a section of keys";
     case ValueType::kSectionList:

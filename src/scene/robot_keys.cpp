@@ -50,14 +50,17 @@ Table<TactileModuleConfig> readingKeys() {
 }
 
 Row<TactileChannels> calibrationTable() {
-  Row<TactileChannels> row =
-      required(value(ValueType::kNumberTable, "calibration", "1 or m",
-                     "rows of F_y, F_z, M_y, M_z in the link's frame for a force of 1 N on each "
-                     "of the 8 channels",
-                     &TactileChannels::calibration));
+  Row<TactileChannels> row;
+  row.spec.key = "calibration";
+  row.spec.type = ValueType::kNumberTable;
+  row.spec.unit = "1 or m";
+  row.spec.doc =
+      "rows of F_y, F_z, M_y, M_z, and M_x if the module tells it, in the link's frame for a force "
+      "of 1 N on each of the 8 channels";
   row.spec.range = within(-1e3, 1e3);
-  row.spec.count = {4, 4};
+  row.spec.count = {4, 5};
   row.spec.columns = 8;
+  row.spec.target = [](void* owner) -> Target { return static_cast<TactileChannels*>(owner); };
   return row;
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "tactus/scene/cover_keys.h"
+#include "tactus/scene/drive_effects_loader.h"
 #include "tactus/scene/dynamics_loader.h"
 #include "tactus/scene/hardware_checks.h"
 #include "tactus/scene/hardware_loader.h"
@@ -103,6 +104,7 @@ ControllerConfig makeController(const YamlNode& root, const SceneConfig& config,
   if (!config.controller) return controller;
   for (const TactileModuleSection& module : robot.config.tactile_modules) {
     TactileModuleConfig& read = controller.tactile_modules.emplace_back(module.config);
+    read.feels_moment_x = module.channels.moment_x.has_value();
     if (module.cover) read.cover = makeCover(*module.cover, module.config.length_m);
   }
   controller.gravity_Base = robot.config.gravity_Base;
@@ -136,6 +138,7 @@ PlantConfig makePlant(const YamlNode& root, const SceneConfig& config, const Loa
   PlantConfig plant;
   plant.drive_lag_s = simulation.drive_lag_s.value_or(robot.drives.position_lag_s);
   plant.dynamics = loadDynamics(root, simulation.arm, loaded, q_start, config.period_s);
+  loadDriveEffects(root, simulation, loaded, config.period_s, plant);
   plant.robot_stiffness_N_per_m = simulation.arm == SimulatedArm::kFlexibleGears
                                       ? robot.dynamics->contact_stiffness_N_per_m.value_or(kNoLimit)
                                       : robot.stiffness_N_per_m;

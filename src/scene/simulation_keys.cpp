@@ -118,6 +118,35 @@ Row<SimulationSection> moduleSection() {
                join(cutoff, inside(&SimulationSection::module, imperfectionKeys())));
 }
 
+Table<SimulatedDrivesSection> driveEffectKeys() {
+  using Config = SimulatedDrivesSection;
+  return {
+      optional(number("bandwidth_hz", "Hz", above(0, 1e4),
+                      "of a second-order velocity loop, in place of drive_lag_s; of a quasi-static "
+                      "arm alone",
+                      &Config::bandwidth_hz)),
+      number("damping_ratio", "", within(0.05, 10), "of that loop", &Config::damping_ratio),
+      number("dead_time_s", "s", within(0, 0.1), "by which setpoints come late",
+             &Config::dead_time_s),
+      oneAJoint("max_acceleration", "m/s^2 or rad/s^2", above(0, 1e6),
+                "of the drive's own ramp; absent: none", &Config::max_acceleration),
+      oneAJoint("max_torque", "Nm or N", above(0, 1e9),
+                "at the joint, of an arm with mass; absent: no limit", &Config::max_torque),
+      oneAJoint("coulomb_friction", "Nm or N", within(0, 1e6),
+                "of motor and gear, at the joint, of an arm with mass; absent: none",
+                &Config::coulomb_friction),
+      oneAJoint("viscous_friction", "Nm s/rad or N s/m", within(0, 1e9), "likewise",
+                &Config::viscous_friction),
+      oneAJoint("backlash", "rad or m", within(0, 0.1),
+                "whole play of the gear, at the joint, with flexible_gears; absent: none",
+                &Config::backlash),
+      choice("feedback",
+             "motor: drives report where their motors are; link: what is behind their flexible "
+             "gears",
+             &Config::feedback, kFeedbackWords),
+  };
+}
+
 Table<SimulationSection> simulationKeys() {
   using Config = SimulationSection;
   return {
@@ -132,6 +161,8 @@ Table<SimulationSection> simulationKeys() {
       number("drive_lag_s", "s", within(0, 1),
              "lag of the simulated drives of a quasi-static arm; absent: as robot.yaml says",
              &Config::drive_lag_s),
+      optional(section("drives", "what drives do beside following; absent: nothing",
+                       &Config::drives, driveEffectKeys())),
       moduleSection(),
       sectionList("obstacles", {0, 64}, "vertical lines that push on the cover", &Config::obstacles,
                   obstacleKeys()),

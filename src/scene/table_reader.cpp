@@ -163,14 +163,17 @@ struct ValueReader {
   void operator()(Vector3* vector) const {
     *vector = Eigen::Map<const Vector3>(parseNumbers(r, r.node, r.path, 3, 3).data());
   }
-  void operator()(Eigen::Matrix<double, 4, 8>* table) const {
+  void operator()(TactileChannels* channels) const {
     requireList(r);
-    for (int row = 0; row < r.spec.count.min; ++row) {
+    channels->moment_x.reset();
+    for (std::size_t row = 0; row < r.node.items.size(); ++row) {
       const auto numbers = parseNumbers(r, r.node.items[row], fmt::format("{}[{}]", r.path, row),
                                         r.spec.columns, r.spec.columns);
-      for (int column = 0; column < r.spec.columns; ++column) {
-        (*table)(row, column) = numbers[column];
-      }
+      const Eigen::Map<const TactileChannelRow> read(numbers.data());
+      if (row < 4)
+        channels->calibration.row(static_cast<int>(row)) = read;
+      else
+        channels->moment_x = read;
     }
   }
   void operator()(const WordsTarget& words) const { words.set(parseChoices(r)); }

@@ -39,9 +39,14 @@ void checkModule(const YamlNode& root, const TactileModuleSection& section,
          fmt::format("{} s is shorter than the sample period", config.max_sample_age_s),
          fmt::format("at least {} s", channels.sample_period_s));
   }
-  Eigen::FullPivLU<Eigen::Matrix<double, 4, 8>> decomposition(channels.calibration);
+  Eigen::MatrixXd rows = channels.calibration;
+  if (channels.moment_x) {
+    rows.conservativeResize(5, Eigen::NoChange);
+    rows.row(4) = *channels.moment_x;
+  }
+  Eigen::FullPivLU<Eigen::MatrixXd> decomposition(rows);
   decomposition.setThreshold(1e-6);
-  if (decomposition.rank() < 4) {
+  if (decomposition.rank() < rows.rows()) {
     fail("calibration", fmt::format("has rank {}", decomposition.rank()),
          "rows that are linearly independent");
   }

@@ -9,43 +9,54 @@ namespace {
 constexpr double kMaxCounts = 8388607.0;  // signed 24 bits
 
 /// C^T (C C^T)^-1, for a calibration of full rank: the loader accepts no other.
-Eigen::Matrix<double, 8, 4> pseudoinverse(const Eigen::Matrix<double, 4, 8>& C) {
-  const Eigen::Matrix4d gram = C * C.transpose();
+template <int kRows>
+Eigen::Matrix<double, 8, kRows> pseudoinverse(const Eigen::Matrix<double, kRows, 8>& C) {
+  const Eigen::Matrix<double, kRows, kRows> gram = C * C.transpose();
   return C.transpose() * gram.inverse();
 }
 }  // namespace
 
 SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config,
-                                 const std::optional<Wrench4>& at_rest)
+                                 const std::optional<Wrench5>& at_rest)
     : config_(config),
       filters_{ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
+               ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
                ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz)},
       channels_from_wrench_(pseudoinverse(config.channels.calibration)),
+      channels_from_moment_x_(Channels::Zero()),
       at_rest_(at_rest),
       sin_error_(std::sin(config.direction_error_rad)),
       cos_error_(std::cos(config.direction_error_rad)),
       random_(config.seed),
       steps_a_sample_(
           static_cast<int>(std::lround(config.channels.sample_period_s * config.filter_rate_hz))) {
+  if (config.channels.moment_x) {
+    Eigen::Matrix<double, 5, 8> C;
+    C << config.channels.calibration, *config.channels.moment_x;
+    const Eigen::Matrix<double, 8, 5> inverse = pseudoinverse(C);
+    channels_from_wrench_ = inverse.leftCols<4>();
+    channels_from_moment_x_ = inverse.col(4);
+  }
   if (!at_rest_ || !config.tared) return;
   config_.noise_N = 0.0;  // a tare is the mean of many samples
   tare_ = measure(*at_rest_);
   config_.noise_N = config.noise_N;
 }
 
-void SimulatedModule::update(const Wrench4& wrench) noexcept {
-  const Wrench4 filtered = filter(wrench);
+void SimulatedModule::update(const Wrench5& wrench) noexcept {
+  const Wrench5 filtered = filter(wrench);
   t_s_ += 1.0 / config_.filter_rate_hz;
   if (steps_to_delivery_ > 0 && --steps_to_delivery_ == 0) deliver();
   if (steps_to_sample_-- > 0) return;
   steps_to_sample_ = steps_a_sample_ - 1;
   if (config_.lost_share > 0.0 && chance() < config_.lost_share) return;
   if (steps_to_delivery_ > 0) deliver();
-  Wrench4 measured = measure(filtered);
+  Wrench5 measured = measure(filtered);
   if (at_rest_) measured -= tare_;
-  measured_ = {measured[0], measured[1], measured[2], measured[3], measured_.sequence + 1};
+  measured_ = {measured[0], measured[1], measured[2], measured[3], measured_.sequence + 1,
+               measured[4]};
   steps_to_delivery_ = 0;
   if (config_.jitter_s > 0.0)
     steps_to_delivery_ =
@@ -54,12 +65,12 @@ void SimulatedModule::update(const Wrench4& wrench) noexcept {
 }
 
 /// What was felt from the beginning has long come through the filter.
-Wrench4 SimulatedModule::filter(const Wrench4& wrench) noexcept {
+Wrench5 SimulatedModule::filter(const Wrench5& wrench) noexcept {
   if (!config_.filtered) return wrench;
-  Wrench4 input = wrench;
+  Wrench5 input = wrench;
   if (at_rest_) input -= *at_rest_;
-  Wrench4 filtered;
-  for (int i = 0; i < 4; ++i) filtered[i] = filters_[i].update(input[i]);
+  Wrench5 filtered;
+  for (int i = 0; i < 5; ++i) filtered[i] = filters_[i].update(input[i]);
   if (at_rest_) filtered += *at_rest_;
   return filtered;
 }
@@ -73,9 +84,10 @@ void SimulatedModule::deliver() noexcept {
 double SimulatedModule::chance() noexcept { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
 /// As cells that are turned about x see it.
-Wrench4 SimulatedModule::turned(const Wrench4& w) const noexcept {
-  return {cos_error_ * w[0] + sin_error_ * w[1], cos_error_ * w[1] - sin_error_ * w[0],
-          cos_error_ * w[2] + sin_error_ * w[3], cos_error_ * w[3] - sin_error_ * w[2]};
+Wrench5 SimulatedModule::turned(const Wrench5& w) const noexcept {
+  return Wrench5{{cos_error_ * w[0] + sin_error_ * w[1], cos_error_ * w[1] - sin_error_ * w[0],
+                  cos_error_ * w[2] + sin_error_ * w[3], cos_error_ * w[3] - sin_error_ * w[2],
+                  w[4]}};
 }
 
 void SimulatedModule::distort(Channels& forces_N) const noexcept {
@@ -85,18 +97,21 @@ void SimulatedModule::distort(Channels& forces_N) const noexcept {
   for (std::size_t i = 0; i < drifts.size(); ++i) forces_N[static_cast<int>(i)] += drifts[i] * t_s_;
 }
 
-Wrench4 SimulatedModule::measure(const Wrench4& wrench) noexcept {
+Wrench5 SimulatedModule::measure(const Wrench5& wrench) noexcept {
   const bool is_turned = config_.direction_error_rad != 0.0;
   const bool is_distorted =
       !config_.channel_gains.empty() || !config_.channel_drifts_N_per_s.empty();
-  const Wrench4 seen = is_turned ? turned(wrench) : wrench;
+  Wrench5 seen = is_turned ? turned(wrench) : wrench;
+  if (!config_.channels.moment_x) seen[4] = 0.0;
   if (!config_.quantised && config_.noise_N == 0.0 && !is_distorted) return seen;
-  Channels forces_N = channels_from_wrench_ * seen;
+  const Eigen::Vector4d seen_by_all = seen.head<4>();
+  Channels forces_N = channels_from_wrench_ * seen_by_all;
+  if (config_.channels.moment_x) forces_N += seen[4] * channels_from_moment_x_;
   if (is_distorted) distort(forces_N);
   return read(forces_N);
 }
 
-Wrench4 SimulatedModule::read(Channels& forces_N) noexcept {
+Wrench5 SimulatedModule::read(Channels& forces_N) noexcept {
   for (int i = 0; i < 8; ++i) {
     double& force_N = forces_N[i];
     if (config_.noise_N > 0.0) force_N += config_.noise_N * normal_(random_);
@@ -106,7 +121,9 @@ Wrench4 SimulatedModule::read(Channels& forces_N) noexcept {
     force_N = counts / config_.channels.counts_per_N;
     measured_counts_[i] = static_cast<std::int32_t>(counts);
   }
-  return config_.channels.calibration * forces_N;
+  const Eigen::Vector4d read = config_.channels.calibration * forces_N;
+  const std::optional<TactileChannelRow>& moment_x = config_.channels.moment_x;
+  return Wrench5{{read[0], read[1], read[2], read[3], moment_x ? moment_x->dot(forces_N) : 0.0}};
 }
 
 bool SimulatedModule::isSaturated() const noexcept {

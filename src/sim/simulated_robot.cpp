@@ -30,9 +30,9 @@ double shortestStep_s(const ControllerConfig& robot, const PlantConfig& plant, d
 }
 
 /// Of a force at a point, both in the module's frame, about its origin.
-Wrench4 wrenchAt(const Vector3& p, const Vector3& F) {
+Wrench5 wrenchAt(const Vector3& p, const Vector3& F) {
   const Vector3 M = p.cross(F);
-  return {F.y(), F.z(), M.y(), M.z()};
+  return Wrench5{{F.y(), F.z(), M.y(), M.z(), M.x()}};
 }
 
 }  // namespace
@@ -44,6 +44,7 @@ SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig&
       step_s_(shortestStep_s(robot, plant, period_s)),
       steps_a_cycle_(wholeRatio(period_s, step_s_)),
       drive_share_(lagShare(step_s_, plant.drive_lag_s)),
+      reports_links_(plant.drives.reports_links),
       q_commanded_(robot.q_start),
       q_(robot.q_start) {
   chain_.computePose(q_, pose_);
@@ -53,12 +54,16 @@ SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig&
     parts_a_step_ =
         std::max(1, static_cast<int>(std::ceil(step_s_ / plant.dynamics->step_s - 1e-6)));
   }
+  const DriveEffectsConfig& drives = plant.drives;
+  if (drives.dead_time_s > 0.0 || drives.max_acceleration.size() > 0)
+    setpoints_.emplace(drives, chain_.size(), step_s_ / parts_a_step_);
+  if (drives.loop) loop_.emplace(*drives.loop, q_, step_s_);
   for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i) {
     const TactileModuleConfig& config = robot.tactile_modules[i];
     const SimulatedModuleConfig& module = plant.modules[i];
     const Pose X_BaseModule = framePose(pose_, config.link);
     std::optional<MovingCover> cover;
-    std::optional<Wrench4> at_rest;
+    std::optional<Wrench5> at_rest;
     if (module.cover) {
       cover.emplace(*module.cover, plant.gravity_Base, X_BaseModule);
       at_rest = cover->atRest();
@@ -77,7 +82,7 @@ SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig&
 }
 
 void SimulatedRobot::read(RobotInput& input) noexcept {
-  input.q_measured = dynamics_ ? dynamics_->qMotor() : q_;
+  input.q_measured = dynamics_ && !reports_links_ ? dynamics_->qMotor() : q_;
   for (int i = 0; i < modules(); ++i) input.tactile[i] = modules_[i].electronics.sample();
 }
 
@@ -100,13 +105,16 @@ void SimulatedRobot::measure(Module& module) noexcept {
                             module.cover->update(module.X_BaseModule, filter_step_s));
 }
 
-void SimulatedRobot::moveArm(double duration_s, const JointVector& velocity_setpoint) noexcept {
+void SimulatedRobot::moveArm(double duration_s, const JointVector& commanded) noexcept {
+  const JointVector& velocity_setpoint = setpoints_ ? setpoints_->update(commanded) : commanded;
   q_commanded_ += duration_s * velocity_setpoint;
   q_commanded_ = q_commanded_.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
   if (dynamics_) {
     dynamics_->step(duration_s, q_commanded_, velocity_setpoint, torque_, pose_);
     q_ = dynamics_->q();
     torque_.setZero();
+  } else if (loop_) {
+    loop_->update(q_commanded_, q_);
   } else {
     q_ += drive_share_ * (q_commanded_ - q_);
   }

@@ -37,6 +37,7 @@ void fillModule(int i, const TactileSample& sample, const ContactPointState& sen
   record.tactile_moment_y_Nm[i] = sample.moment_y_Nm;
   record.tactile_moment_z_Nm[i] = sample.moment_z_Nm;
   record.tactile_sequence[i] = sample.sequence;
+  record.tactile_moment_x_Nm[i] = sample.moment_x_Nm;
 }
 
 }  // namespace
@@ -69,9 +70,12 @@ RobotInput recordedInput(const CycleRecord& record, int joints) noexcept {
   RobotInput input;
   input.q_measured = Eigen::Map<const Eigen::VectorXd>(record.q_measured, joints);
   for (int i = 0; i < kMaxTactileModules; ++i) {
-    input.tactile[i] = {record.tactile_force_y_N[i], record.tactile_force_z_N[i],
-                        record.tactile_moment_y_Nm[i], record.tactile_moment_z_Nm[i],
-                        static_cast<std::uint32_t>(record.tactile_sequence[i])};
+    input.tactile[i] = {record.tactile_force_y_N[i],
+                        record.tactile_force_z_N[i],
+                        record.tactile_moment_y_Nm[i],
+                        record.tactile_moment_z_Nm[i],
+                        static_cast<std::uint32_t>(record.tactile_sequence[i]),
+                        record.tactile_moment_x_Nm[i]};
   }
   return input;
 }

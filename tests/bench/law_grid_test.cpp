@@ -7,6 +7,7 @@
 #include <set>
 
 #include "support/crops9.h"
+#include "support/tactile_samples.h"
 #include "tactus/bench/law_trials.h"
 #include "tactus/control/contact_point.h"
 
@@ -87,7 +88,7 @@ TEST(LawTrials, DisturbWhatTheyName) {
     TactileSample sample{30.0, 40.0, -0.3 * 40.0, 0.3 * 30.0, 1};
     setup.reading(sample);
     ContactPointState contact;
-    locateContact(sample, 0.38, contact);
+    locateContact(sample, test::moduleOfLength(0.38), contact);
     const bool is_shifted = trial.name.starts_with("contact point");
     EXPECT_NEAR(contact.force_N, is_shifted ? 50.0 : 20.0, 1e-12) << trial.name;
     EXPECT_NEAR(std::abs(contact.position_m - 0.3), is_shifted ? 0.02 : 0.0, 1e-12) << trial.name;

@@ -408,12 +408,32 @@ TEST(TactileReceiver, RefusesToTareInContactWhileUnsteadyOrFaulty) {
   EXPECT_NEAR(receiver.sample().force_y_N, -1.49, 1e-9) << "begins anew, also after a refusal";
 }
 
+/// With a row of its own, M_x is read and tared as all else; without, it is zero.
+TEST(TactileReceiver, TellsTheMomentAboutTheAxisOfAModuleThatDoes) {
+  CanTactileConfig config = tactileConfig();
+  config.channels.moment_x = TactileChannelRow{{0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08}};
+  TactileReceiver telling(config, kPeriod_s);
+  TactileReceiver silent(tactileConfig(), kPeriod_s);
+  int sequence = 0;
+  const Counts weight = {100, 0, 0, 0, 0, 0, 0, 50};
+  ASSERT_EQ(tare(telling, sequence, std::vector<Counts>(50, weight)), TareState::kDone);
+  Counts touched = kTouch;
+  for (std::size_t i = 0; i < touched.size(); ++i) touched[i] += weight[i];
+  receive(telling, tactileFrames(++sequence, touched));
+  receive(silent, tactileFrames(sequence, kTouch));
+  EXPECT_NEAR(telling.sample().moment_x_Nm, 0.03 + 0.02 + 0.015 - 0.02 - 0.01 + 0.07 * 0.007,
+              1e-12);
+  EXPECT_NEAR(telling.sample().force_y_N, silent.sample().force_y_N, 1e-12);
+  EXPECT_EQ(silent.sample().moment_x_Nm, 0.0);
+}
+
 TEST(TactileReceiver, FiltersEachComponentAtTheModulesRate) {
   CanTactileConfig config = tactileConfig();
+  config.channels.moment_x = TactileChannelRow::Constant(0.03);
+  TactileReceiver raw(config, kPeriod_s);
   config.filter_cutoff_hz = 15.0;
   TactileReceiver filtered(config, kPeriod_s);
-  TactileReceiver raw(tactileConfig(), kPeriod_s);
-  std::vector<ButterworthLowPass> filters(4, ButterworthLowPass(15.0, 250.0));
+  std::vector<ButterworthLowPass> filters(5, ButterworthLowPass(15.0, 250.0));
   std::mt19937 random(5);
   for (int i = 0; i < 1000; ++i) {
     Counts counts{};
@@ -425,6 +445,7 @@ TEST(TactileReceiver, FiltersEachComponentAtTheModulesRate) {
     EXPECT_EQ(sample.force_z_N, filters[1].update(raw.sample().force_z_N));
     EXPECT_EQ(sample.moment_y_Nm, filters[2].update(raw.sample().moment_y_Nm));
     EXPECT_EQ(sample.moment_z_Nm, filters[3].update(raw.sample().moment_z_Nm));
+    EXPECT_EQ(sample.moment_x_Nm, filters[4].update(raw.sample().moment_x_Nm));
   }
   config.filter_cutoff_hz = 125.0;
   EXPECT_THROW(TactileReceiver(config, kPeriod_s), std::invalid_argument);

@@ -60,6 +60,25 @@ TEST(FrictionScenes, KeepItWithMassAndFlexibleGears) {
   }
 }
 
+/// With the moment about the link's axis the normal is known, and the law needs no cone: the force
+/// at rest is 5 N along the normal, and friction adds to it across.
+TEST(FrictionScenes, KeepItWithoutAConeWhereTheMomentAboutTheAxisIsFelt) {
+  for (const char* arm : {"quasi_static", "flexible_gears"}) {
+    for (const double mu : {0.0, 0.3, 0.5}) {
+      SCOPED_TRACE(fmt::format("{}, {}", arm, mu));
+      Scene scene = rubbing("scenario3_tactus_fast", arm, mu, 0.0);
+      scene.controller.tactile_modules.front().feels_moment_x = true;
+      scene.plant.modules.front().channels.moment_x = TactileChannelRow::Constant(0.03);
+      scene.plant.modules.front().noise_N = 0.025;  // 0.05 N of force and 2 mNm
+      const RubbedRun run = rub(scene);
+      const double most_N = 5.0 * std::hypot(1.0, mu);
+      EXPECT_LT(run.peak_N, 1.15 * most_N);
+      EXPECT_LT(run.rest_N, 1.05 * most_N);
+      EXPECT_GT(run.rest_N, 0.8 * 5.0);
+    }
+  }
+}
+
 /// Each joint in turn is left a part of the way that it takes else: the others have to do it.
 /// Returns how many of them rest in contact; others do not come to it.
 int leaveLessWay(const Scene& free, double share) {

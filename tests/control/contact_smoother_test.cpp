@@ -32,7 +32,7 @@ class Smoother : public testing::Test {
     sample.force_z_N += noise(sigma_N);
     sample.moment_y_Nm += 0.15 * noise(sigma_N);
     sample.moment_z_Nm += 0.15 * noise(sigma_N);
-    locateContact(sample, kLength_m, sensor_);
+    locateContact(sample, test::moduleOfLength(kLength_m), sensor_);
     sensor_.interval_s = kSample_s;
     smoother_.update({}, sensor_, X_BaseModule_, state_);
   }
@@ -134,7 +134,7 @@ TEST_F(Smoother, NoBlowTurnsTheContactAround) {
     for (int i = 0; i < 1000; ++i) {
       const double force_N = filter.update(1e-3 * i < blow_s ? 1000.0 : 0.0);
       if (i % stride != phase) continue;
-      locateContact(test::touchAt(0.2, force_N, 0.5, 1), kLength_m, sensor_);
+      locateContact(test::touchAt(0.2, force_N, 0.5, 1), test::moduleOfLength(kLength_m), sensor_);
       sensor_.interval_s = 1e-3 * stride;
       smoother.update({}, sensor_, X_BaseModule_, state);
       const bool is_turned =

@@ -79,8 +79,9 @@ TEST(ControllerFaults, MovesWithoutOne) {
 }
 
 TEST(ControllerFaults, SensorReadingsThatAreNoNumber) {
-  for (const auto reading : {&TactileSample::force_y_N, &TactileSample::force_z_N,
-                             &TactileSample::moment_y_Nm, &TactileSample::moment_z_Nm}) {
+  for (const auto reading :
+       {&TactileSample::force_y_N, &TactileSample::force_z_N, &TactileSample::moment_y_Nm,
+        &TactileSample::moment_z_Nm, &TactileSample::moment_x_Nm}) {
     for (const double value : {kNaN, kNoLimit, -kNoLimit}) {
       MovingArm arm(192);
       arm.step(spoilt(arm.touch(), reading, value));

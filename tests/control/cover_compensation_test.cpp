@@ -20,6 +20,7 @@ ControllerConfig coveredRobot(test::Random& random) {
   const int joints = random.integer(2, 9);
   ControllerConfig config = test::randomController(random, joints, 1);
   config.gravity_Base = random.uniform(1.0, 12.0) * random.unitVector();
+  config.tactile_modules.front().feels_moment_x = true;
   config.tactile_modules.front().cover =
       CoverConfig{random.uniform(0.05, 1.5), random.vector<Vector3>(3, -0.2, 0.4)};
   return config;
@@ -32,21 +33,21 @@ Pose modulePose(const ControllerConfig& config, const JointVector& q) {
 }
 
 /// What cells feel of the cover: force and moment about the module's origin.
-Wrench4 feltAt(const ControllerConfig& config, const JointVector& q, const Vector3& a_Base) {
+Wrench5 feltAt(const ControllerConfig& config, const JointVector& q, const Vector3& a_Base) {
   const CoverConfig& cover = *config.tactile_modules.front().cover;
   const Matrix3 R = modulePose(config, q).R_AB;
   const Vector3 F = cover.mass_kg * (R.transpose() * config.gravity_Base) -
                     cover.mass_kg * (R.transpose() * a_Base);
   const Vector3 M = cover.p_ModuleCenter.cross(F);
-  return {F.y(), F.z(), M.y(), M.z()};
+  return Wrench5{{F.y(), F.z(), M.y(), M.z(), M.x()}};
 }
 
-TactileSample sampleOf(const Wrench4& w, std::uint32_t sequence) {
-  return {w[0], w[1], w[2], w[3], sequence};
+TactileSample sampleOf(const Wrench5& w, std::uint32_t sequence) {
+  return {w[0], w[1], w[2], w[3], sequence, w[4]};
 }
 
-Wrench4 wrenchOf(const TactileSample& s) {
-  return {s.force_y_N, s.force_z_N, s.moment_y_Nm, s.moment_z_Nm};
+Wrench5 wrenchOf(const TactileSample& s) {
+  return Wrench5{{s.force_y_N, s.force_z_N, s.moment_y_Nm, s.moment_z_Nm, s.moment_x_Nm}};
 }
 
 TEST(CoverCompensation, LeavesTheContactOfAnArmAtRestAnywhere) {
@@ -57,8 +58,8 @@ TEST(CoverCompensation, LeavesTheContactOfAnArmAtRestAnywhere) {
     const auto n = static_cast<int>(config.q_start.size());
     const JointVector q = random.vector(n, -2.0, 2.0);
     const Vector3 none = Vector3::Zero();
-    const Wrench4 contact = random.vector<Wrench4>(4, -5.0, 5.0);
-    const Wrench4 weight = feltAt(config, q, none) - feltAt(config, config.q_start, none);
+    const Wrench5 contact = random.vector<Wrench5>(5, -5.0, 5.0);
+    const Wrench5 weight = feltAt(config, q, none) - feltAt(config, config.q_start, none);
     CoverCompensationState state;
     TactileSample relieved;
     for (std::uint32_t cycle = 1; cycle < 300; ++cycle)
@@ -85,8 +86,8 @@ struct Left {
 Left relieveSwinging(const ControllerConfig& config, const Swinging& swinging) {
   const Vector3 c = config.tactile_modules.front().cover->p_ModuleCenter;
   const CoverCompensation compensation(config, config.tactile_modules.front());
-  const Wrench4 tare = feltAt(config, config.q_start, Vector3::Zero());
-  std::vector<ButterworthLowPass> filters(4, ButterworthLowPass(15.0, 1.0 / kPeriod_s));
+  const Wrench5 tare = feltAt(config, config.q_start, Vector3::Zero());
+  std::vector<ButterworthLowPass> filters(5, ButterworthLowPass(15.0, 1.0 / kPeriod_s));
   const auto center = [&](double t_s) {
     const Pose X = modulePose(config, swinging.at(t_s));
     return Vector3(X.p_AB + X.R_AB * c);
@@ -97,8 +98,8 @@ Left relieveSwinging(const ControllerConfig& config, const Swinging& swinging) {
     const double t_s = cycle * kPeriod_s;
     constexpr double h = 1e-4;
     const Vector3 a = (center(t_s + h) - 2.0 * center(t_s) + center(t_s - h)) / (h * h);
-    Wrench4 reading = feltAt(config, swinging.at(t_s), a);
-    for (int i = 0; i < 4; ++i) reading[i] = filters[i].update(reading[i]);
+    Wrench5 reading = feltAt(config, swinging.at(t_s), a);
+    for (int i = 0; i < 5; ++i) reading[i] = filters[i].update(reading[i]);
     reading -= tare;
     const TactileSample relieved =
         compensation.relieve(sampleOf(reading, 1), swinging.at(t_s), kPeriod_s, state);

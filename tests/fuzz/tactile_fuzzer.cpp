@@ -27,6 +27,7 @@ CanTactileConfig configOf(std::uint8_t options) {
   CanTactileConfig config;
   for (int i = 0; i < 32; ++i) config.channels.calibration(i / 8, i % 8) = 0.25 * (i % 7) - 0.7;
   if ((options & 1) != 0) config.filter_cutoff_hz = 15.0;
+  if ((options & 16) != 0) config.channels.moment_x = tactus::TactileChannelRow::Constant(0.3);
   config.tare_samples = 1 + (options >> 1 & 7);
   return config;
 }
@@ -49,7 +50,8 @@ void check(const TactileReceiver& receiver, std::uint64_t frames) {
   const tactus::TactileSample& sample = receiver.sample();
   const tactus::TactileCounters& counters = receiver.counters();
   const double largest = std::max({std::abs(sample.force_y_N), std::abs(sample.force_z_N),
-                                   std::abs(sample.moment_y_Nm), std::abs(sample.moment_z_Nm)});
+                                   std::abs(sample.moment_y_Nm), std::abs(sample.moment_z_Nm),
+                                   std::abs(sample.moment_x_Nm)});
   require(largest < 1e4);  // also refuses NaN
   require(sample.sequence == counters.samples);
   require(4ULL * counters.samples + counters.incomplete + counters.malformed + counters.repeated <=

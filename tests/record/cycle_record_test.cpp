@@ -15,12 +15,12 @@ namespace {
 TEST(RecordFields, NameEveryWordOfARecordButItsGainsExactlyOnceInItsOrder) {
   std::vector<std::size_t> offsets;
   for (const RecordColumn& column :
-       recordColumns({kMaxJoints, kMaxTaskSize, true, kMaxTactileModules}))
+       recordColumns({kMaxJoints, kMaxTaskSize, true, kMaxTactileModules, true}))
     offsets.push_back(column.offset);
   std::ranges::sort(offsets);
   ASSERT_EQ(offsets.size() * 8, offsetof(CycleRecord, gains));
   for (std::size_t i = 0; i < offsets.size(); ++i) EXPECT_EQ(offsets[i], 8 * i);
-  const auto of_one_module = recordColumns({kMaxJoints, kMaxTaskSize, true});
+  const auto of_one_module = recordColumns({kMaxJoints, kMaxTaskSize, true, 1, true});
   EXPECT_TRUE(std::ranges::is_sorted(of_one_module, {}, &RecordColumn::offset));
 }
 
@@ -131,7 +131,7 @@ struct Cycle {
   Cycle() {
     input.q_measured = JointVector::LinSpaced(3, 1.1, 1.3);
     gains.force.damping = 9.1;
-    input.tactile[0] = {2.1, 2.2, 2.3, 2.4, 4000000000u};
+    input.tactile[0] = {2.1, 2.2, 2.3, 2.4, 4000000000u, 2.5};
     output.velocity = JointVector::LinSpaced(3, 3.1, 3.3);
     output.q_desired = JointVector::LinSpaced(3, 4.1, 4.3);
     output.w = TaskVector::LinSpaced(2, 5.1, 5.2);
@@ -198,6 +198,7 @@ TEST(RecordedInput, IsTheInputThatWasRecorded) {
   EXPECT_EQ(input.tactile[0].moment_y_Nm, 2.3);
   EXPECT_EQ(input.tactile[0].moment_z_Nm, 2.4);
   EXPECT_EQ(input.tactile[0].sequence, 4000000000u);
+  EXPECT_EQ(input.tactile[0].moment_x_Nm, 2.5);
   EXPECT_EQ(input.tactile[1].force_y_N, 2.6);
   EXPECT_EQ(input.tactile[1].sequence, 17u);
   EXPECT_EQ(input.tactile[2].sequence, 0u);

@@ -125,6 +125,18 @@ TEST(Ulog, HasARotationErrorOnlyOfATaskWithOne) {
   EXPECT_EQ(recordColumns(description.shape).back().name, name);
 }
 
+TEST(Ulog, HasAMomentAboutTheAxisOnlyOfModulesThatTellIt) {
+  LogDescription description = smallDescription();
+  const std::string name = "tactile_moment_x_Nm";
+  EXPECT_EQ(writeLog(description, {}).find(name), std::string::npos);
+  description.shape.has_moment_x = true;
+  EXPECT_NE(writeLog(description, {}).find("double " + name + ";"), std::string::npos);
+  EXPECT_EQ(recordColumns(description.shape).back().name, name);
+  description.shape.modules = 3;
+  EXPECT_NE(writeLog(description, {}).find("double[3] " + name + ";"), std::string::npos);
+  EXPECT_EQ(recordColumns(description.shape).back().name, name + "_3");
+}
+
 /// Every byte of a small log, written down from the specification.
 TEST(Ulog, WritesTheBytesOfTheSpecification) {
   LogDescription description;

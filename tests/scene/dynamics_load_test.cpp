@@ -109,5 +109,76 @@ TEST(DynamicsLoad, EndsAsOneLine) {
               {"scene.yaml:", "simulation.arm: the robot has no section dynamics"});
 }
 
+TEST(DriveEffectsLoad, AreAbsentUnlessTheSceneNamesThem) {
+  const PlantConfig plant = MassiveFiles().load().plant;
+  EXPECT_EQ(plant.drives.dead_time_s, 0.0);
+  EXPECT_EQ(plant.drives.max_acceleration.size(), 0);
+  EXPECT_FALSE(plant.drives.loop);
+  EXPECT_FALSE(plant.drives.reports_links);
+  EXPECT_EQ(plant.dynamics->max_torque.size(), 0);
+  EXPECT_EQ(plant.dynamics->coulomb_friction.size(), 0);
+  EXPECT_EQ(plant.dynamics->viscous_friction.size(), 0);
+  EXPECT_EQ(plant.dynamics->backlash.size(), 0);
+}
+
+TEST(DriveEffectsLoad, GoWhereTheyActInThePlant) {
+  const PlantConfig heavy =
+      MassiveFiles()
+          .load({{"simulation.drives",
+                  "{dead_time_s: 0.004, max_acceleration: [1, 2, 3], max_torque: [10, 20, 30], "
+                  "coulomb_friction: [4, 5, 6], viscous_friction: [7, 8, 9], "
+                  "backlash: [0, 0.001, 0.002], feedback: link}"}})
+          .plant;
+  EXPECT_EQ(heavy.drives.dead_time_s, 0.004);
+  EXPECT_EQ(heavy.drives.max_acceleration[1], 2.0);
+  EXPECT_TRUE(heavy.drives.reports_links);
+  EXPECT_EQ(heavy.dynamics->max_torque[0], 10.0);
+  EXPECT_EQ(heavy.dynamics->coulomb_friction[2], 6.0);
+  EXPECT_EQ(heavy.dynamics->viscous_friction[0], 7.0);
+  EXPECT_EQ(heavy.dynamics->backlash[2], 0.002);
+  const PlantConfig line =
+      test::SceneFiles{}.load({{"simulation.drives", "{bandwidth_hz: 8}"}}).plant;
+  ASSERT_TRUE(line.drives.loop);
+  EXPECT_EQ(line.drives.loop->bandwidth_hz, 8.0);
+  EXPECT_EQ(line.drives.loop->damping_ratio, 0.7);
+}
+
+TEST(DriveEffectsLoad, EndAsOneLineWhereTheArmCannotHaveThem) {
+  struct Wrong {
+    const char *arm, *drives, *at, *problem;
+  };
+  for (const Wrong& wrong : {
+           Wrong{"quasi_static", "{bandwidth_hz: 501}", "bandwidth_hz: ", "501 Hz is too high"},
+           Wrong{"quasi_static", "{bandwidth_hz: -1}", "bandwidth_hz: ", "out of range"},
+           Wrong{"quasi_static", "{dead_time_s: 0.2}", "dead_time_s: ", "out of range"},
+           Wrong{"rigid_gears", "{bandwidth_hz: 8}", "bandwidth_hz: ", "servos of its own"},
+           Wrong{"quasi_static", "{max_torque: [1, 1, 1]}", "max_torque: ", "no torques"},
+           Wrong{"quasi_static", "{coulomb_friction: [1, 1, 1]}",
+                 "coulomb_friction: ", "no torques"},
+           Wrong{"quasi_static", "{viscous_friction: [1, 1, 1]}",
+                 "viscous_friction: ", "no torques"},
+           Wrong{"rigid_gears", "{backlash: [0, 0, 0]}", "backlash: ", "do not give way"},
+           Wrong{"quasi_static", "{feedback: link}", "feedback: ", "do not give way"},
+           Wrong{"rigid_gears", "{max_torque: [1, 1]}", "max_torque: ", "2"},
+       }) {
+    const std::string error =
+        test::loadError(MassiveFiles().sources(),
+                        {{"simulation.arm", wrong.arm}, {"simulation.drives", wrong.drives}});
+    EXPECT_NE(error.find(std::string("simulation.drives.") + wrong.at), std::string::npos) << error;
+    EXPECT_NE(error.find(wrong.problem), std::string::npos) << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos);
+  }
+}
+
+TEST(DriveEffectsLoad, PlayNeedsAMotorWithMass) {
+  MassiveFiles files;
+  files.robot = test::replaced(files.robot, "[3, 0.5, 0.1]", "[3, 0, 0.1]");
+  EXPECT_NO_THROW(files.load({{"simulation.drives", "{backlash: [0.001, 0, 0.001]}"}}));
+  const std::string error =
+      test::loadError(files.sources(), {{"simulation.drives", "{backlash: [0, 0.001, 0]}"}});
+  EXPECT_NE(error.find("simulation.drives.backlash[1]: its motor has no mass"), std::string::npos)
+      << error;
+}
+
 }  // namespace
 }  // namespace tactus

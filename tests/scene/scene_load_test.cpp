@@ -83,6 +83,22 @@ TEST(SceneLoad, PutsThePlantInItsPlace) {
   EXPECT_EQ(plant.obstacles[1].foam[0].until_force_N, 9.0);
 }
 
+TEST(SceneLoad, TakesAFifthRowForTheMomentAboutTheAxis) {
+  SceneFiles files;
+  const Scene four = files.load();
+  EXPECT_FALSE(four.plant.modules[0].channels.moment_x);
+  EXPECT_FALSE(four.controller.tactile_modules[0].feels_moment_x);
+  const Scene five = files.load({{"robot.tactile_module.calibration",
+                                  "[[1, -1, 0, 0, 1, -1, 0, 0], [0, 0, 1, -1, 0, 0, 1, -1],"
+                                  " [0, 0, -0.1, 0.1, 0, 0, -0.3, 0.3],"
+                                  " [0.1, -0.1, 0, 0, 0.3, -0.3, 0, 0],"
+                                  " [0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.09]]"}});
+  ASSERT_TRUE(five.plant.modules[0].channels.moment_x);
+  EXPECT_EQ((*five.plant.modules[0].channels.moment_x)[7], 0.09);
+  EXPECT_EQ(five.plant.modules[0].channels.calibration(3, 4), 0.3);
+  EXPECT_TRUE(five.controller.tactile_modules[0].feels_moment_x);
+}
+
 TEST(SceneLoad, SwingsObstaclesAndLosesSamples) {
   SceneFiles files;
   const Scene scene = files.load({{"simulation.obstacles[1].swing", "{y_m: 0.02, frequency_hz: 3}"},

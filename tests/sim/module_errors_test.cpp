@@ -14,14 +14,16 @@ namespace {
 
 SimulatedModuleConfig realModule() { return test::crops9Plant({}).modules[0]; }
 
-Wrench4 forceAt(double x_m, double F_y, double F_z) { return {F_y, F_z, -x_m * F_z, x_m * F_y}; }
-
-Wrench4 readingOf(const SimulatedModule& module) {
-  const TactileSample& s = module.sample();
-  return {s.force_y_N, s.force_z_N, s.moment_y_Nm, s.moment_z_Nm};
+Wrench5 forceAt(double x_m, double F_y, double F_z) {
+  return Wrench5{{F_y, F_z, -x_m * F_z, x_m * F_y, 0.0}};
 }
 
-Wrench4 settled(SimulatedModule& module, const Wrench4& wrench, int steps = 2000) {
+Wrench5 readingOf(const SimulatedModule& module) {
+  const TactileSample& s = module.sample();
+  return Wrench5{{s.force_y_N, s.force_z_N, s.moment_y_Nm, s.moment_z_Nm, s.moment_x_Nm}};
+}
+
+Wrench5 settled(SimulatedModule& module, const Wrench5& wrench, int steps = 2000) {
   for (int i = 0; i < steps; ++i) module.update(wrench);
   return readingOf(module);
 }
@@ -30,7 +32,7 @@ TEST(ModuleErrors, GainsOfChannelsAreThoseOfTheCells) {
   SimulatedModuleConfig config = realModule();
   config.channel_gains.assign(8, 1.1);
   SimulatedModule all(config);
-  const Wrench4 force = forceAt(0.1, 3.0, -2.0);
+  const Wrench5 force = forceAt(0.1, 3.0, -2.0);
   EXPECT_LT((settled(all, force) - 1.1 * force).norm(), 1e-9);
   // The first ring's pair along y, at 0.04 m: a force there is felt by it alone, half by each.
   config.channel_gains = {2.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
@@ -43,8 +45,8 @@ TEST(ModuleErrors, ChannelsDriftFromTheStart) {
   SimulatedModuleConfig config = realModule();
   config.channel_drifts_N_per_s = {0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   SimulatedModule module(config);
-  EXPECT_NEAR(settled(module, Wrench4::Zero(), 5001)[0], 0.5, 1e-3);
-  EXPECT_NEAR(settled(module, Wrench4::Zero(), 5000)[0], 1.0, 1e-3);
+  EXPECT_NEAR(settled(module, Wrench5::Zero(), 5001)[0], 0.5, 1e-3);
+  EXPECT_NEAR(settled(module, Wrench5::Zero(), 5000)[0], 1.0, 1e-3);
 }
 
 TEST(ModuleErrors, TurnedCellsSeeForcesTurnedTheOtherWay) {
@@ -55,7 +57,7 @@ TEST(ModuleErrors, TurnedCellsSeeForcesTurnedTheOtherWay) {
     const double angle = random.uniform(-3.0, 3.0);
     const double seen = angle - config.direction_error_rad;
     SimulatedModule module(config);
-    const Wrench4 felt =
+    const Wrench5 felt =
         settled(module, forceAt(0.3, 2.0 * std::cos(angle), 2.0 * std::sin(angle)));
     EXPECT_LT((felt - forceAt(0.3, 2.0 * std::cos(seen), 2.0 * std::sin(seen))).norm(), 1e-9);
   }
@@ -65,7 +67,7 @@ TEST(ModuleErrors, ATareTakesAwayWhatIsFeltAtRestErrorsIncluded) {
   SimulatedModuleConfig config = realModule();
   config.channel_gains = {1.2, 0.9, 1.0, 1.1, 0.8, 1.0, 1.0, 1.05};
   config.direction_error_rad = 0.2;
-  const Wrench4 weight = forceAt(0.19, 1.0, -4.0);
+  const Wrench5 weight = forceAt(0.19, 1.0, -4.0);
   SimulatedModule tared(config, weight);
   for (int i = 0; i < 400; ++i) {
     tared.update(weight);
@@ -86,7 +88,7 @@ TEST(ModuleErrors, AChannelAtItsRailIsSeen) {
   EXPECT_FALSE(module.isSaturated());
   settled(module, forceAt(0.19, 0.0, -4.0 * 8.4));
   EXPECT_TRUE(module.isSaturated());
-  settled(module, Wrench4::Zero());
+  settled(module, Wrench5::Zero());
   EXPECT_FALSE(module.isSaturated());
 }
 
@@ -99,7 +101,7 @@ std::multiset<int> latenesses(double jitter_s, std::uint64_t seed) {
   std::multiset<int> result;
   std::uint32_t sequence = 0;
   for (int step = 0; step < 40000; ++step) {
-    module.update(Wrench4::Zero());
+    module.update(Wrench5::Zero());
     const std::uint32_t now = module.sample().sequence;
     if (now == sequence) continue;
     sequence = now;

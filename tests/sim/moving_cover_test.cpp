@@ -17,7 +17,7 @@ TEST(MovingCover, FeelsWeightByItsPosture) {
   const CoverConfig cover{0.4, Vector3(0.19, 0.0, 0.0)};
   // Level, its z up: the weight pulls along -z and turns about +y.
   const MovingCover level(cover, kGravity, Pose{});
-  EXPECT_LT((level.atRest() - Wrench4(0.0, -3.924, 0.19 * 3.924, 0.0)).norm(), 1e-12);
+  EXPECT_LT((level.atRest() - Wrench5{{0.0, -3.924, 0.19 * 3.924, 0.0, 0.0}}).norm(), 1e-12);
   const Pose upright{Eigen::AngleAxisd(-0.5 * 3.14159265358979, Vector3::UnitY()).matrix(), {}};
   EXPECT_LT(MovingCover(cover, kGravity, upright).atRest().norm(), 1e-9) << "not felt along x";
 }
@@ -34,14 +34,14 @@ TEST(MovingCover, FeelsItsInertiaAsItTurnsAndIsPushed) {
       return Pose{Eigen::AngleAxisd(omega * t_s, axis).matrix(), 0.5 * t_s * t_s * a};
     };
     MovingCover moving(cover, kGravity, poseAt(-0.01));
-    Wrench4 felt;
+    Wrench5 felt;
     for (int step = -99; step <= 1; ++step) felt = moving.update(poseAt(step * step_s), step_s);
     // The mean acceleration of the last two steps is that at t = 0: pushed, and centripetal.
     const Vector3 c = cover.p_ModuleCenter;
     const Vector3 a_center = a + omega * omega * axis.cross(axis.cross(c));
     const Vector3 F = cover.mass_kg * (kGravity - a_center);
     const Vector3 M = c.cross(F);
-    EXPECT_LT((felt - Wrench4(F.y(), F.z(), M.y(), M.z())).norm(), 0.02) << i;
+    EXPECT_LT((felt - Wrench5{{F.y(), F.z(), M.y(), M.z(), M.x()}}).norm(), 0.02) << i;
   }
 }
 

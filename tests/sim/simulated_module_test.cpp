@@ -4,6 +4,7 @@
 
 #include "support/crops9.h"
 #include "support/random.h"
+#include "support/tactile_samples.h"
 #include "tactus/control/contact_point.h"
 
 namespace tactus {
@@ -13,15 +14,17 @@ constexpr double kFullScale_N = 8388607.0 / 100000.0;
 
 SimulatedModuleConfig moduleConfig() { return test::crops9Plant({}).modules[0]; }
 
-Wrench4 wrenchOf(double x_m, double F_y, double F_z) { return {F_y, F_z, -x_m * F_z, x_m * F_y}; }
+Wrench5 wrenchOf(double x_m, double F_y, double F_z) {
+  return Wrench5{{F_y, F_z, -x_m * F_z, x_m * F_y, 0.0}};
+}
 
-TactileSample settle(SimulatedModule& module, const Wrench4& wrench) {
+TactileSample settle(SimulatedModule& module, const Wrench5& wrench) {
   for (int i = 0; i < 2000; ++i) module.update(wrench);
   return module.sample();
 }
 
-Wrench4 readings(const TactileSample& s) {
-  return {s.force_y_N, s.force_z_N, s.moment_y_Nm, s.moment_z_Nm};
+Wrench5 readings(const TactileSample& s) {
+  return Wrench5{{s.force_y_N, s.force_z_N, s.moment_y_Nm, s.moment_z_Nm, s.moment_x_Nm}};
 }
 
 TEST(SimulatedModule, GivesTheContactBackThroughTwentyFourBits) {
@@ -36,11 +39,30 @@ TEST(SimulatedModule, GivesTheContactBackThroughTwentyFourBits) {
     const TactileSample sample =
         settle(module, wrenchOf(x_m, force_N * std::cos(angle), force_N * std::sin(angle)));
     ContactPointState contact;
-    locateContact(sample, 0.38, contact);
+    locateContact(sample, test::moduleOfLength(0.38), contact);
     const double quantum_N = 1.0 / config.channels.counts_per_N;
     EXPECT_NEAR(contact.force_N, force_N, 4.0 * quantum_N);
     EXPECT_NEAR(contact.position_m, x_m, 4.0 * 0.34 * quantum_N / force_N);
     EXPECT_NEAR(contact.direction.z(), std::sin(angle), 4.0 * quantum_N / force_N);
+  }
+}
+
+/// Also where its row is not at right angles to the others.
+TEST(SimulatedModule, GivesTheMomentAboutTheAxisBackIfItTellsIt) {
+  test::Random random(322);
+  for (int i = 0; i < 50; ++i) {
+    SimulatedModuleConfig config = moduleConfig();
+    config.filter_cutoff_hz = 100.0;
+    Wrench5 wrench = wrenchOf(0.2, random.uniform(-9.0, 9.0), random.uniform(-9.0, 9.0));
+    wrench[4] = random.uniform(-0.3, 0.3);
+    SimulatedModule silent(config);
+    EXPECT_EQ(settle(silent, wrench).moment_x_Nm, 0.0);
+    config.channels.moment_x = random.vector<TactileChannelRow>(8, 0.01, 0.05);
+    SimulatedModule telling(config);
+    EXPECT_LT((readings(settle(telling, wrench)) - wrench).norm(), 1e-3);
+    config.quantised = false;
+    SimulatedModule exact(config);
+    EXPECT_LT((readings(settle(exact, wrench)) - wrench).norm(), 1e-9);
   }
 }
 
@@ -69,7 +91,7 @@ TEST(SimulatedModule, SaturatesItsChannels) {
 
 TEST(SimulatedModule, IsTransparentWithoutNoiseAndQuantisation) {
   SimulatedModule module(moduleConfig());
-  const Wrench4 wrench = wrenchOf(0.1, 3.0, -2.0);
+  const Wrench5 wrench = wrenchOf(0.1, 3.0, -2.0);
   EXPECT_LT((readings(settle(module, wrench)) - wrench).norm(), 1e-9);
 }
 
@@ -90,15 +112,15 @@ TEST(SimulatedModule, SamplesAtItsPeriodAndHoldsBetween) {
   }
 }
 
-std::vector<Wrench4> noise(std::uint64_t seed, double noise_N, int count) {
+std::vector<Wrench5> noise(std::uint64_t seed, double noise_N, int count) {
   SimulatedModuleConfig config = moduleConfig();
   config.noise_N = noise_N;
   config.seed = seed;
   config.channels.sample_period_s = 0.001;
   SimulatedModule module(config);
-  std::vector<Wrench4> samples;
+  std::vector<Wrench5> samples;
   for (int i = 0; i < count; ++i) {
-    module.update(Wrench4::Zero());
+    module.update(Wrench5::Zero());
     samples.push_back(readings(module.sample()));
   }
   return samples;
@@ -136,9 +158,9 @@ TEST(SimulatedModule, NoiseHasTheStandardDeviationOfEachChannel) {
   constexpr double kNoise_N = 0.03;
   constexpr int kCount = 20000;
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  Wrench4 mean = Wrench4::Zero();
-  for (const Wrench4& sample : noise(3, kNoise_N, kCount)) {
-    covariance += sample * sample.transpose() / kCount;
+  Wrench5 mean = Wrench5::Zero();
+  for (const Wrench5& sample : noise(3, kNoise_N, kCount)) {
+    covariance += sample.head<4>() * sample.head<4>().transpose() / kCount;
     mean += sample / kCount;
   }
   const Eigen::Matrix<double, 4, 8> C = moduleConfig().channels.calibration;

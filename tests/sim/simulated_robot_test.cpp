@@ -49,6 +49,67 @@ TEST(SimulatedRobot, DrivesLagBehindByTheirTimeConstant) {
   }
 }
 
+TEST(SimulatedRobot, DrivesMoveAfterTheirDeadTimeAndWithTheirOwnRamp) {
+  const ControllerConfig config = test::crops9Controller();
+  PlantConfig plant = test::crops9Plant({});
+  plant.drive_lag_s = 0.0;
+  plant.drives.dead_time_s = 0.0084;
+  SimulatedRobot late(config, plant, 0.001);
+  plant.drives.max_acceleration = JointVector::Constant(9, 5.0);
+  SimulatedRobot ramped(config, plant, 0.001);
+  const JointVector v = JointVector::Constant(9, 0.5);
+  for (int i = 0; i < 8; ++i) late.write(v);
+  EXPECT_EQ(measured(late), config.q_start);
+  for (int i = 8; i < 300; ++i) late.write(v);
+  for (int i = 0; i < 300; ++i) ramped.write(v);
+  EXPECT_LT((measured(late) - config.q_start - (0.3 - 0.0084) * v).norm(), 1e-12);
+  // A ramp to v takes v / a, of which half the way is lost, but for half a step.
+  const double way = 0.5 * (0.3 - 0.0084 - 0.5 * 0.1);
+  EXPECT_NEAR(measured(ramped)[3] - config.q_start[3], way, 0.5 * 0.001);
+}
+
+TEST(SimulatedRobot, ALoopOfSecondOrderStandsInPlaceOfTheLag) {
+  const ControllerConfig config = test::crops9Controller();
+  PlantConfig plant = test::crops9Plant({});
+  plant.drives.loop = VelocityLoopConfig{8.0, 0.5};
+  plant.drive_lag_s = 0.3;
+  SimulatedRobot robot(config, plant, 0.001);
+  VelocityLoop loop(*plant.drives.loop, config.q_start, 0.001);
+  JointVector q_d = config.q_start, q = q_d;
+  for (int i = 0; i < 300; ++i) {
+    const JointVector v = JointVector::LinSpaced(9, -0.2, 0.2) * std::sin(0.05 * i);
+    robot.write(v);
+    q_d += 0.001 * v;
+    loop.update(q_d, q);
+    ASSERT_LT((measured(robot) - q).norm(), 1e-12);
+  }
+}
+
+/// Both move the same arm; one drive tells of the motor, the other of the link.
+TEST(SimulatedRobot, ReportsTheSideOfTheGearThatItsEncoderIsOn) {
+  const ControllerConfig config = test::crops9Controller();
+  PlantConfig plant = test::crops9Plant({});
+  plant.dynamics.emplace();
+  for (int i = 0; i < 9; ++i)
+    plant.dynamics->bodies.push_back({2.0, Vector3(0.1, 0.0, 0.0), 0.01 * Matrix3::Identity()});
+  plant.dynamics->rotor_inertia = JointVector::Constant(9, 0.5);
+  plant.dynamics->gear_stiffness = JointVector::Constant(9, 1e3);
+  plant.dynamics->gear_damping = JointVector::Constant(9, 1.0);
+  SimulatedRobot of_motors(config, plant, 0.001);
+  plant.drives.reports_links = true;
+  SimulatedRobot of_links(config, plant, 0.001);
+  ChainPose pose;
+  double apart = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    for (SimulatedRobot* robot : {&of_motors, &of_links}) robot->write(JointVector::Ones(9));
+    ASSERT_EQ(of_motors.toolPosition(), of_links.toolPosition());
+    config.chain.computePose(measured(of_links), pose);
+    ASSERT_EQ(framePosition(pose, config.chain.tip()), of_links.toolPosition());
+    apart = std::max(apart, (measured(of_motors) - measured(of_links)).norm());
+  }
+  EXPECT_GT(apart, 1e-3);
+}
+
 TEST(SimulatedRobot, StaysWithinItsJointLimits) {
   const ControllerConfig config = test::crops9Controller();
   SimulatedRobot robot(config, test::crops9Plant({}), 0.001);

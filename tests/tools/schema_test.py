@@ -74,6 +74,9 @@ simulation:
   duration_s: 13
   arm: quasi_static
   drive_lag_s: 0.005
+  drives:
+    {bandwidth_hz: 8, damping_ratio: 0.7, dead_time_s: 0.008,
+     max_acceleration: [9, 9, 9, 9, 9, 9, 9, 9, 9], feedback: motor}
   tactile_module:
     {filter_cutoff_hz: 15, cover: {mass_kg: 0.3, center_m: [0.19, 0, 0]}, quantised: true, noise_N: 0,
      lost_share: 0, jitter_s: 0, seed: 1, channel_gains: [1, 1, 1, 1, 1, 1, 1, 1],
@@ -170,8 +173,12 @@ class Case(unittest.TestCase):
         revolute_first["drives"]["joints"].append(revolute_first["drives"]["joints"].pop(0))
         listed = copy.deepcopy(robot)
         listed["tactile_modules"] = [listed.pop("tactile_module")]
+        heavy = copy.deepcopy(scene)
+        heavy["simulation"]["arm"] = "flexible_gears"
+        torques = ("max_torque", "coulomb_friction", "viscous_friction", "backlash")
+        heavy["simulation"]["drives"] = {key: [0.01] * 9 for key in torques}
         extending = scene | {"extends": str(CONFIG / "scenes/free_motion.yaml")}
-        self.trees = {"scene": [scene, stops, rests, extending], "robot": [robot, revolute_first, listed]}
+        self.trees = {"scene": [scene, stops, rests, heavy, extending], "robot": [robot, revolute_first, listed]}
 
     def tree_with(self, row):
         """A whole file that has the key, as a copy, and the map that the key is in."""
@@ -225,7 +232,7 @@ class Schema(Case):
             "choice": ["nothing of the kind", 1, []],
             "choice list": ["x", [], ["x", "x"], ["w"], {}],
             "number list": [0.1, [], [0.1], [0.1, "yes", 0.1], [0.1, None, 0.1], {}],
-            "number table": [1, [[1] * 8] * 3, [[1] * 8] * 5, [[1] * 7] * 4, [["a"] * 8] * 4],
+            "number table": [1, [[1] * 8] * 3, [[1] * 8] * 6, [[1] * 7] * 4, [["a"] * 8] * 4],
             "section": [1, "text", [1]],
             "section list": [1, "text", {}, [1]],
         }

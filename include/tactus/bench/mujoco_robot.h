@@ -50,7 +50,7 @@ class MujocoRobot final : public Robot {
     SimulatedModule electronics;
     int steps_a_filter_step;
     Vector3 force_Base = Vector3::Zero();
-    Wrench4 wrench = Wrench4::Zero();
+    Wrench5 wrench = Wrench5::Zero();
   };
   struct Post {
     int geom, dof;

@@ -66,8 +66,7 @@ class TactileReceiver {
  private:
   static constexpr int kFrames = 4;
   static constexpr int kChannels = 8;
-  /// (F_y, F_z, M_y, M_z), N and Nm.
-  using Wrench = Eigen::Vector4d;
+  static constexpr int kReadings = 5;
 
   /// The sample under way.
   struct Assembly {
@@ -83,14 +82,14 @@ class TactileReceiver {
   bool isNew(std::uint8_t sequence) const noexcept;
   void finish() noexcept;
   void forgetNumbers() noexcept;
-  void publish(const Wrench& raw) noexcept;
-  void average(const Wrench& raw) noexcept;
+  void publish(const Wrench5& raw) noexcept;
+  void average(const Wrench5& raw) noexcept;
   void refuseTare(double offset_N, double spread_N) noexcept;
   void endTare() noexcept;
 
   CanTactileConfig config_;
   std::optional<ButterworthLowPass> fresh_filter_;
-  std::array<std::optional<ButterworthLowPass>, 4> filters_;
+  std::array<std::optional<ButterworthLowPass>, kReadings> filters_;
 
   Assembly assembly_;
   bool has_finished_ = false;
@@ -98,10 +97,10 @@ class TactileReceiver {
   int max_silent_cycles_;
   int silent_cycles_ = 0;  ///< without a frame that has a number, up to that
 
-  Wrench offset_ = Wrench::Zero();
+  Wrench5 offset_ = Wrench5::Zero();
   TareState tare_state_ = TareState::kNone;
   int tare_count_ = 0;
-  Wrench tare_sum_ = Wrench::Zero();
+  Wrench5 tare_sum_ = Wrench5::Zero();
   Eigen::Vector2d tare_low_, tare_high_;  ///< F_y and F_z so far
   FaultDetail tare_refusal_;
 

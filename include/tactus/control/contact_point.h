@@ -7,10 +7,11 @@ namespace tactus {
 
 /// What the tactile module says, module frame (x along the link).
 struct ContactPointState {
-  double force_N = 0.0;                 ///< F_sen
-  double position_m = 0.0;              ///< x of the contact on the link's axis
-  Vector3 direction = Vector3::Zero();  ///< F^, unit force on the robot; zero before any contact
-  double interval_s = 0.0;              ///< from the sample before to this one; 0: it is not new
+  double force_N = 0.0;     ///< F_sen; its normal part where M_x is felt
+  double position_m = 0.0;  ///< x of the contact on the link's axis
+  /// F^, unit force on the robot, zero before any contact; with M_x the cover's normal.
+  Vector3 direction = Vector3::Zero();
+  double interval_s = 0.0;  ///< from the sample before to this one; 0: it is not new
 
   bool isNew() const noexcept { return interval_s > 0.0; }
 };
@@ -18,9 +19,18 @@ struct ContactPointState {
 /// Force below which point and direction of contact are noise; the last ones stay.
 inline constexpr double kMinForceForDirection_N = 0.05;
 
+/// sin of the largest angle between force and normal that M_x is believed: atan 1. Whatever a
+/// broken channel says, 0.71 of the force is felt, and within 45 degrees of where it points.
+inline constexpr double kMaxTiltSine = 0.70710678;
+
+// clang-format off: equations
 /// Force, point and direction of the one contact that explains a sample:
 ///   x = (M_z F_y - M_y F_z) / (F_y^2 + F_z^2)
-void locateContact(const TactileSample& sample, double link_length_m,
+/// With M_x, and friction F_t = F_t u x n at the cover's surface, -r n from its axis u:
+///   M_x = (-r n x F) u = -r F_t,   sin d = F_t / F = -M_x / (r F),   n = Rot(u, -d) F^,
+///   F_n = F cos d
+// clang-format on
+void locateContact(const TactileSample& sample, const TactileModuleConfig& module,
                    ContactPointState& contact) noexcept;
 
 /// Finite and within the module's range?

@@ -56,6 +56,7 @@ struct TactileModuleConfig {
   double max_force_N = 100.0;          ///< a larger reading is a sensor fault
   double max_sample_age_s = 0.02;      ///< an older sample is a sensor fault
   double filter_cutoff_hz = 15.0;      ///< of the module's 3rd-order Butterworth filter
+  bool feels_moment_x = false;         ///< its samples have M_x, by which the normal is known
   std::optional<CoverConfig> cover{};  ///< whose weight and inertia are taken out of its samples
 };
 

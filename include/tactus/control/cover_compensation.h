@@ -12,8 +12,8 @@ struct CoverCompensationState {
   double missed_s = 0.0;                   ///< of cycles since the last one
   Vector3 p_BaseCenter = Vector3::Zero();  ///< m
   Vector3 v_BaseCenter = Vector3::Zero();  ///< m/s
-  Wrench4 origin = Wrench4::Zero();        ///< of the filter, which knows only differences from it
-  Wrench4 s0 = Wrench4::Zero(), s1 = Wrench4::Zero(), s2 = Wrench4::Zero();  ///< of the filter
+  Wrench5 origin = Wrench5::Zero();        ///< of the filter, which knows only differences from it
+  Wrench5 s0 = Wrench5::Zero(), s1 = Wrench5::Zero(), s2 = Wrench5::Zero();  ///< of the filter
 };
 
 /// Takes weight and inertia of the cover out of the samples of a tactile module:
@@ -33,15 +33,16 @@ class CoverCompensation {
                         CoverCompensationState& state) const noexcept;
 
  private:
-  Wrench4 load(const JointVector& q, double period_s, CoverCompensationState& state) const noexcept;
+  Wrench5 load(const JointVector& q, double period_s, CoverCompensationState& state) const noexcept;
 
   SerialChain chain_;
   std::optional<GearedLinks> geared_links_;
   AttachedFrame link_;
   CoverConfig cover_;
+  bool feels_moment_x_;
   Vector3 gravity_Base_;
   double filter_cutoff_hz_;
-  Wrench4 at_tare_;
+  Wrench5 at_tare_;
 };
 
 }  // namespace tactus

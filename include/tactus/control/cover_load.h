@@ -13,11 +13,12 @@ struct CoverConfig {
 
 /// m R^T (g - a) at the centre of mass: what the cells feel of the cover's weight and inertia.
 /// load_Base: g - a of that centre, base frame, m/s^2.
-inline Wrench4 coverLoad(const CoverConfig& cover, const Matrix3& R_BaseModule,
+inline Wrench5 coverLoad(const CoverConfig& cover, const Matrix3& R_BaseModule,
                          const Vector3& load_Base) noexcept {
   const Vector3 F = cover.mass_kg * (R_BaseModule.transpose() * load_Base);
   const Vector3& p = cover.p_ModuleCenter;
-  return {F.y(), F.z(), p.z() * F.x() - p.x() * F.z(), p.x() * F.y() - p.y() * F.x()};
+  return Wrench5{{F.y(), F.z(), p.z() * F.x() - p.x() * F.z(), p.x() * F.y() - p.y() * F.x(),
+                  p.y() * F.z() - p.z() * F.y()}};
 }
 
 }  // namespace tactus

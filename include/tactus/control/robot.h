@@ -18,6 +18,7 @@ struct TactileSample {
   double moment_y_Nm = 0.0;  ///< about the origin of the module's frame
   double moment_z_Nm = 0.0;
   std::uint32_t sequence = 0;  ///< counts samples; unchanged: the same sample as before
+  double moment_x_Nm = 0.0;    ///< 0 of a module that does not tell
 };
 
 /// What a cycle reads from the robot.

@@ -19,6 +19,7 @@ enum class FieldShape : std::uint8_t {
   kPerTaskComponent,
   kPerModule,   ///< a scalar for each tactile module
   kOfRotation,  ///< a scalar that only tasks with a rotation have
+  kOfMomentX,   ///< likewise for each module, if any of them tells M_x
 };
 enum class FieldType : std::uint8_t { kDouble, kInt64, kUint64 };
 
@@ -44,6 +45,7 @@ struct RecordShape {
   int task_size = 0;
   bool has_rotation = false;  ///< of the task
   int modules = 1;            ///< tactile; zeros for the one that a robot does not have
+  bool has_moment_x = false;  ///< any of them
 
   std::size_t entries(const RecordField& field) const noexcept;
   /// Whether the field is logged as an array, if only of one entry.

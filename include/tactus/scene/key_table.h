@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "tactus/control/tactile_channels.h"
 #include "tactus/math/types.h"
 
 /// What may stand in a scene and in a robot.yaml, bound to the configs that it fills. The one
@@ -22,7 +23,7 @@ enum class ValueType {
   kChoice,       ///< one of `choices`
   kChoiceList,   ///< list of distinct `choices`
   kNumberList,   ///< list of numbers, each within `range`
-  kNumberTable,  ///< list of `count.min` lists of `columns` numbers
+  kNumberTable,  ///< list of `count` lists of `columns` numbers
   kSection,
   kSectionList,
 };
@@ -60,10 +61,10 @@ struct WordsTarget {
   std::function<std::vector<std::string>()> get;
 };
 
-/// Where a value goes. CAN identifiers alone are std::uint32_t.
-using Target =
-    std::variant<double*, int*, std::uint32_t*, std::uint64_t*, bool*, std::string*, Vector3*,
-                 std::vector<double>*, Eigen::Matrix<double, 4, 8>*, WordsTarget>;
+/// Where a value goes. CAN identifiers alone are std::uint32_t, and a calibration is of its
+/// channels.
+using Target = std::variant<double*, int*, std::uint32_t*, std::uint64_t*, bool*, std::string*,
+                            Vector3*, std::vector<double>*, TactileChannels*, WordsTarget>;
 
 /// A row of the table of a config struct. `owner` points to an object of that struct; Row<S> of
 /// key_builders.h keeps the types right.

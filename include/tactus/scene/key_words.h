@@ -49,6 +49,11 @@ inline constexpr std::array kTroubleWords = {
     Word<Trouble::Kind>{"emergency_stop", Trouble::Kind::kEmergencyStop},
 };
 
+inline constexpr std::array kFeedbackWords = {
+    Word<EncoderSide>{"motor", EncoderSide::kMotor},
+    Word<EncoderSide>{"link", EncoderSide::kLink},
+};
+
 inline constexpr std::array kArmWords = {
     Word<SimulatedArm>{"quasi_static", SimulatedArm::kQuasiStatic},
     Word<SimulatedArm>{"rigid_gears", SimulatedArm::kRigidGears},

@@ -40,10 +40,24 @@ struct TroubleSection {
 /// What the simulated arm is: a line that follows its drives, or bodies that they move.
 enum class SimulatedArm : std::uint8_t { kQuasiStatic, kRigidGears, kFlexibleGears };
 
+/// Which side of its gear a drive's encoder measures.
+enum class EncoderSide : std::uint8_t { kMotor, kLink };
+
+/// What drives do beside following; lists have one entry a joint.
+struct SimulatedDrivesSection {
+  std::optional<double> bandwidth_hz;
+  double damping_ratio = VelocityLoopConfig{}.damping_ratio;
+  double dead_time_s = DriveEffectsConfig{}.dead_time_s;
+  std::optional<std::vector<double>> max_acceleration, max_torque;
+  std::optional<std::vector<double>> coulomb_friction, viscous_friction, backlash;
+  EncoderSide feedback = EncoderSide::kMotor;
+};
+
 struct SimulationSection {
   double duration_s = 0.0;
   SimulatedArm arm = SimulatedArm::kQuasiStatic;
-  std::optional<double> drive_lag_s;       ///< another one than robot.yaml says
+  std::optional<double> drive_lag_s;  ///< another one than robot.yaml says
+  std::optional<SimulatedDrivesSection> drives;
   std::optional<double> filter_cutoff_hz;  ///< of the tactile module: another one, too
   SimulatedModuleConfig module;            ///< its imperfections alone
   std::optional<CoverSection> cover;       ///< another one, too

@@ -17,10 +17,10 @@ class MovingCover {
         at_rest_(coverLoad(cover, X_BaseModule.R_AB, gravity_Base)) {}
 
   /// Where it rested at first.
-  const Wrench4& atRest() const noexcept { return at_rest_; }
+  const Wrench5& atRest() const noexcept { return at_rest_; }
 
   /// What it adds to contacts, step_s > 0 after the last call.
-  Wrench4 update(const Pose& X_BaseModule, double step_s) noexcept {
+  Wrench5 update(const Pose& X_BaseModule, double step_s) noexcept {
     const Vector3 p_Base = X_BaseModule.p_AB + X_BaseModule.R_AB * cover_.p_ModuleCenter;
     const Vector3 way_m = p_Base - p_Base_;
     const Vector3 a_Base = (way_m - way_before_m_) / (step_s * step_s);
@@ -33,7 +33,7 @@ class MovingCover {
   CoverConfig cover_;
   Vector3 gravity_Base_;
   Vector3 p_Base_, way_before_m_ = Vector3::Zero();  ///< of its centre, in the last step
-  Wrench4 at_rest_;
+  Wrench5 at_rest_;
 };
 
 }  // namespace tactus

@@ -60,8 +60,23 @@ struct SimulatedModuleConfig {
   bool tared = true;  ///< false: a module that leaves the tare to its reader
 };
 
+/// A velocity loop of second order.
+struct VelocityLoopConfig {
+  double bandwidth_hz = 0.0;  ///< > 0
+  double damping_ratio = 0.7;
+};
+
+/// What drives do beside following.
+struct DriveEffectsConfig {
+  double dead_time_s = 0.0;                  ///< of setpoints
+  JointVector max_acceleration{};            ///< the drive's own ramp, one a joint; empty: none
+  std::optional<VelocityLoopConfig> loop{};  ///< in place of the lag, if given
+  bool reports_links = false;                ///< of an arm with gears; false: where its motors are
+};
+
 struct PlantConfig {
-  double drive_lag_s = 0.005;                  ///< first-order lag of position; 0: ideal drives
+  double drive_lag_s = 0.005;  ///< first-order lag of position; 0: ideal drives
+  DriveEffectsConfig drives;
   std::optional<ArmDynamicsConfig> dynamics;   ///< in place of that lag, if given
   double robot_stiffness_N_per_m = kNoLimit;   ///< of the arm, in series with every obstacle
   Vector3 gravity_Base = Vector3::Zero();      ///< m/s^2; only covers feel it

@@ -19,10 +19,10 @@ class SimulatedModule {
  public:
   /// at_rest: what it feels at the start without a contact, and has for long.
   explicit SimulatedModule(const SimulatedModuleConfig& config,
-                           const std::optional<Wrench4>& at_rest = std::nullopt);
+                           const std::optional<Wrench5>& at_rest = std::nullopt);
 
   /// One step at the module's rate.
-  void update(const Wrench4& wrench) noexcept;
+  void update(const Wrench5& wrench) noexcept;
 
   const TactileSample& sample() const noexcept { return sample_; }
   /// The channels of the sample; zero unless quantised.
@@ -33,19 +33,21 @@ class SimulatedModule {
  private:
   using Channels = Eigen::Matrix<double, 8, 1>;
 
-  Wrench4 filter(const Wrench4& wrench) noexcept;
+  Wrench5 filter(const Wrench5& wrench) noexcept;
   double chance() noexcept;
   void deliver() noexcept;
-  Wrench4 turned(const Wrench4& wrench) const noexcept;
+  Wrench5 turned(const Wrench5& wrench) const noexcept;
   void distort(Channels& forces_N) const noexcept;
-  Wrench4 measure(const Wrench4& wrench) noexcept;
-  Wrench4 read(Channels& forces_N) noexcept;
+  Wrench5 measure(const Wrench5& wrench) noexcept;
+  Wrench5 read(Channels& forces_N) noexcept;
 
   SimulatedModuleConfig config_;
-  std::array<ButterworthLowPass, 4> filters_;
-  Eigen::Matrix<double, 8, 4> channels_from_wrench_;  ///< pseudoinverse of the calibration
-  std::optional<Wrench4> at_rest_;
-  Wrench4 tare_ = Wrench4::Zero();
+  std::array<ButterworthLowPass, 5> filters_;
+  /// Pseudoinverse of the calibration; that of M_x is zero where it is not told.
+  Eigen::Matrix<double, 8, 4> channels_from_wrench_;
+  Channels channels_from_moment_x_;
+  std::optional<Wrench5> at_rest_;
+  Wrench5 tare_ = Wrench5::Zero();
   double sin_error_ = 0.0, cos_error_ = 1.0;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;

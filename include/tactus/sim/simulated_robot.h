@@ -6,9 +6,11 @@
 #include "tactus/control/controller_config.h"
 #include "tactus/control/robot.h"
 #include "tactus/sim/arm_dynamics.h"
+#include "tactus/sim/drive_setpoints.h"
 #include "tactus/sim/moving_cover.h"
 #include "tactus/sim/obstacle.h"
 #include "tactus/sim/simulated_module.h"
+#include "tactus/sim/velocity_loop.h"
 
 namespace tactus {
 
@@ -47,10 +49,10 @@ class SimulatedRobot final : public Robot {
     int steps_a_filter_step = 1;
     double true_force_N = 0.0;
     Vector3 force_Base = Vector3::Zero();  ///< of all contacts, and what they are to the module
-    Wrench4 wrench = Wrench4::Zero();
+    Wrench5 wrench = Wrench5::Zero();
   };
 
-  void moveArm(double duration_s, const JointVector& velocity_setpoint) noexcept;
+  void moveArm(double duration_s, const JointVector& commanded) noexcept;
   void touch(double t_s, Module& module) noexcept;
   void measure(Module& module) noexcept;
   void push(const Vector3& p_Module, const Vector3& force_Base, Module& module) noexcept;
@@ -62,6 +64,9 @@ class SimulatedRobot final : public Robot {
   int steps_a_cycle_;
   int parts_a_step_ = 1;  ///< where the arm has mass
   double drive_share_;
+  bool reports_links_;
+  std::optional<DriveSetpoints> setpoints_;
+  std::optional<VelocityLoop> loop_;
   std::optional<ArmDynamics> dynamics_;
   JointVector torque_;  ///< of all contacts; only where the arm has mass
   long step_ = 0;

@@ -47,12 +47,13 @@ struct CycleRecord {
   std::uint64_t missed_cycles = 0;  ///< skipped by the loop just before this one
   double path_time_s = 0.0;         ///< the reference's clock: task_time_s less the time it waited
   double tool_rotation_error_rad = 0.0;  ///< as tool_error_m; only for tasks with a rotation
-  Gains gains;                           ///< of this cycle; the log has them where they change
+  double tactile_moment_x_Nm[kMaxTactileModules] = {};  ///< 0 of modules that do not tell it
+  Gains gains;  ///< of this cycle; the log has them where they change
 };
 
 static_assert(std::is_trivially_copyable_v<CycleRecord> && std::is_standard_layout_v<CycleRecord>);
 static_assert(sizeof(CycleRecord) ==
-              8 * (12 + 10 * kMaxTactileModules + 3 * kMaxJoints + 3 * kMaxTaskSize + 13) +
+              8 * (12 + 11 * kMaxTactileModules + 3 * kMaxJoints + 3 * kMaxTaskSize + 13) +
                   sizeof(Gains));
 
 /// Copies one cycle into a record; wake_latency_ns and step_ns are left to the caller, who alone
