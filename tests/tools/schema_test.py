@@ -87,12 +87,20 @@ simulation:
       vanishes_s: 10
       friction_coefficient: 0.3
       shear_stiffness_N_per_m: 3000
-      swing: {x_m: 0, y_m: 0.01, frequency_hz: 1}
+      swing: {x_m: 0, y_m: 0.01, z_m: 0, frequency_hz: 1}
   troubles:
     - {kind: delay, from_s: 1, until_s: 2, interface: can0, id: 0x181, delay_s: 0.01}
 real_time: {required: true}
 log: {max_bytes: 1e9, keep: 4, min_free_bytes: 1e8}
 """
+
+
+SHAPES = (
+    {"sphere": {"center_m": [0.7, 0, 1], "radius_m": 0.1}},
+    {"plane": {"point_m": [0.9, 0, 0], "normal": [-1, 0, 0]}},
+    {"line": {"point_m": [0.7, 0, 0], "direction": [0, 0, 1]}},
+    {"post": {"foot_m": [0.7, 0, 0], "axis": [0, 0, 1], "height_m": 1, "radius_m": 0.01}},
+)
 
 
 def load(text):
@@ -166,12 +174,16 @@ class Case(unittest.TestCase):
         stops["task"]["trajectory"] = {"waypoints": [dict(scene["task"]["trajectory"]["line"], pause_s=1)]}
         rests = copy.deepcopy(scene)
         rests["task"]["trajectory"] = {"hold": {}}
+        shaped = []
+        for shape in SHAPES:
+            shaped.append(copy.deepcopy(scene))
+            shaped[-1]["simulation"]["obstacles"] = [shape | {"stiffness_N_per_m": 60}]
         revolute_first = copy.deepcopy(robot)
         revolute_first["drives"]["joints"].append(revolute_first["drives"]["joints"].pop(0))
         listed = copy.deepcopy(robot)
         listed["tactile_modules"] = [listed.pop("tactile_module")]
         extending = scene | {"extends": str(CONFIG / "scenes/free_motion.yaml")}
-        self.trees = {"scene": [scene, stops, rests, extending], "robot": [robot, revolute_first, listed]}
+        self.trees = {"scene": [scene, stops, rests, extending, *shaped], "robot": [robot, revolute_first, listed]}
 
     def tree_with(self, row):
         """A whole file that has the key, as a copy, and the map that the key is in."""

@@ -8,6 +8,7 @@
 #include "tactus/control/cover_load.h"
 #include "tactus/control/tactile_channels.h"
 #include "tactus/sim/arm_dynamics.h"
+#include "tactus/sim/shape_config.h"
 
 namespace tactus {
 
@@ -23,11 +24,13 @@ struct Swing {
   double x_m = 0.0;
   double y_m = 0.0;
   double frequency_hz = 0.0;
+  double z_m = 0.0;
 };
 
 /// A vertical line at (x, y) in the base frame that pushes on the covers of the tactile modules,
-/// horizontally, wherever it crosses one: a latex band, or a profile behind foam. With friction it
-/// pulls along the cover, too.
+/// horizontally, wherever it crosses one: a latex band, or a profile behind foam; or one of the
+/// shapes below in its place, which push away from themselves. With friction it pulls along the
+/// cover, too.
 struct ObstacleConfig {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -39,6 +42,10 @@ struct ObstacleConfig {
   double friction_coefficient = 0.0;  ///< mu of the cover on it
   /// Of the bristle that sticks, in series with the robot; as the solid part if not given.
   std::optional<double> shear_stiffness_N_per_m{};
+  std::optional<SphereConfig> sphere{};  ///< at most one of these
+  std::optional<PlaneConfig> plane{};
+  std::optional<LineConfig> line{};
+  std::optional<PostConfig> post{};
 };
 
 /// A simulated tactile module: its cover and its electronics.
