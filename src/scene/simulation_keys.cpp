@@ -45,7 +45,7 @@ Table<PlaneConfig> planeKeys() {
           required(direction("normal", "out of the obstacle", &PlaneConfig::normal))};
 }
 
-Table<LineConfig> lineKeys() {
+Table<LineConfig> obstacleLineKeys() {
   return {place("point_m", "a point on it", &LineConfig::point_m),
           required(direction("direction", "along it", &LineConfig::direction))};
 }
@@ -74,7 +74,7 @@ Table<ObstacleConfig> shapeKeys() {
       optional(section("plane", "in place of x_m and y_m: all that is behind a plane",
                        &Config::plane, planeKeys())),
       optional(section("line", "in place of x_m and y_m: an endless line of any direction",
-                       &Config::line, lineKeys())),
+                       &Config::line, obstacleLineKeys())),
       optional(section("post", "in place of x_m and y_m: a round bar of finite length",
                        &Config::post, postKeys())),
   };
@@ -187,6 +187,10 @@ Table<SimulationSection> simulationKeys() {
              "lag of the simulated drives of a quasi-static arm; absent: as robot.yaml says",
              &Config::drive_lag_s),
       moduleSection(),
+      oneAJoint("link_length_errors_m", "m", within(-10, 10),
+                "by how much the simulated link behind each joint is longer, up to the next joint "
+                "or the tool, than the URDF says; the controller does not know; absent: 0",
+                &Config::link_length_errors_m),
       sectionList("obstacles", {0, 64}, "what pushes on the cover, and on collision_capsules",
                   &Config::obstacles, obstacleKeys()),
       sectionList("troubles", {0, 64},

@@ -78,6 +78,7 @@ simulation:
     {filter_cutoff_hz: 15, cover: {mass_kg: 0.3, center_m: [0.19, 0, 0]}, quantised: true, noise_N: 0,
      lost_share: 0, jitter_s: 0, seed: 1, channel_gains: [1, 1, 1, 1, 1, 1, 1, 1],
      channel_drifts_N_per_s: [0, 0, 0, 0, 0, 0, 0, 0], direction_error_rad: 0}
+  link_length_errors_m: [0, 0, 0, 0, 0, 0, 0, 0, 0]
   obstacles:
     - x_m: 0.7
       y_m: 0
@@ -167,6 +168,8 @@ class Case(unittest.TestCase):
         robot["gravity_m_per_s2"] = [0, 0, -9.81]
         robot["tactile_module"]["cover"] = {
             "mass_kg": 0.3, "center_m": [0.19, 0, 0], "behind_gears": True}  # fmt: skip
+        robot["collision_capsules"] = [
+            {"link": "link5", "from_m": [0, 0, 0], "to_m": [0.12, 0, 0], "radius_m": 0.05}]  # fmt: skip
         for line in ("e_stop", "enable", "brake", "heartbeat"):
             robot["gpio"][line].setdefault("active_low", False)
         scene = load(SCENE)

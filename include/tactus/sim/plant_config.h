@@ -67,6 +67,15 @@ struct SimulatedModuleConfig {
   bool tared = true;  ///< false: a module that leaves the tare to its reader
 };
 
+/// A part of a link that obstacles push on and nothing feels: all within radius_m of a segment,
+/// which may be a point.
+struct LinkCapsule {
+  AttachedFrame link;                    ///< joint -1: fixed to the base
+  Vector3 p_LinkFrom = Vector3::Zero();  ///< m
+  Vector3 p_LinkTo = Vector3::Zero();    ///< m
+  double radius_m = 0.0;
+};
+
 struct PlantConfig {
   double drive_lag_s = 0.005;                  ///< first-order lag of position; 0: ideal drives
   std::optional<ArmDynamicsConfig> dynamics;   ///< in place of that lag, if given
@@ -74,6 +83,8 @@ struct PlantConfig {
   Vector3 gravity_Base = Vector3::Zero();      ///< m/s^2; only covers feel it
   std::vector<SimulatedModuleConfig> modules;  ///< in the order of those that the controller reads
   std::vector<ObstacleConfig> obstacles;
+  std::vector<LinkCapsule> capsules;   ///< absent: contact on the covers of modules alone
+  std::optional<SerialChain> chain{};  ///< the arm's, where it is not what the controller believes
 };
 
 }  // namespace tactus
