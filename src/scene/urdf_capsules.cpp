@@ -27,7 +27,7 @@ std::string vectorText(const Vector3& v) {
 }
 
 std::string lineOf(const std::string& link, const Capsule& capsule) {
-  return fmt::format("  - {{link: {}, from_m: {}, to_m: {}, radius_m: {:.4g}}}\n", link,
+  return fmt::format("  - {{link: {}, from_m: {}, to_m: {}, radius_m: {:.4g}}}\n", escaped(link),
                      vectorText(capsule.from), vectorText(capsule.to), capsule.radius_m);
 }
 

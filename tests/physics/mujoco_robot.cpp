@@ -30,6 +30,8 @@ MujocoPost postOf(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m
   if (obstacle.swing.frequency_hz > 0.0 || obstacle.appears_s > 0.0 ||
       obstacle.vanishes_s != kNoLimit)
     throw std::invalid_argument("obstacles have to stand still");
+  if (obstacle.sphere || obstacle.plane || obstacle.line || obstacle.post)
+    throw std::invalid_argument("obstacles have to be vertical lines");
   const double mass_kg =
       stiffestSlope(obstacle, robot_stiffness_N_per_m) * std::pow(step_s / kPostPhase_rad, 2);
   return {obstacle.x_m, obstacle.y_m, mass_kg, obstacle.friction_coefficient};
@@ -48,6 +50,8 @@ MujocoWorld worldOf(const ControllerConfig& robot, const PlantConfig& plant, dou
 
 MujocoModel modelOf(const ControllerConfig& robot, const PlantConfig& plant, double step_s) {
   if (!plant.dynamics) throw std::invalid_argument("the arm needs masses");
+  if (!plant.capsules.empty() || plant.chain)
+    throw std::invalid_argument("the arm has to be the controller's, with modules alone");
   return loadMujoco(mujocoText(robot.chain, *plant.dynamics, worldOf(robot, plant, step_s)));
 }
 

@@ -25,7 +25,7 @@ class MujocoRobot final : public Robot {
  public:
   /// step_s: of MuJoCo's integration; filter periods and period_s are multiples of it. Throws
   /// std::invalid_argument for what it cannot do: an arm without mass, obstacles that move, come or
-  /// go.
+  /// go or have a shape, contact beside modules.
   MujocoRobot(const ControllerConfig& robot, const PlantConfig& plant, double period_s,
               double step_s = kMujocoStep_s);
 
