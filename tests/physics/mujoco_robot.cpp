@@ -30,11 +30,9 @@ MujocoPost postOf(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m
   if (obstacle.swing.frequency_hz > 0.0 || obstacle.appears_s > 0.0 ||
       obstacle.vanishes_s != kNoLimit)
     throw std::invalid_argument("obstacles have to stand still");
-  if (obstacle.sphere || obstacle.plane || obstacle.line || obstacle.post)
-    throw std::invalid_argument("obstacles have to be vertical lines");
   const double mass_kg =
       stiffestSlope(obstacle, robot_stiffness_N_per_m) * std::pow(step_s / kPostPhase_rad, 2);
-  return {obstacle.x_m, obstacle.y_m, mass_kg, obstacle.friction_coefficient};
+  return mujocoPost(obstacle, mass_kg);
 }
 
 MujocoWorld worldOf(const ControllerConfig& robot, const PlantConfig& plant, double step_s) {
@@ -108,6 +106,7 @@ void MujocoRobot::addPosts(const ControllerConfig& robot, const PlantConfig& pla
     posts_.push_back({model_->body_geomadr[body], model_->body_dofadr[body],
                       ContactSpring(obstacle, others_N_per_m),
                       shearStiffness(obstacle, plant.robot_stiffness_N_per_m),
+                      obstacle.sphere || obstacle.plane ? Vector3::Ones() : Vector3(1.0, 1.0, 0.0),
                       2.0 * kPostDamping * std::sqrt(stiffest_N_per_m * model_->body_mass[body])});
     ++body;
   }
@@ -166,7 +165,7 @@ void MujocoRobot::pushPostsBack() noexcept {
   for (const Post& post : posts_) {
     const Vector3 way = Eigen::Map<const Vector3>(data_->qpos + post.dof);
     Vector3 normal = post.normal_Base;
-    if (normal.isZero()) normal = Vector3(way.x(), way.y(), 0.0).normalized();
+    if (normal.isZero()) normal = way.cwiseProduct(post.pushed).normalized();
     const double in_m = way.dot(normal);
     const double force_N = std::copysign(post.spring.force_N(std::abs(in_m)), in_m);
     Eigen::Map<Vector3>(data_->qfrc_applied + post.dof) =
@@ -191,7 +190,7 @@ void MujocoRobot::feelContacts() noexcept {
     for (Post& post : posts_) {
       if (contact.geom1 != post.geom && contact.geom2 != post.geom) continue;
       const double sign = contact.geom2 == post.geom ? 1.0 : -1.0;
-      post.normal_Base = sign * Vector3(R(0, 0), R(0, 1), 0.0).normalized();
+      post.normal_Base = sign * R.row(0).transpose().cwiseProduct(post.pushed).normalized();
     }
     for (Module& module : modules_) {
       if (contact.geom1 != module.geom && contact.geom2 != module.geom) continue;
