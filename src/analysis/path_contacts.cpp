@@ -6,23 +6,30 @@
 
 #include "tactus/analysis/cover_geometry.h"
 #include "tactus/control/controller.h"
-#include "tactus/sim/obstacle.h"
+#include "tactus/sim/link_contacts.h"
 
 namespace tactus {
 namespace {
 
-/// A cover among obstacles that push with 1 N/m: their forces are penetrations.
+/// With obstacles that push with 1 N/m: their forces are penetrations.
+PlantConfig withUnitSprings(PlantConfig plant) {
+  plant.robot_stiffness_N_per_m = kNoLimit;
+  for (ObstacleConfig& obstacle : plant.obstacles) {
+    obstacle.stiffness_N_per_m = 1.0;
+    obstacle.foam.clear();
+    obstacle.friction_coefficient = 0.0;
+  }
+  return plant;
+}
+
+/// A cover among obstacles with unit springs.
 class FollowedCover {
  public:
   FollowedCover(int index, const TactileModuleConfig& module, double radius_m,
                 const PlantConfig& plant)
       : index_(index), module_(module), radius_m_(radius_m) {
-    for (ObstacleConfig obstacle : plant.obstacles) {
-      obstacle.stiffness_N_per_m = 1.0;
-      obstacle.foam.clear();
-      obstacle.friction_coefficient = 0.0;
-      obstacles_.emplace_back(obstacle, kNoLimit);
-    }
+    for (const ObstacleConfig& obstacle : plant.obstacles)
+      obstacles_.emplace_back(obstacle, plant.robot_stiffness_N_per_m);
     depth_m_.resize(obstacles_.size());
   }
 
@@ -73,6 +80,23 @@ class FollowedCover {
   bool has_moved_ = false;
 };
 
+/// Adds what the capsules touch in a cycle.
+void noteCapsules(const LinkContacts& links, double t_s, std::vector<CapsuleTouch>& touches) {
+  for (int i = 0; i < links.capsules(); ++i) {
+    for (int k = 0; k < links.obstacles(); ++k) {
+      const double depth_m = links.force_N(i, k);
+      if (depth_m <= 0.0) continue;
+      const auto known = std::ranges::find_if(
+          touches, [&](const CapsuleTouch& t) { return t.capsule == i && t.obstacle == k; });
+      if (known == touches.end()) {
+        touches.push_back({i, k, t_s, depth_m, depth_m});
+      } else {
+        known->deepest_m = std::max(known->deepest_m, depth_m);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 ControllerConfig undisturbed(ControllerConfig config) {
@@ -84,25 +108,32 @@ ControllerConfig undisturbed(ControllerConfig config) {
 
 PathContacts followPath(const ControllerConfig& config, const PlantConfig& plant, double period_s,
                         double duration_s) {
+  const PlantConfig soft = withUnitSprings(plant);
+  const SerialChain& arm = plant.chain ? *plant.chain : config.chain;
   PathContacts contacts;
   contacts.touches.resize(plant.obstacles.size());
   std::vector<FollowedCover> covers;
   for (std::size_t i = 0; i < config.tactile_modules.size(); ++i)
     covers.emplace_back(static_cast<int>(i), config.tactile_modules[i],
-                        plant.modules[i].cover_radius_m, plant);
+                        plant.modules[i].cover_radius_m, soft);
   const ControllerConfig alone = undisturbed(config);
   const Controller controller(alone);
   ControllerState state = controller.initialState();
   ControllerOutput output;
   ChainPose pose;
+  arm.computePose(state.q_desired, pose);
+  LinkContacts links(soft, pose);
+  ScaledVector torque = ScaledVector::Zero();
   const double cycles = std::ceil(duration_s / period_s);
   contacts.is_complete = cycles <= kMaxFollowedCycles;
   const auto last = std::llround(std::min(cycles, kMaxFollowedCycles));
   for (long long cycle = 0; cycle < last; ++cycle) {
     const double t_s = static_cast<double>(cycle) * period_s;
-    config.chain.computePose(state.q_desired, pose);
+    arm.computePose(state.q_desired, pose);
     for (FollowedCover& cover : covers)
       cover.moveTo(pose, state.q_desired, t_s, period_s, contacts);
+    links.touch(arm, pose, t_s, torque);
+    noteCapsules(links, t_s, contacts.unsensed);
     controller.update(RobotInput{}, alone.gains, t_s, period_s, state, output);
   }
   return contacts;

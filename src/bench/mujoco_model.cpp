@@ -12,6 +12,7 @@ namespace tactus::physics {
 namespace {
 
 constexpr double kPostHeight_m = 4.0;  ///< above and below the base
+constexpr double kWallHalf_m = 0.2;    ///< of its thickness
 
 // Soft enough to stay shut while it slides: MuJoCo's friction opens a contact by mu times the way
 // that is slid in its time constant. A shorter one sticks sooner; a longer one damps less, as
@@ -58,13 +59,20 @@ std::string cover(const MujocoCover& cover) {
 }
 
 std::string post(const MujocoPost& post) {
-  std::string text = fmt::format(R"(<body pos="{:.17g} {:.17g} 0">)", post.x_m, post.y_m);
+  std::string text = fmt::format(R"(<body pos="{}">)", numbers(post.p_Base));
   for (int i = 0; i < 3; ++i)
     text += fmt::format(R"(<joint type="slide" axis="{}"/>)", numbers(Vector3::Unit(i)));
   return text +
          fmt::format(
-             R"(<geom type="capsule" size="{}" fromto="0 0 {} 0 0 {}" mass="{:.17g}" contype="0" conaffinity="1" friction="{:.17g}"/></body>)",
-             kPostRadius_m, -kPostHeight_m, kPostHeight_m, post.mass_kg, post.friction_coefficient);
+             R"(<geom {} mass="{:.17g}" contype="0" conaffinity="1" friction="{:.17g}"/></body>)",
+             post.geom, post.mass_kg, post.friction_coefficient);
+}
+
+/// A box whose face is at the plane, as wide as no arm.
+std::string wallGeom(const Vector3& normal) {
+  const Matrix3 R = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitX(), normal).toRotationMatrix();
+  return fmt::format(R"(type="box" size="{:.17g} 4 4" {})", kWallHalf_m + kPostRadius_m,
+                     place(R, -kWallHalf_m * normal.normalized()));
 }
 
 /// A body a joint, each in the one before.
@@ -92,6 +100,22 @@ std::string bodies(const SerialChain& chain, const ArmDynamicsConfig& arm,
 }
 
 }  // namespace
+
+MujocoPost mujocoPost(const ObstacleConfig& obstacle, double mass_kg) {
+  const double mu = obstacle.friction_coefficient;
+  if (obstacle.line || obstacle.post) throw std::invalid_argument("no such obstacles here");
+  if (const auto& sphere = obstacle.sphere) {
+    const double radius_m = sphere->radius_m + kPostRadius_m;
+    return {sphere->center_m, fmt::format(R"(type="sphere" size="{:.17g}")", radius_m), mass_kg,
+            mu};
+  }
+  if (const auto& plane = obstacle.plane)
+    return {plane->point_m, wallGeom(plane->normal), mass_kg, mu};
+  return {Vector3(obstacle.x_m, obstacle.y_m, 0.0),
+          fmt::format(R"(type="capsule" size="{}" fromto="0 0 {} 0 0 {}")", kPostRadius_m,
+                      -kPostHeight_m, kPostHeight_m),
+          mass_kg, mu};
+}
 
 double contactStiffness(const mjModel& model, int body, int other_body) {
   const double inverse_mass =

@@ -31,7 +31,7 @@ MujocoPost postOf(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m
     throw std::invalid_argument("obstacles have to be there all the time");
   const double mass_kg =
       stiffestSlope(obstacle, robot_stiffness_N_per_m) * std::pow(step_s / kPostPhase_rad, 2);
-  return {obstacle.x_m, obstacle.y_m, mass_kg, obstacle.friction_coefficient};
+  return mujocoPost(obstacle, mass_kg);
 }
 
 MujocoWorld worldOf(const ControllerConfig& robot, const PlantConfig& plant, double step_s) {
@@ -47,6 +47,8 @@ MujocoWorld worldOf(const ControllerConfig& robot, const PlantConfig& plant, dou
 
 MujocoModel modelOf(const ControllerConfig& robot, const PlantConfig& plant, double step_s) {
   if (!plant.dynamics) throw std::invalid_argument("the arm needs masses");
+  if (!plant.capsules.empty() || plant.chain)
+    throw std::invalid_argument("the arm has to be the controller's, with modules alone");
   return loadMujoco(mujocoText(robot.chain, *plant.dynamics, worldOf(robot, plant, step_s)));
 }
 
@@ -103,6 +105,7 @@ void MujocoRobot::addPosts(const ControllerConfig& robot, const PlantConfig& pla
     posts_.push_back({model_->body_geomadr[body], model_->body_dofadr[body],
                       ContactSpring(obstacle, others_N_per_m),
                       shearStiffness(obstacle, plant.robot_stiffness_N_per_m), obstacle.swing,
+                      obstacle.sphere || obstacle.plane ? Vector3::Ones() : Vector3(1.0, 1.0, 0.0),
                       2.0 * kPostDamping * std::sqrt(stiffest_N_per_m * model_->body_mass[body])});
     ++body;
   }
@@ -167,7 +170,7 @@ void MujocoRobot::pushPostsBack() noexcept {
   for (const Post& post : posts_) {
     const Vector3 way = Eigen::Map<const Vector3>(data_->qpos + post.dof) - homeOf(post);
     Vector3 normal = post.normal_Base;
-    if (normal.isZero()) normal = Vector3(way.x(), way.y(), 0.0).normalized();
+    if (normal.isZero()) normal = way.cwiseProduct(post.pushed).normalized();
     const double in_m = way.dot(normal);
     const double force_N = std::copysign(post.spring.force_N(std::abs(in_m)), in_m);
     Eigen::Map<Vector3>(data_->qfrc_applied + post.dof) =
@@ -192,7 +195,7 @@ void MujocoRobot::feelContacts() noexcept {
     for (Post& post : posts_) {
       if (contact.geom1 != post.geom && contact.geom2 != post.geom) continue;
       const double sign = contact.geom2 == post.geom ? 1.0 : -1.0;
-      post.normal_Base = sign * Vector3(R(0, 0), R(0, 1), 0.0).normalized();
+      post.normal_Base = sign * R.row(0).transpose().cwiseProduct(post.pushed).normalized();
     }
     for (Module& module : modules_) {
       if (contact.geom1 != module.geom && contact.geom2 != module.geom) continue;

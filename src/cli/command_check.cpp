@@ -19,6 +19,7 @@
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/path_check.h"
 #include "tactus/scene/stability_check.h"
+#include "tactus/scene/urdf_capsules.h"
 
 namespace tactus {
 namespace {
@@ -27,6 +28,7 @@ struct CheckOptions {
   std::string scene;
   std::vector<std::string> settings;
   bool json = false;
+  bool capsules = false;
 };
 
 /// Where a run starts.
@@ -217,6 +219,10 @@ std::string toText(const Scene& scene, const Findings& findings) {
 
 void runCheck(const CheckOptions& options) {
   const Scene scene = loadScene(options.scene, parseOverrides(options.settings));
+  if (options.capsules) {
+    std::fputs(proposeCapsules(scene).c_str(), stdout);
+    return;
+  }
   const Findings findings = examine(scene);
   checkLogSize(scene);
   const std::string report =
@@ -231,7 +237,11 @@ void addCheckCommand(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<CheckOptions>();
   command->add_option("scene", options->scene, "Scene file")->required();
   command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
-  command->add_flag("--json", options->json, "Print JSON");
+  CLI::Option* const json = command->add_flag("--json", options->json, "Print JSON");
+  command
+      ->add_flag("--capsules", options->capsules,
+                 "Print collision_capsules for robot.yaml instead, from the URDF's geometry")
+      ->excludes(json);
   command->callback([options, &exit_code] {
     runCheck(*options);
     exit_code = kExitDone;

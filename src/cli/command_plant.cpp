@@ -11,6 +11,7 @@
 #include "tactus/cli/commands.h"
 #include "tactus/cli/plant_run.h"
 #include "tactus/record/run_error.h"
+#include "tactus/record/unsensed_text.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/json.h"
 
@@ -24,18 +25,22 @@ struct PlantOptions {
   bool json = false;
 };
 
-Json countersJson(const PlantRunResult& result) {
-  return {{"stale_setpoints_applied", result.plant.stale_setpoints_applied},
-          {"frames_refused", result.plant.frames_refused},
-          {"frames_not_taken", result.plant.frames_not_taken},
-          {"interface_refused", result.interface_refused}};
+Json countersJson(const PlantRunResult& result, const Scene& scene) {
+  Json json = {{"stale_setpoints_applied", result.plant.stale_setpoints_applied},
+               {"frames_refused", result.plant.frames_refused},
+               {"frames_not_taken", result.plant.frames_not_taken},
+               {"interface_refused", result.interface_refused}};
+  if (result.unsensed) json["unsensed_contact"] = unsensedJson(*result.unsensed, scene);
+  return json;
 }
 
-void printCounters(const PlantRunResult& result) {
+void printCounters(const PlantRunResult& result, const Scene& scene) {
   fmt::print("{:<26}{}\n", "stale setpoints applied", result.plant.stale_setpoints_applied);
   fmt::print("{:<26}{}\n", "frames refused by queues", result.plant.frames_refused);
   fmt::print("{:<26}{}\n", "frames not taken", result.plant.frames_not_taken);
   fmt::print("{:<26}{}\n", "refused by interfaces", result.interface_refused);
+  if (result.unsensed && result.unsensed->force_N > 0.0)
+    fmt::print("{}\n", unsensedText(*result.unsensed, scene));
 }
 
 void play(const PlantOptions& options) {
@@ -44,9 +49,9 @@ void play(const PlantOptions& options) {
     const PlantRunResult result =
         runPlant(scene, options.e_stop_file, options.json ? stderr : stdout);
     if (options.json) {
-      std::fputs(jsonText(countersJson(result)).c_str(), stdout);
+      std::fputs(jsonText(countersJson(result, scene)).c_str(), stdout);
     } else {
-      printCounters(result);
+      printCounters(result, scene);
     }
   } catch (const std::runtime_error& error) {  // and what the operating system refuses
     throw RunError(error.what());

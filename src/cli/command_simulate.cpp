@@ -18,6 +18,7 @@
 #include "tactus/record/fault_text.h"
 #include "tactus/record/run_folder.h"
 #include "tactus/record/run_summary.h"
+#include "tactus/record/unsensed_text.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/located_error.h"
 
@@ -99,6 +100,8 @@ void printRow(const Scene& scene, const SimulationResult& result) {
              figures.peak_force_N, figures.final_force_N, 1e3 * figures.tcp_error_max_m,
              1e3 * figures.tcp_error_final_m, result.real_time_factor,
              figures.end.fault == Fault::kNone ? "completed" : faultEvent(figures.end, scene));
+  if (figures.unsensed && figures.unsensed->force_N > 0.0)
+    fmt::print("{:<28} {}\n", "", unsensedText(*figures.unsensed, scene));
 }
 
 SimulationResult simulateScene(const Scene& scene, const fs::path& folder) {

@@ -113,8 +113,10 @@ class PlantPump {
   }
 
   PlantRunResult result() const {
-    PlantRunResult result{plant_.counters(), 0};
+    PlantRunResult result{plant_.counters(), 0, {}};
     for (const auto& socket : sockets_) result.interface_refused += socket->refused();
+    if (const LinkContacts* links = plant_.world().linkContacts())
+      result.unsensed = links->largest();
     return result;
   }
 

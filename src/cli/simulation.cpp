@@ -113,6 +113,7 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
   const double simulated_s = static_cast<double>(cycle) * scene.period_s;
   SimulationResult result{summary.figures(), simulated_s / wall_s};
   result.figures.end = end;
+  if (const LinkContacts* links = robot.linkContacts()) result.figures.unsensed = links->largest();
   return result;
 }
 

@@ -107,12 +107,26 @@ MovingObstacle bearableMotion(const ForceGains& gains, double stiffest_N_per_m) 
   return {m, limit_N / (2.0 * gains.time_constant_s * m), 1.5 * limit_N};
 }
 
+/// Of an arm that follows its path and does not give way.
+std::string unsensedWarning(const Scene& scene, const CapsuleTouch& touch) {
+  const ContactSpring spring(scene.plant.obstacles[touch.obstacle],
+                             scene.plant.robot_stiffness_N_per_m);
+  const std::string& link = scene.capsule_links[touch.capsule];
+  const std::string force = fmt::format("about {:.3g} N", spring.force_N(touch.deepest_m));
+  if (touch.t_s == 0.0) {
+    return fmt::format("{} touches obstacle {} unsensed at the start, {:.3g} mm deep, {}", link,
+                       touch.obstacle, 1e3 * touch.depth_m, force);
+  }
+  return fmt::format("{} touches obstacle {} unsensed at t = {:.3g} s, {}", link, touch.obstacle,
+                     touch.t_s, force);
+}
+
 std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& contacts,
                                     const std::optional<PeakReport>& peak) {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < contacts.touches.size(); ++i) {
     const std::optional<PathTouch>& touch = contacts.touches[i];
-    if (!touch && contacts.is_complete) {
+    if (!touch && contacts.is_complete && !scene.controller.tactile_modules.empty()) {
       warnings.push_back(
           fmt::format("obstacle {} is never touched: no cover comes to it on the scene's path", i));
     }
@@ -122,6 +136,8 @@ std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& cont
                       1e3 * touch->depth_m, scene.module_links[touch->module]));
     }
   }
+  for (const CapsuleTouch& touch : contacts.unsensed)
+    warnings.push_back(unsensedWarning(scene, touch));
   if (peak && peak->peak_N() > peak->max_force_N) {
     warnings.push_back(fmt::format(
         "the stiffest contact may come to {:.3g} N, the sensor's max_force_N is {:g}: that ends in "
@@ -137,7 +153,7 @@ double PeakReport::peak_N() const { return std::max(delay_peak_N, blow_peak_N.va
 
 ExpectedContact checkContacts(const Scene& scene, double stiffest_N_per_m) {
   ExpectedContact report;
-  if (scene.controller.tactile_modules.empty()) return report;
+  if (scene.controller.tactile_modules.empty() && scene.plant.capsules.empty()) return report;
   const PathContacts contacts =
       followPath(scene.controller, scene.plant, scene.period_s, scene.duration_s);
   if (scene.controller.force_control) {

@@ -7,6 +7,7 @@
 #include "tactus/record/fault_text.h"
 #include "tactus/record/output_file.h"
 #include "tactus/record/tool_error.h"
+#include "tactus/record/unsensed_text.h"
 
 namespace tactus {
 namespace {
@@ -45,6 +46,7 @@ void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
   Json& contacts = json["contacts"] = Json::array();
   for (const ContactSummary& contact : figures.contacts)
     contacts.push_back(contactJson(contact, scene));
+  if (figures.unsensed) json["unsensed_contact"] = unsensedJson(*figures.unsensed, scene);
   json["step_time_ns"] = timesJson(figures.step_time_ns);
 }
 

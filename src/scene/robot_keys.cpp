@@ -87,6 +87,22 @@ Table<TactileModuleSection> tactileModuleKeys() {
               moduleOnBusKeys());
 }
 
+Row<RobotConfig> capsuleSections() {
+  using Config = CapsuleSection;
+  const Table<Config> rows = {
+      text("link", "URDF link that it moves with, and whose frame it is given in", &Config::link),
+      required(vector3("from_m", "m", within(-100, 100), "one end of its axis", &Config::from_m)),
+      required(vector3("to_m", "m", within(-100, 100), "the other end, which may be the same",
+                       &Config::to_m)),
+      required(number("radius_m", "m", above(0, 10), "around its axis, also at its round ends",
+                      &Config::radius_m)),
+  };
+  return sectionList("collision_capsules", {0, 64},
+                     "parts of links that simulated obstacles push on, too, and no module feels: "
+                     "what the covers of modules leave free",
+                     &RobotConfig::collision_capsules, rows);
+}
+
 Row<RobotConfig> dynamicsSection() {
   using Config = DynamicsSection;
   const Table<Config> rows = {
@@ -133,6 +149,7 @@ Table<RobotConfig> robotTable() {
       onlyEntryOf("tactile_modules", "tactile_module",
                   "in place of tactile_modules: the only one, with the same keys",
                   &Config::tactile_modules, tactileModuleKeys()),
+      capsuleSections(),
       gpioSection(),
       realTimeSection(),
   };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/scene/capsule_loader.h"
 #include "tactus/scene/hardware_loader.h"
 #include "tactus/scene/table_reader.h"
 #include "tactus/scene/tactile_loader.h"
@@ -54,7 +55,8 @@ LoadedRobot loadRobot(const SourceFile& file, const SceneSettings& settings, Sou
 
   const NamedFrame tip{config.tip, "tip", locate(root, "tip")};
   checkModules(root, config.tactile_modules);
-  UrdfChain chain = loadUrdfChain(urdf, tip, moduleLinks(root, config.tactile_modules));
+  UrdfChain chain = loadUrdfChain(urdf, tip, moduleLinks(root, config.tactile_modules),
+                                  capsuleLinks(root, config.collision_capsules));
   checkWithinLimits(toJointVector(config.home, root, "home", chain), root, "home", chain);
   if (config.max_acceleration) {
     chain.limits.max_acceleration =

@@ -8,6 +8,7 @@
 
 #include "tactus/scene/gain_keys.h"
 #include "tactus/scene/key_words.h"
+#include "tactus/scene/obstacle_checks.h"
 #include "tactus/scene/tactile_loader.h"
 
 namespace tactus {
@@ -246,23 +247,6 @@ void checkGains(const Checked& c) {
   if (problem) c.fail(problem->path, problem->problem, problem->expectation);
 }
 
-void checkObstacles(const Checked& c) {
-  for (std::size_t i = 0; i < c.scene.simulation.obstacles.size(); ++i) {
-    const ObstacleConfig& obstacle = c.scene.simulation.obstacles[i];
-    const std::string path = fmt::format("simulation.obstacles[{}]", i);
-    if (obstacle.vanishes_s <= obstacle.appears_s) {
-      c.fail(path + ".vanishes_s", fmt::format("{} s is too early", obstacle.vanishes_s),
-             fmt::format("more than appears_s = {}", obstacle.appears_s));
-    }
-    for (std::size_t k = 1; k < obstacle.foam.size(); ++k) {
-      if (obstacle.foam[k].until_force_N > obstacle.foam[k - 1].until_force_N) continue;
-      c.fail(fmt::format("{}.foam[{}].until_force_N", path, k),
-             fmt::format("{} N is not above the layer before", obstacle.foam[k].until_force_N),
-             fmt::format("more than {} N", obstacle.foam[k - 1].until_force_N));
-    }
-  }
-}
-
 }  // namespace
 
 bool fitsModule(double period_s, double filter_rate_hz) {
@@ -282,7 +266,7 @@ void checkScene(const YamlNode& root, const SceneConfig& scene, const LoadedRobo
   checkPeriod(checked);
   checkSimulatedModule(checked);
   checkGains(checked);
-  checkObstacles(checked);
+  checkObstacles(root, scene.simulation.obstacles);
 }
 
 }  // namespace tactus

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tactus/scene/capsule_loader.h"
 #include "tactus/scene/cover_keys.h"
 #include "tactus/scene/drive_effects_loader.h"
 #include "tactus/scene/dynamics_loader.h"
 #include "tactus/scene/hardware_checks.h"
 #include "tactus/scene/hardware_loader.h"
 #include "tactus/scene/key_words.h"
+#include "tactus/scene/link_errors.h"
 #include "tactus/scene/robot_loader.h"
 #include "tactus/scene/scene_checks.h"
 #include "tactus/scene/source_reader.h"
@@ -144,8 +146,10 @@ PlantConfig makePlant(const YamlNode& root, const SceneConfig& config, const Loa
                                       : robot.stiffness_N_per_m;
   plant.obstacles = simulation.obstacles;
   plant.gravity_Base = robot.gravity_Base;
+  plant.chain = loadPlantChain(root, simulation.link_length_errors_m, loaded);
   for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i)
     plant.modules.push_back(makeSimulatedModule(simulation, robot.tactile_modules[i], i));
+  plant.capsules = loadCapsules(loaded, config.controller.has_value()).capsules;
   return plant;
 }
 
@@ -211,6 +215,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
               .numbers = std::move(numbers),
               .hardware = hardware,
               .log = config.log,
+              .capsule_links = loadCapsules(robot, config.controller.has_value()).links,
               .troubles = loadTroubles(root, config.simulation.troubles, hardware),
               .tree = std::make_shared<const YamlNode>(root)};
   return scene;

@@ -20,17 +20,69 @@ Table<Swing> swingKeys() {
   return {
       number("x_m", "m", within(-100, 100), "amplitude", &Swing::x_m),
       number("y_m", "m", within(-100, 100), "amplitude", &Swing::y_m),
+      number("z_m", "m", within(-100, 100), "amplitude", &Swing::z_m),
       required(number("frequency_hz", "Hz", above(0, 1000), "of the sine", &Swing::frequency_hz)),
   };
 }
 
-Table<ObstacleConfig> obstacleKeys() {
+template <class S>
+Row<S> place(const std::string& key, const std::string& doc, Vector3 S::*member) {
+  return required(vector3(key, "m", within(-100, 100), doc + ", base frame", member));
+}
+
+template <class S>
+Row<S> direction(const std::string& key, const std::string& doc, Vector3 S::*member) {
+  return vector3(key, "", within(-1e3, 1e3), doc + ", base frame, of any length but 0", member);
+}
+
+Table<SphereConfig> sphereKeys() {
+  return {place("center_m", "its centre", &SphereConfig::center_m),
+          required(number("radius_m", "m", above(0, 100), "of it", &SphereConfig::radius_m))};
+}
+
+Table<PlaneConfig> planeKeys() {
+  return {place("point_m", "a point of its surface", &PlaneConfig::point_m),
+          required(direction("normal", "out of the obstacle", &PlaneConfig::normal))};
+}
+
+Table<LineConfig> obstacleLineKeys() {
+  return {place("point_m", "a point on it", &LineConfig::point_m),
+          required(direction("direction", "along it", &LineConfig::direction))};
+}
+
+Table<PostConfig> postKeys() {
+  using Config = PostConfig;
+  return {
+      place("foot_m", "one end of its axis", &Config::foot_m),
+      direction("axis", "from foot to head", &Config::axis),
+      required(number("height_m", "m", above(0, 100), "length of its axis", &Config::height_m)),
+      number("radius_m", "m", within(0, 100), "around its axis, also at its round ends",
+             &Config::radius_m),
+  };
+}
+
+/// One of them, or x_m and y_m.
+Table<ObstacleConfig> shapeKeys() {
   using Config = ObstacleConfig;
   return {
-      required(number("x_m", "m", within(-100, 100), "place of the vertical line, base frame",
+      optional(number("x_m", "m", within(-100, 100),
+                      "place of a vertical line, base frame; absent: one of the shapes",
                       &Config::x_m)),
-      required(number("y_m", "m", within(-100, 100), "place of the vertical line, base frame",
+      optional(number("y_m", "m", within(-100, 100), "place of a vertical line, base frame",
                       &Config::y_m)),
+      optional(section("sphere", "in place of x_m and y_m: a ball", &Config::sphere, sphereKeys())),
+      optional(section("plane", "in place of x_m and y_m: all that is behind a plane",
+                       &Config::plane, planeKeys())),
+      optional(section("line", "in place of x_m and y_m: an endless line of any direction",
+                       &Config::line, obstacleLineKeys())),
+      optional(section("post", "in place of x_m and y_m: a round bar of finite length",
+                       &Config::post, postKeys())),
+  };
+}
+
+Table<ObstacleConfig> springKeys() {
+  using Config = ObstacleConfig;
+  return {
       required(number("stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
                       "of the solid part", &Config::stiffness_N_per_m)),
       sectionList("foam", {0, 16}, "layers before the solid part, outermost first", &Config::foam,
@@ -47,6 +99,8 @@ Table<ObstacleConfig> obstacleKeys() {
                        swingKeys())),
   };
 }
+
+Table<ObstacleConfig> obstacleKeys() { return join(shapeKeys(), springKeys()); }
 
 Table<Trouble> kindAndTimes() {
   return {
@@ -164,8 +218,12 @@ Table<SimulationSection> simulationKeys() {
       optional(section("drives", "what drives do beside following; absent: nothing",
                        &Config::drives, driveEffectKeys())),
       moduleSection(),
-      sectionList("obstacles", {0, 64}, "vertical lines that push on the cover", &Config::obstacles,
-                  obstacleKeys()),
+      oneAJoint("link_length_errors_m", "m", within(-10, 10),
+                "by how much the simulated link behind each joint is longer, up to the next joint "
+                "or the tool, than the URDF says; the controller does not know; absent: 0",
+                &Config::link_length_errors_m),
+      sectionList("obstacles", {0, 64}, "what pushes on the cover, and on collision_capsules",
+                  &Config::obstacles, obstacleKeys()),
       sectionList("troubles", {0, 64},
                   "what goes wrong on the buses of tactus plant; simulate has none",
                   &Config::troubles, troubleKeys()),

@@ -165,7 +165,8 @@ AttachedFrame moduleFrame(const UrdfTree& tree, const Walk& walk, const NamedFra
 }  // namespace
 
 UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
-                        const std::vector<NamedFrame>& module_links) {
+                        const std::vector<NamedFrame>& module_links,
+                        const std::vector<NamedFrame>& capsule_links) {
   UrdfTree tree;
   parseUrdf(file, tree);
   const int tip_link = requireLink(tree, tip);
@@ -186,6 +187,8 @@ UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
     chain.max_effort[static_cast<Eigen::Index>(i)] = walk.moving[i].max_effort;
   for (const NamedFrame& link : module_links)
     chain.module_links.push_back(moduleFrame(tree, walk, link));
+  for (const NamedFrame& link : capsule_links)
+    chain.capsule_links.push_back(frameBesideChain(tree, walk.placed, link));
   return chain;
 }
 

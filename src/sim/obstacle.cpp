@@ -40,7 +40,10 @@ double ContactSpring::force_N(double penetration_m) const noexcept {
 }
 
 Obstacle::Obstacle(const ObstacleConfig& config, double robot_stiffness_N_per_m)
-    : config_(config), spring_(config, robot_stiffness_N_per_m) {
+    : config_(config),
+      shape_(config),
+      way_m_(config.swing.x_m, config.swing.y_m, config.swing.z_m),
+      spring_(config, robot_stiffness_N_per_m) {
   if (config.friction_coefficient == 0.0) return;
   const double shear = config.shear_stiffness_N_per_m.value_or(config.stiffness_N_per_m);
   friction_.emplace(config.friction_coefficient, inSeries(shear, robot_stiffness_N_per_m));
@@ -59,25 +62,10 @@ ObstacleContact Obstacle::touch(const CoverAxis& axis, double t_s) noexcept {
     return contact;
   }
   moveTo(t_s);
-  const double horizontal = std::hypot(axis.direction.x(), axis.direction.y());
-  if (horizontal < 1e-9) return contact;  // a vertical link has no horizontal side to push on
-  const double h_x = axis.direction.x() / horizontal;
-  const double h_y = axis.direction.y() / horizontal;
-  double r_x = config_.x_m - axis.p_BaseStart.x();
-  double r_y = config_.y_m - axis.p_BaseStart.y();
-  if (config_.swing.frequency_hz > 0.0) {
-    r_x += swing_share_ * config_.swing.x_m;
-    r_y += swing_share_ * config_.swing.y_m;
-  }
-  const double left_m = h_x * r_y - h_y * r_x;  // distance to the left of the axis
-  contact.position_m = (h_x * r_x + h_y * r_y) / horizontal;
-  if (contact.position_m < 0.0 || contact.position_m > axis.length_m) {
-    side_ = 0.0;  // it may come back on the other side
-    return contact;
-  }
-  if (side_ == 0.0) side_ = left_m < 0.0 ? -1.0 : 1.0;
-  contact.force_N = spring_.force_N(axis.radius_m - side_ * left_m);
-  contact.force_Base = contact.force_N * side_ * Vector3(h_y, -h_x, 0.0);
+  const Meeting meeting = shape_.meet(axis, swing_share_ * way_m_);
+  contact.force_N = spring_.force_N(meeting.depth_m);
+  contact.position_m = meeting.position_m;
+  contact.force_Base = contact.force_N * meeting.normal_Base;
   return contact;
 }
 
@@ -95,10 +83,9 @@ ObstacleFriction Obstacle::rub(const ModuleStep& step, const CoverAxis& axis,
   friction.p_ModuleSurface = X.R_AB.transpose() * (p_BaseSurface - X.p_AB);
   const Pose& X_before = step.X_BaseModuleBefore;
   const Vector3 p_BaseBefore = X_before.p_AB + X_before.R_AB * friction.p_ModuleSurface;
-  const double line_way = swing_share_ - swing_share_before_;
-  const Vector3 line_way_m(line_way * config_.swing.x_m, line_way * config_.swing.y_m, 0.0);
+  const Vector3 way_m = (swing_share_ - swing_share_before_) * way_m_;
   friction.force_Base =
-      friction_->update(p_BaseSurface - p_BaseBefore - line_way_m, normal, contact.force_N);
+      friction_->update(p_BaseSurface - p_BaseBefore - way_m, normal, contact.force_N);
   return friction;
 }
 

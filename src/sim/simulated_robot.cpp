@@ -39,7 +39,7 @@ Wrench5 wrenchAt(const Vector3& p, const Vector3& F) {
 
 SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig& plant,
                                double period_s)
-    : chain_(robot.chain),
+    : chain_(plant.chain ? *plant.chain : robot.chain),
       limits_(robot.limits),
       step_s_(shortestStep_s(robot, plant, period_s)),
       steps_a_cycle_(wholeRatio(period_s, step_s_)),
@@ -58,6 +58,7 @@ SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig&
   if (drives.dead_time_s > 0.0 || drives.max_acceleration.size() > 0)
     setpoints_.emplace(drives, chain_.size(), step_s_ / parts_a_step_);
   if (drives.loop) loop_.emplace(*drives.loop, q_, step_s_);
+  if (!plant.capsules.empty()) links_.emplace(plant, pose_);
   for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i) {
     const TactileModuleConfig& config = robot.tactile_modules[i];
     const SimulatedModuleConfig& module = plant.modules[i];
@@ -92,6 +93,7 @@ void SimulatedRobot::write(const JointVector& velocity_setpoint) noexcept {
       moveArm(step_s_ / parts_a_step_, velocity_setpoint);
       const double steps = static_cast<double>(step_) + static_cast<double>(part) / parts_a_step_;
       for (Module& module : modules_) touch(steps * step_s_, module);
+      if (links_) touchLinks(steps * step_s_);
     }
     for (Module& module : modules_)
       if (step_ % module.steps_a_filter_step == 0) measure(module);
@@ -138,6 +140,12 @@ void SimulatedRobot::touch(double t_s, Module& module) noexcept {
       push(Vector3(contact.position_m, 0.0, 0.0), contact.force_Base, module);
   }
   module.true_force_N = module.force_Base.norm();
+}
+
+void SimulatedRobot::touchLinks(double t_s) noexcept {
+  ScaledVector torque = ScaledVector::Zero();
+  links_->touch(chain_, pose_, t_s, torque);
+  if (dynamics_) torque_ += torque.head(chain_.size());
 }
 
 /// What a force at a point of a module is to its electronics, and to an arm with mass.

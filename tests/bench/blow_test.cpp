@@ -82,6 +82,50 @@ TEST_P(BlowOnAPost, IsAsHardInMujoco) {
   EXPECT_LT((pressed.felt - expected.felt).norm(), 0.02 * expected.peak_N);
 }
 
+/// A ball beside the middle of the cover, a little above it, or a tilted wall there.
+void placeShape(const Scene& scene, bool is_wall, ObstacleConfig& obstacle) {
+  const TactileModuleConfig& module = scene.controller.tactile_modules.front();
+  ChainPose pose;
+  scene.controller.chain.computePose(scene.controller.q_start, pose);
+  const Pose X = framePose(pose, module.link);
+  const Vector3 along = X.R_AB.col(0);
+  const Vector3 aside = (Vector3(-along.y(), along.x(), 0.0).normalized() + Vector3(0, 0, 0.3));
+  const double gap_m = scene.plant.modules[0].cover_radius_m + 0.001;
+  const Vector3 middle = X.p_AB + 0.5 * module.length_m * along;
+  if (is_wall) {
+    obstacle.plane = PlaneConfig{middle + gap_m * aside, Vector3(0.3, -1.0, 0.4)};
+  } else {
+    obstacle.sphere = SphereConfig{middle + (gap_m + 0.05) * aside.normalized(), 0.05};
+  }
+}
+
+class BlowOnAShape : public testing::TestWithParam<std::tuple<bool, Blow>> {};
+
+TEST_P(BlowOnAShape, IsAsHardInMujoco) {
+  const auto& [is_wall, blow] = GetParam();
+  Scene scene = test::shippedScene("scenario1_none", {{"simulation.arm", blow.arm}});
+  scene.plant.robot_stiffness_N_per_m = blow.robot_stiffness_N_per_m;
+  ObstacleConfig& obstacle = scene.plant.obstacles[0];
+  obstacle.stiffness_N_per_m = blow.stiffness_N_per_m;
+  placeShape(scene, is_wall, obstacle);
+  SimulatedRobot built_in(scene.controller, scene.plant, 0.001);
+  MujocoRobot mujoco(scene.controller, scene.plant, 0.001, 0.0001);
+  const double speed = std::clamp(200.0 / blow.stiffness_N_per_m, 0.05, 0.3);
+  const Pressed expected = press(mujoco, speed);
+  const Pressed pressed = press(built_in, speed);
+  ASSERT_TRUE(mujoco.isSound());
+  ASSERT_GT(expected.peak_N, 1.0) << "nothing was hit";
+  EXPECT_NEAR(pressed.peak_N, expected.peak_N, 0.02 * expected.peak_N);
+  EXPECT_NEAR(pressed.end_N, expected.end_N, 0.02 * expected.peak_N);
+  EXPECT_LT((pressed.felt - expected.felt).norm(), 0.02 * expected.peak_N);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, BlowOnAShape,
+    testing::Combine(testing::Bool(), testing::Values(Blow{"rigid_gears", 7000.0, 1e3, 0.0},
+                                                      Blow{"rigid_gears", kNoLimit, 1e5, 0.0},
+                                                      Blow{"flexible_gears", 48000.0, 1e5, 0.0})));
+
 std::vector<Blow> blows() {
   std::vector<Blow> all;
   for (const double mu : {0.0, 0.5})

@@ -129,7 +129,11 @@ std::string fullScene() {
   std::string scene = test::kSceneText;
   scene = test::replaced(scene, "{x_m: 0.7, y_m: 0.1, stiffness_N_per_m: 60}",
                          "{x_m: 1, y_m: 1, stiffness_N_per_m: 1, foam: [{stiffness_N_per_m: 1, "
-                         "until_force_N: 1}], swing: {frequency_hz: 1}}");
+                         "until_force_N: 1}], swing: {frequency_hz: 1}, "
+                         "sphere: {center_m: [0, 0, 0], radius_m: 1}, "
+                         "plane: {point_m: [0, 0, 0], normal: [0, 0, 1]}, "
+                         "line: {point_m: [0, 0, 0], direction: [0, 0, 1]}, "
+                         "post: {foot_m: [0, 0, 0], height_m: 1}}");
   scene = test::replaced(scene, "redundancy:", "    waypoints: [{}]\nredundancy:");
   return scene + "  troubles: [{kind: drop, from_s: 1, until_s: 2}]\n";
 }
@@ -141,7 +145,8 @@ std::string fullRobot() {
   return test::withModules(robot,
                            test::moduleEntry("cover",
                                              "  interface: can1\n  first_id: 0x110\n  tare: {}\n"
-                                             "  cover: {mass_kg: 0.1}\n"));
+                                             "  cover: {mass_kg: 0.1}\n")) +
+         "collision_capsules: [{link: base, from_m: [0, 0, 0], to_m: [0, 0, 0], radius_m: 1}]\n";
 }
 
 TEST(KeyTable, NoNumberOutsideItsRangeIsRead) {

@@ -185,6 +185,33 @@ class Faults(Report):
         self.refuse("fault: no object")
 
 
+class Unsensed(Report):
+    def test_is_told_with_link_obstacle_force_and_time(self):
+        contact = {"force_N": 219.123, "link": "link<5>", "obstacle": 0, "t_s": 6.51}
+        write_run(self.runs, "x", unsensed_contact=contact)
+        write_run(self.runs, "y", unsensed_contact={
+            "force_N": 0.0, "link": None, "obstacle": None, "t_s": None})
+        write_run(self.runs, "z")
+        result = self.report()
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        section = self.page().split("<h2>Contact that no module feels</h2>")[1].split("</table>")[0]
+        cells = re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", section.split("<tbody>")[1])
+        self.assertEqual(cells, ["x", "link&lt;5&gt;", "0", "219.12", "6.510"])
+
+    def test_none_no_section(self):
+        write_run(self.runs, "z")
+        self.assertEqual(self.report().returncode, 0)
+        self.assertNotIn("no module feels", self.page())
+
+    def test_one_that_is_none_is_refused(self):
+        good = {"force_N": 1.0, "link": "a", "obstacle": 0, "t_s": 6.51}
+        for bad in ("much", good | {"force_N": "x"}, good | {"link": None}, good | {"t_s": 1e999}):
+            with self.subTest(bad=bad):
+                shutil.rmtree(self.runs, ignore_errors=True)
+                write_run(self.runs, "x", unsensed_contact=bad)
+                self.refuse("unsensed_contact" if bad in ("much", good | {"link": None}) else "summary.json")
+
+
 class Incomplete(Report):
     def test_names_the_missing_runs(self):
         write_run(self.runs, "scenario2_assumed")

@@ -81,6 +81,7 @@ simulation:
     {filter_cutoff_hz: 15, cover: {mass_kg: 0.3, center_m: [0.19, 0, 0]}, quantised: true, noise_N: 0,
      lost_share: 0, jitter_s: 0, seed: 1, channel_gains: [1, 1, 1, 1, 1, 1, 1, 1],
      channel_drifts_N_per_s: [0, 0, 0, 0, 0, 0, 0, 0], direction_error_rad: 0}
+  link_length_errors_m: [0, 0, 0, 0, 0, 0, 0, 0, 0]
   obstacles:
     - x_m: 0.7
       y_m: 0
@@ -90,12 +91,20 @@ simulation:
       vanishes_s: 10
       friction_coefficient: 0.3
       shear_stiffness_N_per_m: 3000
-      swing: {x_m: 0, y_m: 0.01, frequency_hz: 1}
+      swing: {x_m: 0, y_m: 0.01, z_m: 0, frequency_hz: 1}
   troubles:
     - {kind: delay, from_s: 1, until_s: 2, interface: can0, id: 0x181, delay_s: 0.01}
 real_time: {required: true}
 log: {max_bytes: 1e9, keep: 4, min_free_bytes: 1e8}
 """
+
+
+SHAPES = (
+    {"sphere": {"center_m": [0.7, 0, 1], "radius_m": 0.1}},
+    {"plane": {"point_m": [0.9, 0, 0], "normal": [-1, 0, 0]}},
+    {"line": {"point_m": [0.7, 0, 0], "direction": [0, 0, 1]}},
+    {"post": {"foot_m": [0.7, 0, 0], "axis": [0, 0, 1], "height_m": 1, "radius_m": 0.01}},
+)
 
 
 def load(text):
@@ -162,6 +171,8 @@ class Case(unittest.TestCase):
         robot["gravity_m_per_s2"] = [0, 0, -9.81]
         robot["tactile_module"]["cover"] = {
             "mass_kg": 0.3, "center_m": [0.19, 0, 0], "behind_gears": True}  # fmt: skip
+        robot["collision_capsules"] = [
+            {"link": "link5", "from_m": [0, 0, 0], "to_m": [0.12, 0, 0], "radius_m": 0.05}]  # fmt: skip
         for line in ("e_stop", "enable", "brake", "heartbeat"):
             robot["gpio"][line].setdefault("active_low", False)
         scene = load(SCENE)
@@ -169,6 +180,10 @@ class Case(unittest.TestCase):
         stops["task"]["trajectory"] = {"waypoints": [dict(scene["task"]["trajectory"]["line"], pause_s=1)]}
         rests = copy.deepcopy(scene)
         rests["task"]["trajectory"] = {"hold": {}}
+        shaped = []
+        for shape in SHAPES:
+            shaped.append(copy.deepcopy(scene))
+            shaped[-1]["simulation"]["obstacles"] = [shape | {"stiffness_N_per_m": 60}]
         revolute_first = copy.deepcopy(robot)
         revolute_first["drives"]["joints"].append(revolute_first["drives"]["joints"].pop(0))
         listed = copy.deepcopy(robot)
@@ -178,7 +193,8 @@ class Case(unittest.TestCase):
         torques = ("max_torque", "coulomb_friction", "viscous_friction", "backlash")
         heavy["simulation"]["drives"] = {key: [0.01] * 9 for key in torques}
         extending = scene | {"extends": str(CONFIG / "scenes/free_motion.yaml")}
-        self.trees = {"scene": [scene, stops, rests, heavy, extending], "robot": [robot, revolute_first, listed]}
+        self.trees = {"scene": [scene, stops, rests, heavy, extending, *shaped],
+                      "robot": [robot, revolute_first, listed]}
 
     def tree_with(self, row):
         """A whole file that has the key, as a copy, and the map that the key is in."""

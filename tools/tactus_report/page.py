@@ -31,6 +31,7 @@ def build_page(loaded):
     if of_paper:
         body.append(runs_table([run for run in loaded if run.scene in PAPER_SCENES]))
     body += faults_section(loaded)
+    body += unsensed_section(loaded)
     if further:
         body += ["<h2>Further runs, not of the paper</h2>" if of_paper else "<h2>Runs</h2>",
                  runs_table([run for run in loaded if run.scene not in PAPER_SCENES]),
@@ -149,6 +150,18 @@ def faults_section(runs):
                          with_unit(fault["limit"], unit), fault["description"]])
     heads = ["Run", "Fault", "At, s", "Joint or bus", "Value", "Limit", "In words"]
     return ["<h2>Faults</h2>", table(heads, rows, "faults")] if rows else []
+
+
+def unsensed_section(runs):
+    """Of the runs in which obstacles pushed where no module feels it."""
+    rows = []
+    for run in runs:
+        contact = run.summary.get("unsensed_contact")
+        if contact and contact["force_N"]:
+            rows.append([run.name, contact["link"], str(contact["obstacle"]),
+                         number(contact["force_N"], 2), number(contact["t_s"], 3)])
+    heads = ["Run", "Link", "Obstacle", "Largest force, N", "At, s"]
+    return ["<h2>Contact that no module feels</h2>", table(heads, rows, "unsensed")] if rows else []
 
 
 def with_unit(value, unit):

@@ -115,7 +115,20 @@ def read_summary(path):
     for key in STEP_TIMES:
         check_number(path, key, times)
     check_fault(path, summary.get("fault"))
+    check_unsensed(path, summary.get("unsensed_contact"))
     return summary
+
+
+def check_unsensed(path, contact):
+    """Absent without capsules; link, obstacle and time are null where nothing touched."""
+    if contact is None:
+        return
+    if not isinstance(contact, dict):
+        raise InputError(f"{path}: unsensed_contact: no object, expected force_N to t_s")
+    for key in ("force_N", "obstacle", "t_s"):
+        check_number(path, key, contact)
+    if contact["force_N"] and not isinstance(contact.get("link"), str):
+        raise InputError(f"{path}: unsensed_contact.link: missing or no text, expected a name")
 
 
 def check_fault(path, fault):

@@ -26,9 +26,19 @@ struct FastestCover {
   Vector3 direction = Vector3::Zero();  ///< of its motion, base frame, unit vector
 };
 
+/// An obstacle that touches a capsule, where no module feels it.
+struct CapsuleTouch {
+  int capsule = 0;
+  int obstacle = 0;
+  double t_s = 0.0;        ///< when it first does
+  double depth_m = 0.0;    ///< then
+  double deepest_m = 0.0;  ///< on the whole path
+};
+
 /// What the covers meet on the path of the task alone: no force control, no drives' lag.
 struct PathContacts {
   std::vector<std::optional<PathTouch>> touches;  ///< one an obstacle
+  std::vector<CapsuleTouch> unsensed;             ///< in the order of their first touch
   FastestCover fastest;
   bool is_complete = false;  ///< the path was followed for all of the duration
 };

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tactus/sim/arm_dynamics.h"
+#include "tactus/sim/plant_config.h"
 
 namespace tactus::physics {
 
@@ -16,15 +16,19 @@ struct MujocoCover {
   double length_m, radius_m;
 };
 
-/// A thin vertical capsule at (x, y) of the base, free along x, y and z, that covers collide with.
-/// Whoever moves it adds its spring and damper.
+/// A light body, free along x, y and z, that covers collide with: a thin vertical capsule, or a
+/// sphere or a wide wall that is thicker by as much. Whoever moves it adds its spring and damper.
 struct MujocoPost {
-  double x_m, y_m;
+  Vector3 p_Base;    ///< m
+  std::string geom;  ///< its shape, in MJCF
   double mass_kg;
   double friction_coefficient;
 };
 
 inline constexpr double kPostRadius_m = 0.001;
+
+/// Throws std::invalid_argument for lines and posts by their shape.
+MujocoPost mujocoPost(const ObstacleConfig& obstacle, double mass_kg);
 
 /// What an arm is among.
 struct MujocoWorld {

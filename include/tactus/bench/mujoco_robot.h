@@ -24,7 +24,8 @@ inline constexpr double kMujocoStep_s = 0.000125;
 class MujocoRobot final : public Robot {
  public:
   /// step_s: of MuJoCo's integration; filter periods and period_s are multiples of it. Throws
-  /// std::invalid_argument for what it cannot do: an arm without mass, obstacles that come or go.
+  /// std::invalid_argument for what it cannot do: an arm without mass, obstacles that come or go,
+  /// or are bars, contact beside modules.
   MujocoRobot(const ControllerConfig& robot, const PlantConfig& plant, double period_s,
               double step_s = kMujocoStep_s);
 
@@ -57,6 +58,7 @@ class MujocoRobot final : public Robot {
     ContactSpring spring;
     double shear_stiffness_N_per_m;
     Swing swing;
+    Vector3 pushed;  ///< 1 for axes along which it may be pushed, 0 for others
     double damping_N_s_per_m;
     Vector3 normal_Base = Vector3::Zero();  ///< into the post; zero while nothing touches it
   };

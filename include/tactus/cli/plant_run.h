@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 
 #include "tactus/plant/plant.h"
@@ -11,7 +12,8 @@ namespace tactus {
 
 struct PlantRunResult {
   PlantCounters plant;
-  std::uint64_t interface_refused = 0;  ///< frames of the plant that the kernel did not take
+  std::uint64_t interface_refused = 0;      ///< frames of the plant that the kernel did not take
+  std::optional<UnsensedContact> unsensed;  ///< absent without capsules
 };
 
 /// Plays the scene's robot, which has hardware, on its CAN interfaces, in real time, until SIGTERM

@@ -11,6 +11,7 @@
 #include "tactus/record/time_figures.h"
 #include "tactus/scene/json.h"
 #include "tactus/scene/scene.h"
+#include "tactus/sim/link_contacts.h"
 #include "tactus/supervisor/cycle_record.h"
 #include "tactus/supervisor/mode_report.h"
 
@@ -38,6 +39,8 @@ struct RunFigures {
   double stiffness_at_peak_N_per_m = 0.0;  ///< in the (first) cycle of the peak force
   std::vector<ContactSummary> contacts;    ///< in the order of their start
   TimeFigures step_time_ns;
+  /// The strongest of the simulated world that no module feels; absent without capsules.
+  std::optional<UnsensedContact> unsensed;
   FaultReport end;  ///< the fault that ended the run, for who runs it to fill in; none: as planned
 };
 

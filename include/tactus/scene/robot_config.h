@@ -51,6 +51,14 @@ struct TactileModuleSection {
   bool filter_in_daemon = false;
 };
 
+/// In the frame of its link.
+struct CapsuleSection {
+  std::string link;  ///< name in the URDF
+  Vector3 from_m = Vector3::Zero();
+  Vector3 to_m = Vector3::Zero();
+  double radius_m = 0.0;
+};
+
 /// What an arm with mass is made of beside its bodies, which the URDF has.
 struct DynamicsSection {
   std::optional<std::vector<double>> rotor_inertia, gear_stiffness, gear_damping;
@@ -72,6 +80,7 @@ struct RobotConfig {
   DrivesSection drives;
   /// Of `tactile_modules`, or the one of `tactile_module`.
   std::vector<TactileModuleSection> tactile_modules;
+  std::vector<CapsuleSection> collision_capsules;
   std::optional<GpioConfig> gpio;
   RealTimeConfig real_time;
 };

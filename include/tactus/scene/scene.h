@@ -61,7 +61,8 @@ struct Scene {
   /// robot only simulates.
   std::optional<HardwareConfig> hardware{};
   LogConfig log{};
-  std::vector<Trouble> troubles{};  ///< of the plant on the buses; simulation has none
+  std::vector<std::string> capsule_links{};  ///< of plant.capsules, as the URDF spells them
+  std::vector<Trouble> troubles{};           ///< of the plant on the buses; simulation has none
   /// The scene with all it extends, for errors that are found later; null if it was not read.
   std::shared_ptr<const YamlNode> tree{};
 };

@@ -61,6 +61,7 @@ struct SimulationSection {
   std::optional<double> filter_cutoff_hz;  ///< of the tactile module: another one, too
   SimulatedModuleConfig module;            ///< its imperfections alone
   std::optional<CoverSection> cover;       ///< another one, too
+  std::optional<std::vector<double>> link_length_errors_m;
   std::vector<ObstacleConfig> obstacles;
   std::vector<TroubleSection> troubles;
 };

@@ -28,15 +28,16 @@ struct UrdfChain {
   std::vector<std::string> joint_names;
   std::vector<Joint> joints;
   AttachedFrame tip;
-  std::vector<AttachedFrame> module_links;
+  std::vector<AttachedFrame> module_links, capsule_links;
   std::vector<PlacedLink> links;  ///< from the root to the tip
   JointVector max_effort;         ///< N or Nm; infinite where it is absent or 0
   JointLimits limits;             ///< accelerations unlimited; positions of continuous joints too
 };
 
 /// Throws InputError. `module_links` are links of the chain or fixed to it, moved by at least one
-/// joint.
+/// joint; `capsule_links` may be fixed to the base, too.
 UrdfChain loadUrdfChain(const SourceFile& file, const NamedFrame& tip,
-                        const std::vector<NamedFrame>& module_links);
+                        const std::vector<NamedFrame>& module_links,
+                        const std::vector<NamedFrame>& capsule_links = {});
 
 }  // namespace tactus

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tactus/sim/bristle_friction.h"
-#include "tactus/sim/plant_config.h"
+#include "tactus/sim/obstacle_shape.h"
 
 namespace tactus {
 
@@ -26,14 +26,6 @@ class ContactSpring {
   std::vector<Piece> pieces_;
 };
 
-/// The axis of the cover as the world sees it.
-struct CoverAxis {
-  Vector3 p_BaseStart;  ///< m
-  Vector3 direction;    ///< unit vector, base frame, start to end
-  double length_m;
-  double radius_m;
-};
-
 /// Where a module is, and where it was a step ago: its material slides along the obstacles.
 struct ModuleStep {
   Pose X_BaseModule, X_BaseModuleBefore;
@@ -43,7 +35,7 @@ struct ModuleStep {
 struct ObstacleContact {
   double force_N = 0.0;
   double position_m = 0.0;               ///< along the axis
-  Vector3 force_Base = Vector3::Zero();  ///< on the robot, horizontal, N
+  Vector3 force_Base = Vector3::Zero();  ///< on the robot, N
 };
 
 /// What its friction adds, where they touch.
@@ -52,9 +44,7 @@ struct ObstacleFriction {
   Vector3 p_ModuleSurface = Vector3::Zero();  ///< where it acts, module frame, m
 };
 
-/// A vertical line with a spring, in its place or swinging around it. The side on which it meets
-/// the cover is fixed when it comes beside it, and until it leaves over an end, so an arm pushed
-/// through more than its radius is still pushed back.
+/// A shape with a spring, in its place or swinging around it.
 class Obstacle {
  public:
   Obstacle(const ObstacleConfig& config, double robot_stiffness_N_per_m);
@@ -70,10 +60,11 @@ class Obstacle {
   void moveTo(double t_s) noexcept;
 
   ObstacleConfig config_;
+  ObstacleShape shape_;
+  Vector3 way_m_;  ///< that it swings to each side
   ContactSpring spring_;
   std::optional<BristleFriction> friction_;
   double swing_share_ = 0.0, swing_share_before_ = 0.0;  ///< of its way, now and a step ago
-  double side_ = 0.0;  ///< +-1 left or right of the axis; 0 while not beside the cover
 };
 
 }  // namespace tactus

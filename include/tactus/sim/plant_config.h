@@ -8,6 +8,7 @@
 #include "tactus/control/cover_load.h"
 #include "tactus/control/tactile_channels.h"
 #include "tactus/sim/arm_dynamics.h"
+#include "tactus/sim/shape_config.h"
 
 namespace tactus {
 
@@ -23,11 +24,13 @@ struct Swing {
   double x_m = 0.0;
   double y_m = 0.0;
   double frequency_hz = 0.0;
+  double z_m = 0.0;
 };
 
 /// A vertical line at (x, y) in the base frame that pushes on the covers of the tactile modules,
-/// horizontally, wherever it crosses one: a latex band, or a profile behind foam. With friction it
-/// pulls along the cover, too.
+/// horizontally, wherever it crosses one: a latex band, or a profile behind foam; or one of the
+/// shapes below in its place, which push away from themselves. With friction it pulls along the
+/// cover, too.
 struct ObstacleConfig {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -39,6 +42,10 @@ struct ObstacleConfig {
   double friction_coefficient = 0.0;  ///< mu of the cover on it
   /// Of the bristle that sticks, in series with the robot; as the solid part if not given.
   std::optional<double> shear_stiffness_N_per_m{};
+  std::optional<SphereConfig> sphere{};  ///< at most one of these
+  std::optional<PlaneConfig> plane{};
+  std::optional<LineConfig> line{};
+  std::optional<PostConfig> post{};
 };
 
 /// A simulated tactile module: its cover and its electronics.
@@ -74,6 +81,15 @@ struct DriveEffectsConfig {
   bool reports_links = false;                ///< of an arm with gears; false: where its motors are
 };
 
+/// A part of a link that obstacles push on and nothing feels: all within radius_m of a segment,
+/// which may be a point.
+struct LinkCapsule {
+  AttachedFrame link;                    ///< joint -1: fixed to the base
+  Vector3 p_LinkFrom = Vector3::Zero();  ///< m
+  Vector3 p_LinkTo = Vector3::Zero();    ///< m
+  double radius_m = 0.0;
+};
+
 struct PlantConfig {
   double drive_lag_s = 0.005;  ///< first-order lag of position; 0: ideal drives
   DriveEffectsConfig drives;
@@ -82,6 +98,8 @@ struct PlantConfig {
   Vector3 gravity_Base = Vector3::Zero();      ///< m/s^2; only covers feel it
   std::vector<SimulatedModuleConfig> modules;  ///< in the order of those that the controller reads
   std::vector<ObstacleConfig> obstacles;
+  std::vector<LinkCapsule> capsules;   ///< absent: contact on the covers of modules alone
+  std::optional<SerialChain> chain{};  ///< the arm's, where it is not what the controller believes
 };
 
 }  // namespace tactus

@@ -7,6 +7,7 @@
 #include "tactus/control/robot.h"
 #include "tactus/sim/arm_dynamics.h"
 #include "tactus/sim/drive_setpoints.h"
+#include "tactus/sim/link_contacts.h"
 #include "tactus/sim/moving_cover.h"
 #include "tactus/sim/obstacle.h"
 #include "tactus/sim/simulated_module.h"
@@ -35,8 +36,13 @@ class SimulatedRobot final : public Robot {
   double trueForce_N(int module = 0) const noexcept {
     return modules_.empty() ? 0.0 : modules_[module].true_force_N;
   }
+  /// What pushes where no module feels it; null unless the plant has capsules.
+  const LinkContacts* linkContacts() const noexcept { return links_ ? &*links_ : nullptr; }
   /// Obstacles appear and vanish by a time that counts from now.
-  void restartTime() noexcept { step_ = 0; }
+  void restartTime() noexcept {
+    step_ = 0;
+    if (links_) links_->forgetLargest();
+  }
 
  private:
   struct Module {
@@ -54,12 +60,14 @@ class SimulatedRobot final : public Robot {
 
   void moveArm(double duration_s, const JointVector& commanded) noexcept;
   void touch(double t_s, Module& module) noexcept;
+  void touchLinks(double t_s) noexcept;
   void measure(Module& module) noexcept;
   void push(const Vector3& p_Module, const Vector3& force_Base, Module& module) noexcept;
 
   SerialChain chain_;
   JointLimits limits_;
   std::vector<Module> modules_;
+  std::optional<LinkContacts> links_;
   double step_s_;  ///< of the plant: the shortest of cycle and filter periods
   int steps_a_cycle_;
   int parts_a_step_ = 1;  ///< where the arm has mass
