@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kMaxPeakMore = 0.25;  ///< than without a trouble, m/s or rad/s
 /// Where a hand leans on, which the arm is to give way to, in the posture in which it stands then.
+constexpr double kMaxReturnMore = 0.5;
 constexpr double kMaxHandMore = 0.5;
 constexpr double kMaxHandShare = 0.25;
 constexpr double kMaxHandRate = 0.5;  ///< m/s^2 or rad/s^2, while it leans on
@@ -78,7 +79,9 @@ double peakWithoutTheHold(const Stage& stage, const Plan& plan, const GoingOn& h
 double allowedPeak(const GoingOn& one, const Peaks& undisturbed) {
   const bool went_apart = one.before > undisturbed.before + kMaxPeakMore;
   const double peak = went_apart ? std::max(one.before, undisturbed.after) : undisturbed.after;
-  return peak + (one.has_hand ? std::max(kMaxHandMore, kMaxHandShare * peak) : kMaxPeakMore);
+  const double way_back = one.has_retreated ? kMaxReturnMore : 0.0;
+  return peak + way_back +
+         (one.has_hand ? std::max(kMaxHandMore, kMaxHandShare * peak) : kMaxPeakMore);
 }
 
 double allowedPeak(const Stage& stage, const Plan& plan, const std::vector<GoingOn>& stops,
@@ -122,12 +125,16 @@ void GoingOnJudge::look(const Look& look) {
   if (has_ended) all.back().end_ms = look.before.t_ms;
   const bool stops = now.mode != Mode::kRunning && look.before.mode == Mode::kRunning;
   if (stops) stop_ms = now.t_ms;
+  has_retreated = (has_retreated && !stops) || now.mode == Mode::kRetreating;
   if (now.mode != Mode::kRunning)
     is_hold = (stops || is_hold) && now.mode == Mode::kHolding && now.fault == Fault::kNone;
   if (look.entered(Mode::kRunning) && stop_ms >= 0) {
     const double before = newest.empty() ? 0.0 : *std::ranges::max_element(newest);
-    all.push_back(
-        {.stop_ms = stop_ms, .return_ms = now.t_ms, .before = before, .is_hold = is_hold});
+    all.push_back({.stop_ms = stop_ms,
+                   .return_ms = now.t_ms,
+                   .before = before,
+                   .is_hold = is_hold,
+                   .has_retreated = has_retreated});
     is_calm.push_back(true);
     newest.clear();
   }

@@ -17,9 +17,10 @@ struct GoingOn {
   int end_ms = 0;     ///< of what was looked at: 3 s, the next stop or the hand's end
   /// Of commands and drives, m/s or rad/s, less what a hand adds that leans on.
   double peak = 0.0;
-  double before = 0.0;    ///< the same, in the last 0.2 s before the stop
-  bool has_hand = false;  ///< that still leans on the arm, which gives way to it then
-  bool is_hold = false;   ///< the stop was one by the enable line alone
+  double before = 0.0;         ///< the same, in the last 0.2 s before the stop
+  bool has_hand = false;       ///< that still leans on the arm, which gives way to it then
+  bool is_hold = false;        ///< the stop was one by the enable line alone
+  bool has_retreated = false;  ///< in the stop
 };
 
 struct GoingOnJudge {
@@ -30,7 +31,8 @@ struct GoingOnJudge {
   std::vector<GoingOn> all;
   std::vector<bool> is_calm;  ///< of each
   int stop_ms = -1;
-  bool is_hold = false;       ///< so far, since then
+  bool is_hold = false;  ///< so far, since then
+  bool has_retreated = false;
   std::deque<double> newest;  ///< of the last 0.2 s of running, m/s or rad/s
   void look(const Look& look);
   void end(int now_ms);  ///< of the run
@@ -47,7 +49,8 @@ struct GoingOnJudge {
 /// in the same posture: there 0.5 rad/s or a quarter are no wonder. And who leans on an arm
 /// accelerates it, by F_p / (T^2 c), where the null space suffices, but hardly, where the approach
 /// limit holds the integral: which of both happens hangs on little. So 0.5 rad/s^2 more since it
-/// goes on are no wonder either. What an arm remembers would show at once. Adds the cycles that all
+/// goes on are no wonder either. What an arm remembers would show at once. After a retreat it has a
+/// way back to its path, which nobody has who held on it: 0.5 rad/s more. Adds the cycles that all
 /// this takes.
 void compareGoingOn(const Stage& stage, const Plan& plan, const GoingOnJudge& judge,
                     std::vector<Violation>& found, long long& cycles);

@@ -141,6 +141,55 @@ TEST(Retreat, GoingOnIsGentleAndLeadsBackToThePath) {
   EXPECT_LE(arm.output().error.norm(), 1e-3);
 }
 
+/// Of several modules it is left along the push of the one that is pressed most, by how the point
+/// moves in space.
+TEST(Retreat, LeavesTheModuleThatIsPressedMost) {
+  Random random(8000);
+  for (int i = 0; i < 50; ++i) {
+    ControllerConfig config = test::fullController(random, random.integer(4, 9), Variant::kNone);
+    config.force_control.reset();
+    config.has_joint_limit_avoidance = false;
+    config.task.trajectory.waypoints.clear();
+    config.tactile_modules.push_back(config.tactile_modules.front());
+    config.tactile_modules[1].link = test::randomFrame(random, config.chain.size() - 1);
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    const double x_m = random.uniform(0.1, 0.3), angle = random.uniform(0.0, 6.0);
+    const int pressed = random.index(2);
+    Mode mode = Mode::kRunning, before = Mode::kRunning;
+    JointVector q;
+    for (int cycle = 0; cycle < 120; ++cycle) {
+      RobotInput input{state.q_desired, {}};
+      const double force_N = cycle < 20 ? 5.0 * cycle : 120.0;
+      const auto sequence = static_cast<std::uint32_t>(cycle + 1);
+      input.tactile[pressed] = test::touchAt(x_m, force_N, angle, sequence);
+      input.tactile[1 - pressed] = test::touchAt(0.2, 3.0, 0.0, sequence);
+      applyMode(controller, mode, before, input, config.gains, state);
+      controller.update(input, config.gains, 0.0, 1e-3, state, output);
+      before = mode;
+      if (cycle == 20) {
+        ASSERT_EQ(output.fault, Fault::kTactileInvalid);
+        mode = Mode::kRetreating;
+        q = state.q_desired;
+      }
+    }
+    const auto poseOf = [&](const JointVector& at) {
+      ChainPose pose;
+      config.chain.computePose(at, pose);
+      return framePose(pose, config.tactile_modules[pressed].link);
+    };
+    const Pose was = poseOf(q), is = poseOf(state.q_desired);
+    const Vector3 push = was.R_AB * Vector3(0.0, std::cos(angle), std::sin(angle));
+    const Vector3 p_Module(x_m, 0.0, 0.0);
+    const double way_m =
+        push.dot((is.p_AB + is.R_AB * p_Module) - (was.p_AB + was.R_AB * p_Module));
+    EXPECT_EQ(state.retreat.module, pressed);
+    EXPECT_NEAR(way_m, state.retreat.way, 1e-4) << i;
+    EXPECT_NEAR(way_m, 0.5 * 2.0 * 0.099 * 0.099, 0.003) << i;
+  }
+}
+
 /// As in a log that nobody wrote: modes in any order, readings of any kind.
 TEST(Retreat, NoOrderOfModesTakesTheArmBeyondItsLimits) {
   Random random(7000);
