@@ -39,7 +39,7 @@ Fault readSample(const TactileModuleConfig& module, const TactileSample& sample,
   } else {
     reading.detail = {judgedForce_N(sample), module.max_force_N, "N"};
     reading.has_excess = reading.detail.value < kMaxBelievable_N;
-    if (reading.has_excess) locateContact(sample, module.length_m, reading.excess);
+    if (reading.has_excess) locateContact(sample, module, reading.excess);
   }
   return reading.fault;
 }
