@@ -167,18 +167,19 @@ std::string proposeCapsules(const Scene& scene) {
   parseUrdf(scene.sources.back(), tree);
   const std::string name = escaped(scene.sources.back().path);
   const std::string of_collisions = ofCollisions(tree, scene);
-  if (!of_collisions.empty()) {
-    return fmt::format(
-        "# For robot.yaml. From the collision geometry of {}; edges are rounded: look at each.\n"
-        "collision_capsules:\n{}",
-        name, of_collisions);
+  std::string text = "# For robot.yaml. ";
+  if (of_collisions.empty()) {
+    text += name +
+            " has no collision geometry of links: these are the straight ways from\n"
+            "# joint to joint at the scene's start, less the covers of modules. The radius is an "
+            "assumption:\n# measure it.\n";
+  } else {
+    text += "From the collision geometry of " + name + "; edges are rounded: look at each.\n";
   }
-  return fmt::format(
-      "# For robot.yaml. {} has no collision geometry of links: these are the straight ways from\n"
-      "# joint to joint at the scene's start, less the covers of modules. The radius is an "
-      "assumption:\n# measure it.\n"
-      "collision_capsules:\n{}",
-      name, ofLengths(tree, scene));
+  if (scene.controller.tactile_modules.empty() && !scene.plant.modules.empty())
+    text += "# This scene reads no tactile module: leave out what covers take up.\n";
+  return text + "collision_capsules:\n" +
+         (of_collisions.empty() ? ofLengths(tree, scene) : of_collisions);
 }
 
 }  // namespace tactus

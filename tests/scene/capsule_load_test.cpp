@@ -135,6 +135,12 @@ TEST(CapsuleProposal, LeavesOutWhatTheCoverTakesUp) {
       << text;
 }
 
+TEST(CapsuleProposal, SaysThatTheSceneReadsNoModule) {
+  const std::string part = "reads no tactile module";
+  EXPECT_NE(proposeCapsules(test::shippedScene("free_motion")).find(part), std::string::npos);
+  EXPECT_EQ(proposeCapsules(test::shippedScene("scenario1_none")).find(part), std::string::npos);
+}
+
 TEST(CapsuleProposal, RefusesGeometryThatIsNone) {
   for (const char* bad : {"0", "-1", "nan", "wide"}) {
     SceneFiles files;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <variant>
 
-#include "tactus/math/segment_distance.h"
+#include "tactus/math/shortest_distance.h"
 #include "tactus/sim/plant_config.h"
 
 namespace tactus {

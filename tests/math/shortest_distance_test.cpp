@@ -1,4 +1,4 @@
-#include "tactus/math/segment_distance.h"
+#include "tactus/math/shortest_distance.h"
 
 #include <gtest/gtest.h>
 
@@ -80,7 +80,7 @@ void expectSound(const Segment& segment, const ClosestPoints& closest, int i) {
       << i;
 }
 
-TEST(SegmentDistance, IsTheSmallestOfAllPairsOfPoints) {
+TEST(ShortestDistance, IsTheSmallestOfAllPairsOfPoints) {
   test::Random random(901);
   for (int i = 0; i < 1500; ++i) {
     const Segment segment = randomSegment(random);
@@ -99,7 +99,7 @@ TEST(SegmentDistance, IsTheSmallestOfAllPairsOfPoints) {
   }
 }
 
-TEST(SegmentDistance, NormalLeadsFromTheOtherShapeToTheSegment) {
+TEST(ShortestDistance, NormalLeadsFromTheOtherShapeToTheSegment) {
   test::Random random(902);
   for (int i = 0; i < 1500; ++i) {
     const Segment segment = randomSegment(random);
@@ -148,7 +148,7 @@ void expectGradient(const Segment& segment, const Shape& shape, const Vector3& w
       << i;
 }
 
-TEST(SegmentDistance, NormalIsItsGradient) {
+TEST(ShortestDistance, NormalIsItsGradient) {
   test::Random random(903);
   int compared = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -174,7 +174,7 @@ TEST(SegmentDistance, NormalIsItsGradient) {
 constexpr double kLength_m = 0.4;
 const Segment kAlongX{Vector3(0.0, 0.0, 0.5), Vector3::UnitX(), kLength_m};
 
-TEST(SegmentDistance, ByHand) {
+TEST(ShortestDistance, ByHand) {
   const ClosestPoints beside = closestPoints(kAlongX, Vector3(0.1, 0.3, 0.9));
   EXPECT_NEAR(beside.distance_m, 0.5, 1e-15);
   EXPECT_NEAR(beside.position_m, 0.1, 1e-15);
@@ -194,7 +194,7 @@ TEST(SegmentDistance, ByHand) {
   EXPECT_NEAR(tilted.distance_m, -0.4, 1e-15);
 }
 
-TEST(SegmentDistance, TakesTheMiddleOfParallels) {
+TEST(ShortestDistance, TakesTheMiddleOfParallels) {
   const Vector3 p(0.3, 0.2, 0.5);
   for (const double sign : {1.0, -1.0}) {
     const Vector3 along = sign * Vector3::UnitX();
@@ -210,7 +210,7 @@ TEST(SegmentDistance, TakesTheMiddleOfParallels) {
   EXPECT_EQ(closestPoints(kAlongX, floor).distance_m, 0.5);
 }
 
-TEST(SegmentDistance, HasANormalWhereShapesMeet) {
+TEST(ShortestDistance, HasANormalWhereShapesMeet) {
   const Vector3 inside(0.1, 0.0, 0.5);
   const ClosestPoints point = closestPoints(kAlongX, inside);
   EXPECT_EQ(point.distance_m, 0.0);

@@ -1,4 +1,4 @@
-#include "tactus/math/segment_distance.h"
+#include "tactus/math/shortest_distance.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
