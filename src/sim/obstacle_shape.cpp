@@ -25,7 +25,12 @@ ObstacleShape::Shape ObstacleShape::shapeOf(const ObstacleConfig& config) {
 ObstacleShape::ObstacleShape(const ObstacleConfig& config) : shape_(shapeOf(config)) {}
 
 Meeting ObstacleShape::meet(const CoverAxis& axis, const Vector3& shift_m) noexcept {
-  return std::visit([&](auto& shape) { return meet(shape, axis, shift_m); }, shape_);
+  // std::visit might throw.
+  if (const auto* sphere = std::get_if<SphereConfig>(&shape_)) return meet(*sphere, axis, shift_m);
+  if (const auto* bar = std::get_if<Bar>(&shape_)) return meet(*bar, axis, shift_m);
+  if (const auto* half = std::get_if<HalfSpace>(&shape_)) return meet(*half, axis, shift_m);
+  auto* line = std::get_if<VerticalLine>(&shape_);
+  return line ? meet(*line, axis, shift_m) : Meeting{};
 }
 
 Meeting ObstacleShape::meet(VerticalLine& line, const CoverAxis& axis,
