@@ -10,7 +10,7 @@ constexpr double kAcceleration_m_per_s2 = 2.0;  ///< a
 constexpr double kFeltSpeed_m_per_s = 1.0;      ///< v_max
 constexpr double kBlindSpeed_m_per_s = 0.25;
 constexpr double kMaxBlindWay_m = 0.1;
-constexpr double kBlindMargin_m = 0.005;
+constexpr double kBlindMargin_m = 0.02;  ///< for what a law did since
 /// Any contact that could press so hard answers sooner than that, also one that follows the arm.
 constexpr double kWayToAnswer_m = 0.03;
 constexpr double kAnswer_N = 1.0;

@@ -56,7 +56,7 @@ struct RetreatState {
 ///   v = min(a t, v_max),   a = 2 m/s^2,   v_max = 1 m/s felt, 0.25 m/s not
 /// Felt, it goes on while F > F_th, and ends 0.2 s after that, or when 30 mm of way have not
 /// lowered F by 1 N: such a sensor says nothing of a contact. Not felt, at
-///   way = min(0.1 m, F / c + |v_0| t_0 + 5 mm)
+///   way = min(0.1 m, F / c + |v_0| t_0 + 20 mm)
 /// with the last readable F, the least stiffness c, and the speed v_0 for the time t_0 since the
 /// arm was where that sample felt it: also outwards, as a law that answers just now has gone on
 /// before; until then v <= sqrt(2 a (way - way so far)). And after kMaxRetreat_s in any case.
