@@ -1,18 +1,19 @@
 #include "tactus/control/fault.h"
 
 namespace tactus {
+namespace {
 
-const std::array<FaultRow, 22>& faultTable() noexcept {
+struct FaultRows {
   using enum Fault;
-  constexpr auto kRetreat = Reaction::kRetreat;
-  constexpr auto kRamp = Reaction::kRamp;
-  constexpr auto kQuickStop = Reaction::kQuickStop;
-  constexpr auto kBrake = Reaction::kBrake;
-  constexpr auto kRelieved =
+  static constexpr auto kRetreat = Reaction::kRetreat;
+  static constexpr auto kRamp = Reaction::kRamp;
+  static constexpr auto kQuickStop = Reaction::kQuickStop;
+  static constexpr auto kBrake = Reaction::kBrake;
+  static constexpr auto kRelieved =
       "at most F_act + F_th within 1 s; after a reading that is no number as after tactile_stale";
-  constexpr auto kLastFelt = "the last one felt, less what the way out takes";
-  constexpr auto kAsStopped = "that where the arm stops";
-  constexpr auto kUnmoved = "that from before";
+  static constexpr auto kLastFelt = "the last one felt, less what the way out takes";
+  static constexpr auto kAsStopped = "that where the arm stops";
+  static constexpr auto kUnmoved = "that from before";
   static constexpr std::array<FaultRow, 22> kTable = {{
       {kNone, "none", "", "", Reaction::kNone, ""},
       {kTactileInvalid, "tactile_invalid", "a reading not finite or beyond max_force_N",
@@ -58,8 +59,11 @@ const std::array<FaultRow, 22>& faultTable() noexcept {
       {kForbiddenSystemCall, "forbidden_system_call", "the loop left its list of system calls",
        "1 cycle", kRamp, kAsStopped},
   }};
-  return kTable;
-}
+};
+
+}  // namespace
+
+const std::array<FaultRow, 22>& faultTable() noexcept { return FaultRows::kTable; }
 
 const FaultRow& faultRow(Fault fault) noexcept {
   const auto number = static_cast<std::size_t>(fault);
