@@ -72,6 +72,7 @@ JudgedRun judgeRun(const RunSetup& setup) {
     const double t_s = static_cast<double>(cycle) * setup.period_s;
     robot.read(input);
     if (setup.reading) setup.reading(input.tactile[0]);
+    if (setup.watch) setup.watch(input.q_measured, t_s);
     controller.update(input, setup.controller.gains, t_s, setup.period_s, state, output);
     const Vector3 goal = output.w_d.size() >= 3 ? Vector3(output.w_d.head<3>()) : Vector3::Zero();
     run.tcp_error_final_m = (goal - robot.toolPosition()).norm();

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "tactus/bench/drawn_environments.h"
 #include "tactus/bench/law_grid.h"
 #include "tactus/bench/law_trials.h"
 #include "tactus/bench/parallel.h"
@@ -11,6 +12,9 @@ namespace tactus {
 namespace {
 
 constexpr const char* kLawBase = "/scenario2_estimated.yaml";
+constexpr const char* kOtherArm = "/robots/kuka_iiwa7_contact.yaml";
+constexpr std::uint64_t kEnvironmentsSeed = 20'261'124;
+constexpr int kEnvironments = 300;
 
 std::vector<LawGridRow> runGrid(const RunSetup& base, const std::vector<LawGridPoint>& points,
                                 const LawTrial& trial) {
@@ -35,14 +39,27 @@ Plot peaks(const Table& grid) {
   return plot;
 }
 
+RunSetup setupOf(const std::string& path) {
+  const Scene scene = loadScene(path, {}, SceneUse::kSimulation);
+  return {scene.controller, scene.plant, scene.period_s, scene.duration_s};
+}
+
+Table drawnEnvironments(const BenchOptions& options, const RunSetup& base) {
+  const int count = options.is_quick ? 5 : kEnvironments;
+  Table table = emptyDrawnTable();
+  addDrawnRow("of the scene", drawEnvironments(base, kEnvironmentsSeed, count), table);
+  const RunSetup other = setupOf(options.scenes_folder + kOtherArm);
+  addDrawnRow("kuka_iiwa7", drawEnvironments(other, kEnvironmentsSeed, count), table);
+  return table;
+}
+
 }  // namespace
 
 StudyResult studyLaw(const BenchOptions& options) {
   const std::string path =
       options.scenes.empty() ? options.scenes_folder + kLawBase : options.scenes.front();
-  const Scene scene = loadScene(path, {}, SceneUse::kSimulation);
-  const RunSetup base{scene.controller, scene.plant, scene.period_s, scene.duration_s};
-  std::vector<LawGridPoint> points = lawGridPoints(scene.plant.robot_stiffness_N_per_m);
+  const RunSetup base = setupOf(path);
+  std::vector<LawGridPoint> points = lawGridPoints(base.plant.robot_stiffness_N_per_m);
   if (options.is_quick) {
     std::size_t i = 0;
     std::erase_if(points, [&](const LawGridPoint&) { return i++ % 20 > 0; });
@@ -69,13 +86,16 @@ StudyResult studyLaw(const BenchOptions& options) {
       "A limit cycle: over the last 2 s the contact's force has a standard deviation above 0.05 N. "
       "The natural scale is what no law could avoid: nothing is seen before the filtered force "
       "passes the threshold, and by then the arm has gone on for the loop's delay. All of it once "
-      "more with each disturbance, and null_limit without each part that a value leaves out; what "
+      "more with each disturbance, and null_limit without each part that a value leaves out. Then "
+      "starts, paths and posts that were drawn, for this arm "
+      "and another. What "
       "the figures mean is in docs/approach_speed_limit.md.";
   result.goals = {{"null_limit: limit cycles", 0.0, static_cast<double>(limited.restless)},
                   {"null_limit: peak over the natural scale, largest", 1.15, limited.peak_to_scale},
                   {"null_limit: peak over the paper's with the assumed stiffness, largest", 1.05,
                    limited.peak_to_assumed}};
-  result.tables = {robustness, ablation, lawGridTable(undisturbed)};
+  result.tables = {robustness, ablation, drawnEnvironments(options, base),
+                   lawGridTable(undisturbed)};
   result.plots = {peaks(result.tables.back())};
   return result;
 }

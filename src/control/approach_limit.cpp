@@ -38,8 +38,10 @@ void ApproachLimit::estimate(const ForceGains& gains, const ScaledVector& a, int
                              double F_p_N, double period_s,
                              ApproachLimitState& state) const noexcept {
   const ContactPointState& contact = state.smoother.contact;
-  if (F_p_N <= 0.0) {
+  if (contact.force_N <= gains.transition.release_force_N) {
     forgetContact(gains, period_s, state.estimator);
+  } else if (F_p_N <= 0.0) {
+    leaveForce(state.estimator);
   } else if (contact.isNew()) {
     const double dx_m = approach(a, joints, state.position.sensed_before, state.position.sensed);
     estimateInContact(gains, {F_p_N, dx_m, contact.interval_s, state.smoother.significant_N},

@@ -33,9 +33,9 @@ void goOn(const Vector3& p_BaseContact, bool is_touching, ContactControllerState
   state.joint_space_transition.p_BaseLost = p_BaseContact;
 }
 
-void tell(const ControlLawInput& input, const ContactSpace& space, const ControlLawOutput& u,
-          ContactReport& report) noexcept {
-  report.force_contact_N = input.F_p_N;
+void tell(double F_p_N, const ControlLawInput& input, const ContactSpace& space,
+          const ControlLawOutput& u, ContactReport& report) noexcept {
+  report.force_contact_N = F_p_N;
   report.stiffness_N_per_m = input.stiffness_N_per_m;
   report.k_n = space.k_n;
   report.k_j = space.k_j;
@@ -70,10 +70,10 @@ ContactController::ContactController(const ControllerConfig& config,
       law_(*config.force_control, config.chain, inv_sqrt_weights) {
   if (config.force_control->variant != Variant::kNullLimit) return;
   approach_limit_.emplace(config);
+  limit_rows_.emplace(config.limits);
   if (config.force_control->friction_coefficient <= 0.0) return;
   friction_cone_.emplace(config.tactile_modules.front(),
                          config.force_control->friction_coefficient);
-  limit_rows_.emplace(config.limits);
 }
 
 ContactControllerState ContactController::initialState() const {
@@ -92,7 +92,8 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   const Contact contact = locate(kinematics, point, motion.a);
 
   ControlLawInput input;
-  input.F_p_N = std::max(0.0, point.force_N - gains.force.contact_threshold_N);
+  const double F_p_N = std::max(0.0, point.force_N - gains.force.contact_threshold_N);
+  input.F_p_N = F_p_N;
   estimate(gains.force, contact, commanded, period_s, state, report, input);
   if (state.is_resting && commanded.is_followed)
     goOn(contact.p_Base, point.force_N > gains.force.transition.release_force_N, state);
@@ -113,16 +114,16 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
     const ContactSpace& space = contact.space;
     const double v_res = dot(space.a_task, motion.y, task_.size) +
                          dot(space.a_scaled, motion.v_scaled) - space.k_n * u.u_n;
-    u.u_t = approach_limit_->excess(gains.force, input.F_p_N, v_res, state.approach) *
+    u.u_t = approach_limit_->excess(gains.force, F_p_N, v_res, state.approach) *
             invertRegularised(space.k_t, space.k_j);
   }
 
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
   motion.y += (u.u_n - u.u_t) * contact.space.a_task;
   motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
-  if (friction_cone_)
-    u.u_t = limitCorners(gains.force, kinematics, commanded.q, contact.space, input.F_p_N, state,
-                         motion);
+  if (friction_cone_) state.approach.is_limiting = false;
+  if (friction_cone_ || (approach_limit_ && (state.cut_m_per_s > 0.0 || state.keeps_joints)))
+    u.u_t += limitRows(gains.force, kinematics, commanded.q, contact.space, F_p_N, state, motion);
 
   if (is_multi_space_ && commanded.is_followed && hasReturnSpeed(gains.task)) {
     state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * contact.space.a_task);
@@ -132,7 +133,7 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
     state.has_push = false;
   }
 
-  tell(input, contact.space, u, report);
+  tell(F_p_N, input, contact.space, u, report);
 }
 
 void ContactController::estimate(const ForceGains& gains, const Contact& contact,
@@ -158,18 +159,26 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
   report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
 }
 
-double ContactController::limitCorners(const ForceGains& gains, const TaskKinematics& kinematics,
-                                       const JointVector& q_desired, const ContactSpace& space,
-                                       double F_p_N, ContactControllerState& state,
-                                       Motion& motion) const noexcept {
-  state.approach.is_limiting = false;
+double ContactController::limitRows(const ForceGains& gains, const TaskKinematics& kinematics,
+                                    const JointVector& q_desired, const ContactSpace& space,
+                                    double F_p_N, ContactControllerState& state,
+                                    Motion& motion) const noexcept {
   state.cut_by_rows_m_per_s = 0.0;
+  state.keeps_joints = false;
   const double memory = state.approach.memory_N_per_m;
   if (memory == 0.0) return 0.0;
   SpeedRows rows;
-  friction_cone_->corners(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_,
-                          rows);
-  approach_limit_->limitRows(gains, F_p_N, friction_cone_->cosine(), state.approach, rows);
+  double cosine = 1.0;
+  if (friction_cone_) {
+    friction_cone_->corners(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_,
+                            rows);
+    cosine = friction_cone_->cosine();
+  } else {
+    rows.row[0].a_scaled = space.a_scaled;
+    rows.row[0].a_task = space.a_task;
+    rows.size = 1;
+  }
+  approach_limit_->limitRows(gains, F_p_N, cosine, state.approach, rows);
   const int corners = rows.size;
   const double in_contact =
       std::max(state.approach.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
@@ -179,9 +188,11 @@ double ContactController::limitCorners(const ForceGains& gains, const TaskKinema
     return dot(space.a_scaled, motion.v_scaled) + dot(space.a_task, motion.y, task_.size);
   };
   const double retreat_before = retreat();
-  const double sum = keepSpeedRows(rows, task_.size, motion).head(corners).sum();
-  state.cut_by_rows_m_per_s = std::max(0.0, retreat_before - retreat());
-  state.approach.is_limiting = sum > 0.0;
+  const RowVector l = keepSpeedRows(rows, task_.size, motion);
+  const double sum = l.head(corners).sum();
+  state.keeps_joints = rows.size > corners;
+  state.cut_by_rows_m_per_s = state.keeps_joints ? std::max(0.0, retreat_before - retreat()) : 0.0;
+  state.approach.is_limiting = state.approach.is_limiting || sum > 0.0;
   return -sum;
 }
 
@@ -246,6 +257,9 @@ void ContactController::passContact(const ForceGains& gains, const Contact& cont
   input.x_dot_ff_m_per_s = state.transition.gamma * std::min(x_dot_eff, 0.0);
   report.gamma = state.transition.gamma;
   report.x_dot_eff_m_per_s = x_dot_eff;
+  if (!approach_limit_ || !state.transition.touched) return;
+  input.F_p_N = signedContactForce_N(gains, state.approach.smoother.contact.force_N);
+  if (input.F_p_N < 0.0) input.integral_decay = 1.0;
 }
 
 void ContactController::passJointSpaceContact(const Gains& gains, const TaskKinematics& kinematics,

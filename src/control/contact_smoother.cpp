@@ -9,6 +9,7 @@ namespace tactus {
 namespace {
 
 constexpr double kSmoothing_s = 1.0;  ///< T_s
+constexpr double kTurn = 0.05;        ///< theta_s, rad
 constexpr double kLearning = 0.01;    ///< a sample: settles within half a second at 4 ms
 /// The peak is remembered for kRinging / f_c; of what is left of it the filter shows 0.175 from the
 /// other side after the shortest blow, less after others. Samples miss some of the peak, the more
@@ -24,10 +25,11 @@ void normalise(Vector3& direction) {
   if (length > 0.0) direction /= length;
 }
 
-/// What stands still in the base frame, seen from the link that has moved.
-void carry(const Pose& from, const Pose& to, ContactPointState& contact) {
-  const Vector3 p_Base = from.p_AB + contact.position_m * from.R_AB.col(0);
+/// Where the cover touches stands still in the base frame, and the normal as far as the link's axis
+/// lets it: both seen from the link that has moved.
+void carry(const Pose& from, const Pose& to, double radius_m, ContactPointState& contact) {
   const Vector3 F_Base = from.R_AB.lazyProduct(contact.direction);
+  const Vector3 p_Base = from.p_AB + contact.position_m * from.R_AB.col(0) - radius_m * F_Base;
   contact.position_m = to.R_AB.col(0).dot(p_Base - to.p_AB);
   contact.direction = Vector3(0.0, to.R_AB.col(1).dot(F_Base), to.R_AB.col(2).dot(F_Base));
   normalise(contact.direction);
@@ -47,7 +49,9 @@ void learnNoise(double min_significant_N, const Vector3& force_N, ContactSmoothe
 }  // namespace
 
 ContactSmoother::ContactSmoother(const TactileModuleConfig& module)
-    : half_length_m_(0.5 * module.length_m), ringing_s_(kRinging / module.filter_cutoff_hz) {}
+    : half_length_m_(0.5 * module.length_m),
+      radius_m_(module.cover_radius_m),
+      ringing_s_(kRinging / module.filter_cutoff_hz) {}
 
 ContactSmootherState ContactSmoother::initialState() const noexcept {
   ContactSmootherState state;
@@ -67,7 +71,8 @@ void ContactSmoother::update(const ForceGains& gains, const ContactPointState& s
                              const Pose& X_BaseModule, ContactSmootherState& state) const noexcept {
   ContactPointState& contact = state.contact;
   contact.interval_s = sensor.interval_s;
-  carry(state.X_BaseModule, X_BaseModule, contact);
+  carry(state.X_BaseModule, X_BaseModule, radius_m_, contact);
+  const double axis_turn = (X_BaseModule.R_AB.col(0) - state.X_BaseModule.R_AB.col(0)).norm();
   state.X_BaseModule = X_BaseModule;
   const bool is_rebound = isRebound(sensor, state);
   contact.force_N = is_rebound ? 0.0 : sensor.force_N;
@@ -75,7 +80,8 @@ void ContactSmoother::update(const ForceGains& gains, const ContactPointState& s
   learnNoise(gains.estimator.min_force_change_N, sensor.force_N * sensor.direction, state);
   const double weight = sensor.force_N * sensor.force_N;
   state.weight =
-      flushed(state.weight * (1.0 - state.smoothing.of(sensor.interval_s, kSmoothing_s)));
+      flushed(state.weight * (1.0 - state.smoothing.of(sensor.interval_s, kSmoothing_s)) /
+              (1.0 + axis_turn / kTurn));
   if (is_rebound || sensor.force_N <= gains.contact_threshold_N || weight == 0.0) return;
   state.weight = grows ? weight : state.weight + weight;
   const Vector3 turn = sensor.direction - contact.direction;

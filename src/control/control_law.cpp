@@ -21,6 +21,12 @@ void integrate(const ForceGains& gains, double change_m_per_s, const ControlLawI
 
 }  // namespace
 
+double signedContactForce_N(const ForceGains& gains, double force_N) noexcept {
+  const double missing_N = gains.contact_threshold_N - force_N;
+  const double felt_N = force_N - gains.transition.release_force_N;
+  return missing_N > 0.0 ? -std::max(0.0, std::min(missing_N, felt_N)) : -missing_N;
+}
+
 ControlLaw::ControlLaw(const ForceControlConfig& config, const SerialChain& chain,
                        const ScaledVector& inv_sqrt_weights)
     : variant_(config.variant),
@@ -97,7 +103,7 @@ void ControlLaw::update(const ForceGains& gains, const ControlLawInput& input,
   if (order_ == 1) return;
   const double rate =
       period_s / (gains.time_constant_s * gains.time_constant_s * input.stiffness_N_per_m);
-  if (!limited && !input.hold_integral)
+  if (!limited && (!input.hold_integral || input.cut_m_per_s > 0.0))
     integrate(gains, rate * input.F_p_N, input, period_s, state.V_m_per_s);
   if (has_second_space_) integrate(gains, rate * excess_N, input, period_s, state.It_m_per_s);
 }

@@ -53,8 +53,9 @@ Table<ContactTransitionGains> transitionKeys() {
                                  "force range over which the feedforward engages; 0: at once",
                                  &Config::engage_force_N)),
       withSymbol("F_rel", number("release_force_N", "N", above(0, 1000),
-                                 "reading below which joint_space has lost contact, and above "
-                                 "which an arm that goes on after a stop is in contact",
+                                 "reading below which joint_space and null_limit have lost "
+                                 "contact, and above which an arm that goes on after a stop is "
+                                 "in contact",
                                  &Config::release_force_N)),
       withSymbol("v_search", number("search_speed_m_per_s", "m/s", within(0, 10),
                                     "speed of the return to a lost contact, joint_space only",

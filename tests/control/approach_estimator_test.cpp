@@ -100,6 +100,16 @@ TEST_F(ApproachEstimate, ForgetsWithoutContact) {
   EXPECT_EQ(state_.F_before_N, 0.0);
 }
 
+TEST_F(ApproachEstimate, BeginsAnewBelowTheThresholdWithWhatItKnows) {
+  touch(3.0, 1e-4);
+  touch(3.1, 1e-5);
+  leaveForce(state_);
+  EXPECT_NEAR(c(), 3e4, 1e-8);
+  EXPECT_EQ(state_.x_m, 0.0);
+  EXPECT_EQ(state_.F_ref_N, 0.0);
+  EXPECT_EQ(state_.F_before_N, 0.0);
+}
+
 TEST_F(ApproachEstimate, FindsSpringsSofterAndStiffer) {
   for (const double stiffness : {30.0, 600.0, 2e4, 3e5}) {
     state_ = assumedApproach();

@@ -54,6 +54,27 @@ TEST(ApproachLimit, LetsTheForceSettleExponentiallyAtTheActivationForce) {
   EXPECT_NEAR(force_N, kLimit_N, 1e-3);
 }
 
+/// A contact that swings about F_th would else be taken for the assumed one after a while.
+TEST(ApproachLimit, KnowsAContactAsLongAsItIsFelt) {
+  ControllerConfig config = bareRail(0.1);
+  config.force_control->has_estimator = true;
+  const ApproachLimit limit(config);
+  ForceGains gains = kGains;
+  gains.contact_threshold_N = 1.2;
+  const double release_N = gains.transition.release_force_N;
+  const auto stiffnessAfter = [&](double force_N) {
+    ApproachLimitState state = limit.initialState();
+    state.estimator.stiffness_N_per_m = 50.0 * kC_N_per_m;
+    state.smoother.contact.force_N = force_N;
+    for (int i = 0; i < 5000; ++i)
+      limit.observe(gains, ScaledVector::Zero(), 0.0, config.q_start, kPeriod_s, state);
+    return state.estimator.stiffness_N_per_m;
+  };
+  EXPECT_EQ(stiffnessAfter(gains.contact_threshold_N), 50.0 * kC_N_per_m);
+  EXPECT_EQ(stiffnessAfter(1.01 * release_N), 50.0 * kC_N_per_m);
+  EXPECT_NEAR(stiffnessAfter(release_N), kC_N_per_m, 0.01 * 50.0 * kC_N_per_m);
+}
+
 TEST(ApproachLimit, CutsExactlyTheExcessByHand) {
   const ApproachLimit limit(bareRail(0.1));
   ApproachLimitState state = limit.initialState();

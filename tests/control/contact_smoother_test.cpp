@@ -72,11 +72,39 @@ TEST_F(Smoother, AContactThatStandsStillIsKeptWhileTheLinkMoves) {
     const double turn = 0.002 * i;
     X_BaseModule_.R_AB = Eigen::AngleAxisd(turn, Vector3::UnitZ()).toRotationMatrix();
     const double x_m = 0.3 - 0.0005 * i;
-    X_BaseModule_.p_AB = Vector3(0.3, 0.0, 0.0) - x_m * X_BaseModule_.R_AB.col(0);
-    feel(x_m + (i % 2 == 0 ? 0.001 : -0.001), 4.0, 0.0);
+    const Vector3 p_Base(0.3, -0.06, 0.0);  // on the cover
+    X_BaseModule_.p_AB =
+        p_Base + 0.06 * X_BaseModule_.R_AB.col(1) - x_m * X_BaseModule_.R_AB.col(0);
+    feel(x_m + (i % 2 == 0 ? 0.0005 : -0.0005), 4.0, 0.0);
     ASSERT_NEAR(state_.contact.position_m, x_m, 1e-4) << i;
     ASSERT_NEAR(angle(), 0.0, 1e-12) << "horizontal, and square to the link";
   }
+}
+
+TEST_F(Smoother, TheNormalOfAPostTurnsAboutALinkThatIsInclined) {
+  // The link turns about the post without turning about itself; the normal, which stays horizontal,
+  // then turns about the link.
+  const double pitch = 0.6;
+  const auto poseAt = [&](double yaw) {
+    X_BaseModule_.R_AB =
+        (Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Eigen::AngleAxisd(pitch, Vector3::UnitY()) *
+         Eigen::AngleAxisd(yaw * std::sin(pitch), Vector3::UnitX()))
+            .toRotationMatrix();
+    const Vector3 u = X_BaseModule_.R_AB.col(0);
+    const Vector3 n = Vector3::UnitZ().cross(u).normalized();
+    X_BaseModule_.p_AB = 0.06 * n - 0.2 * u;
+    return std::atan2(n.dot(X_BaseModule_.R_AB.col(2)), n.dot(X_BaseModule_.R_AB.col(1)));
+  };
+  const double before = poseAt(0.0);
+  for (int i = 0; i < 200; ++i) feel(0.2, 4.0, before);
+  double now = before;
+  for (int i = 1; i <= 150; ++i) {
+    now = poseAt(0.001 * i);
+    feel(0.2, 4.0, now);
+    ASSERT_NEAR(angle(), now, 0.035) << i;
+    ASSERT_NEAR(state_.contact.position_m, 0.2, 1e-3) << i;
+  }
+  EXPECT_GT(std::abs(now - before), 0.05);
 }
 
 TEST_F(Smoother, WeighsSamplesByTheSquareOfTheirForce) {

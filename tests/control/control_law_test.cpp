@@ -102,6 +102,36 @@ TEST(ControlLaw, AChangeOfStiffnessDoesNotMoveTheIntegralPart) {
   EXPECT_EQ(soft.u.u_j, stiff.u.u_j);
 }
 
+TEST(ControlLaw, TheSignedForceAsksForMoreContactWhereItIsFeltBelowTheThreshold) {
+  const ForceGains gains;
+  const double threshold_N = gains.contact_threshold_N;
+  const double release_N = gains.transition.release_force_N;
+  EXPECT_NEAR(signedContactForce_N(gains, 5.0), 3.8, 1e-15);
+  EXPECT_NEAR(signedContactForce_N(gains, 1.0), -0.2, 1e-15);
+  EXPECT_NEAR(signedContactForce_N(gains, 0.5), -0.2, 1e-15) << "and less where it is almost lost";
+  for (const double none_N : {threshold_N, release_N, 0.1, 0.0})
+    EXPECT_EQ(signedContactForce_N(gains, none_N), 0.0) << none_N;
+  for (double force_N = 0.0; force_N < 3.0; force_N += 1e-3)
+    EXPECT_NEAR(signedContactForce_N(gains, force_N), signedContactForce_N(gains, force_N + 1e-3),
+                1e-3 + 1e-12);
+}
+
+TEST(ControlLaw, ANegativeForceTakesTheIntegralDownToNothing) {
+  ControlLawInput input = kTouch;
+  input.F_p_N = -0.2;
+  EXPECT_NEAR(updateOnce(lawOf(Variant::kNullLimit), input, kBefore).state.V_m_per_s,
+              0.003 - 0.001 * 0.2 / (0.01 * 1000.0), 1e-15);
+  EXPECT_EQ(updateOnce(lawOf(Variant::kNullLimit), input, {}).state.V_m_per_s, 0.0);
+}
+
+TEST(ControlLaw, WhatTheLimitsCutIsTakenOffTheIntegralEvenWhileItIsHeld) {
+  ControlLawInput input = kTouch;
+  input.hold_integral = true;
+  EXPECT_EQ(updateOnce(lawOf(Variant::kNullLimit), input, kBefore).state.V_m_per_s, 0.003);
+  input.cut_m_per_s = 0.1;
+  EXPECT_LT(updateOnce(lawOf(Variant::kNullLimit), input, kBefore).state.V_m_per_s, 0.003);
+}
+
 TEST(ControlLaw, FirstOrderHasNoIntegralAndTheGainOfItsOwn) {
   const Result r = updateOnce(lawOf(Variant::kJointSpace, 1), kTouch);
   EXPECT_NEAR(r.u.u_j, (-0.02 - 4.0 / (0.1 * 1000.0)) / 0.25, 1e-15);

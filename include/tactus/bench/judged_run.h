@@ -19,6 +19,8 @@ struct RunSetup {
   double arm_stiffness_N_per_m = kNoLimit;
   /// What the tactile module says instead of what it felt; empty: just that.
   std::function<void(TactileSample& sample)> reading{};
+  /// Told of each cycle's joints as measured; empty: nobody.
+  std::function<void(const JointVector& q, double t_s)> watch{};
 };
 
 /// How a run went with its last obstacle, the profile. Forces are the sensor's.

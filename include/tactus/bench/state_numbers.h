@@ -78,7 +78,7 @@ struct StateVisitor {
 
   void answer(const ContactControllerState& contact) const {
     const auto& [held_point, push, has_push, transition, joint_space, estimator, approach, law, cut,
-                 cut_by_rows, is_resting] = contact;
+                 cut_by_rows, keeps_joints, is_resting] = contact;
     point("held.force_N", "held.position_m", "held.direction", held_point);
     list("push", push);
     visit("cut", 0, cut);

@@ -35,10 +35,14 @@ struct ApproachSample {
 ///                         r = (max(dF, 0) + F_min) / x is an upper bound: c falls towards it
 ///   dx <= 0, dF < -F_min, x < -x_min:   r = dF / x: c falls towards it;  re-armed
 ///   force against the way by more than F_min:  re-armed
-/// r is clamped to its range. Without contact x = F_ref = 0, and c returns to c_0 with T_c.
+/// r is clamped to its range. Below F_th x = F_ref = 0, and c returns to c_0 with T_c below F_rel
+/// alone: a contact that rests at F_th would else be taken for softer each time it swings below.
 // clang-format on
 void estimateInContact(const ForceGains& gains, const ApproachSample& sample,
                        ApproachEstimatorState& state) noexcept;
+
+/// A cycle in which the force is below F_th, but felt: the next quotient begins anew.
+void leaveForce(ApproachEstimatorState& state) noexcept;
 
 /// A cycle without contact.
 void forgetContact(const ForceGains& gains, double period_s,

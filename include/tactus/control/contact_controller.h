@@ -39,6 +39,7 @@ struct ContactControllerState {
   ControlLawState law;
   double cut_m_per_s = 0.0;          ///< of the retreat, by the limits of the last cycle
   double cut_by_rows_m_per_s = 0.0;  ///< likewise, by rows of joints near theirs
+  bool keeps_joints = false;         ///< rows keep joints near their limits off them
   bool is_resting = false;           ///< the last cycle's command did not move the arm
 };
 
@@ -87,11 +88,11 @@ class ContactController {
                              const Contact& contact, double return_share, double period_s,
                              ContactControllerState& state, ContactReport& report,
                              ControlLawInput& input, Motion& motion) const noexcept;
-  /// The approach limit with friction: all corners of the cone, and the joints' limits. Returns
-  /// what stands for u_t.
-  double limitCorners(const ForceGains& gains, const TaskKinematics& kinematics,
-                      const JointVector& q_desired, const ContactSpace& space, double F_p_N,
-                      ContactControllerState& state, Motion& motion) const noexcept;
+  /// The approach limit beside the joints' limits, with friction that of all corners of the cone.
+  /// Returns what stands for u_t.
+  double limitRows(const ForceGains& gains, const TaskKinematics& kinematics,
+                   const JointVector& q_desired, const ContactSpace& space, double F_p_N,
+                   ContactControllerState& state, Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
   TaskVector pull(const Gains& gains, const PaddedTaskVector& error) const noexcept;
 
@@ -106,7 +107,7 @@ class ContactController {
   ControlLaw law_;
   std::optional<ApproachLimit> approach_limit_;
   std::optional<FrictionCone> friction_cone_;  ///< with the approach limit alone
-  std::optional<JointLimitRows> limit_rows_;   ///< with the friction cone alone
+  std::optional<JointLimitRows> limit_rows_;   ///< likewise
 };
 
 }  // namespace tactus

@@ -26,11 +26,13 @@ struct ContactSmootherState {
 /// small for every real force. Its median is 2.88 sigma for noise alone, tracked by
 ///   s = 6 sigma:  s rises by 1 % if |d2| > 0.48 s, and else falls by 1 %;  at least s_min
 /// x and F^ are means of the samples of the last T_s = 1 s, weighed by F^2 as their errors go with
-/// 1 / F, of a contact that stands still in the base frame: first the motion of the link since the
-/// sample before is taken out of them. In an impact, where F grows by a fifth from one sample to
+/// 1 / F, of a contact whose place on the cover, x - r F^, stands still in the base frame while its
+/// normal stays across the link's axis u: first the motion of the link since the sample before is
+/// taken out of them. How the normal turns about u then, none of that tells: they are forgotten by
+/// du, too, with theta_s = 0.05 rad. In an impact, where F grows by a fifth from one sample to
 /// the next, the newest is all that counts; and a difference d from the mean that is larger than s,
 /// measured as a force, is followed at once:
-///   W = W exp(-dt / T_s) + F^2,   g = 1 - (1 - F^2 / W) min(1, (s / d)^2),
+///   W = W exp(-dt / T_s) / (1 + |du| / theta_s) + F^2,   g = 1 - (1 - F^2 / W) min(1, (s / d)^2),
 ///   d = F |(dF^, dx / (L / 2))|,   x += g dx,  F^ += g dF^
 /// A force up to F_th says nothing of either. After a blow the module's filter swings through and
 /// shows up to 12 % of it from the other side: such a reading counts as no force. So does all from
@@ -51,7 +53,7 @@ class ContactSmoother {
   /// Keeps the peak, too.
   bool isRebound(const ContactPointState& sensor, ContactSmootherState& state) const noexcept;
 
-  double half_length_m_;
+  double half_length_m_, radius_m_;
   double ringing_s_;
 };
 

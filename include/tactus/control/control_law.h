@@ -23,7 +23,7 @@ struct ControlLawState {
 };
 
 struct ControlLawInput {
-  double F_p_N = 0.0;
+  double F_p_N = 0.0;              ///< of null_limit also below 0, see ControlLaw
   double stiffness_N_per_m = 0.0;  ///< c
   double x_dot_ff_m_per_s = 0.0;   ///< gamma min(x_dot_eff, 0)
   double integral_decay = 1.0;     ///< of V in this cycle, from the contact transition
@@ -38,6 +38,10 @@ struct ControlLawOutput {
   double u_n = 0.0, u_j = 0.0, u_t = 0.0;
 };
 
+/// F_p of null_limit's null-space law: below F_th, where the contact is still felt, it has gone
+/// back too far and is negative, -min(F_th - F_sen, F_sen - F_rel), else F_p.
+double signedContactForce_N(const ForceGains& gains, double force_N) noexcept;
+
 /// The paper's laws. One space, (5), with 1/k regularised and P = 2 d / (T c):
 ///   u = (x_ff - P F_p - V) / k,     dV/dt = F_p / (T^2 c)
 /// Second space of the multi-space variants, (7), one-sided as a sum:
@@ -48,8 +52,10 @@ struct ControlLawOutput {
 ///   not followed:  V and I may fall, but not grow; where F_p = 0, V fades with T_t,max
 ///   cut:           dV/dt = min(0, F_p / (T^2 c) - x_cut / T) down to V = 0; x_cut > 0 is the part
 ///                  of the contact point's retreat that the arm's limits cut off a cycle ago; I
-///                  likewise, with F_p - F_act
-/// kNullLimit: u_n alone; what it lacks is added by approach_limit.h.
+///                  likewise, with F_p - F_act; V also while another space does its work, which
+///                  else holds it
+/// kNullLimit: u_n alone, with the signed F_p, and V does not fade where that is negative but
+/// falls, as far as 0; what u_n lacks is added by approach_limit.h.
 class ControlLaw {
  public:
   ControlLaw(const ForceControlConfig& config, const SerialChain& chain,

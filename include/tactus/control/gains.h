@@ -33,8 +33,8 @@ struct ContactTransitionGains {
   double max_time_constant_s = 1.0;  ///< T_t,max
   double distance_m = 0.05;          ///< d_t
   double engage_force_N = 0.0;       ///< F_eng: F_p over which the feedforward engages; 0: at once
-  /// F_rel: F_sen at which contact is lost in joint space, and above which an arm that goes on
-  /// after a stop is in contact.
+  /// F_rel: F_sen at which contact is lost in joint space and for null_limit, and above which an
+  /// arm that goes on after a stop is in contact.
   double release_force_N = 0.3;
   double search_speed_m_per_s = 0.01;  ///< v_search: joint space only, speed of the return
 };
