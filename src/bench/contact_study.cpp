@@ -19,6 +19,10 @@ constexpr std::array kFrictions = {0.0, 0.1, 0.2, 0.3, 0.5, 0.6};  // mu
 constexpr std::array kBearables = {0.0, 0.5, 0.8};                 // mu_max
 constexpr std::array kNoises_N = {0.0, 0.05};
 constexpr std::array kJudgedFrictions = {0.3, 0.6};
+constexpr std::array kBesideMomentX = {0.0, 0.5};  // mu_max
+/// Of the row of M_x where the base's module has none, m: with cells that are canted. Noise of
+/// 0.05 N is of 2.1 mNm then.
+constexpr double kMomentX_m = 0.03;
 constexpr std::array kArms = {"quasi_static", "rigid_gears", "flexible_gears"};
 constexpr int kDrawn = 48;
 constexpr std::uint64_t kDrawnSeed = 20'261'123;
@@ -28,6 +32,7 @@ struct ContactTrial {
   double friction = 0.0;
   double noise_N = 0.0;
   double bearable = 0.0;
+  bool has_moment_x = false;  ///< the module tells M_x
 };
 
 /// One scene, whose arm has no mass, rigid gears or flexible ones; only as many as its robot knows.
@@ -82,6 +87,12 @@ std::vector<LawGridPoint> drawnPoints(double robot_stiffness_N_per_m) {
   return points;
 }
 
+void tellMomentX(RunSetup& setup) {
+  setup.controller.tactile_modules.front().feels_moment_x = true;
+  std::optional<TactileChannelRow>& row = setup.plant.modules[0].channels.moment_x;
+  if (!row) row = TactileChannelRow::Constant(kMomentX_m);
+}
+
 RunSetup contactSetup(const ArmBases& bases, const LawGridPoint& point, const ContactTrial& trial) {
   RunSetup setup = lawGridSetup(bases[trial.arm], point, GridLaw::kLimited);
   if (trial.arm > 0) {  // which has its own
@@ -93,6 +104,7 @@ RunSetup contactSetup(const ArmBases& bases, const LawGridPoint& point, const Co
     obstacle.friction_coefficient = trial.friction;
   SimulatedModuleConfig& module = setup.plant.modules[0];
   module.noise_N = trial.noise_N / module.channels.calibration.row(0).norm();
+  if (trial.has_moment_x) tellMomentX(setup);
   return setup;
 }
 
@@ -161,6 +173,19 @@ Table drawnTable(const ArmBases& bases, const std::vector<LawGridPoint>& points)
   return table;
 }
 
+/// Of a module that tells M_x, alone and with a friction_coefficient beside.
+Table momentTable(const ArmBases& bases, const std::vector<LawGridPoint>& points) {
+  Table table = contactTable("contact_moment_x");
+  for (std::size_t arm = 0; arm < bases.size(); arm += 2) {  // rigid gears are in between
+    for (const double noise_N : kNoises_N)
+      for (const double friction : kJudgedFrictions)
+        for (const double bearable : kBesideMomentX)
+          addContactRow(bases, arm > 0 ? massivePoints(points) : points,
+                        {arm, friction, noise_N, bearable, true}, table);
+  }
+  return table;
+}
+
 /// With and without noise, on the grid and where points were drawn.
 double largest(const std::vector<Table>& tables, const char* column, double arm, double friction) {
   double found = 0.0;
@@ -196,6 +221,36 @@ std::vector<Goal> contactGoals(const ArmBases& bases, const std::vector<Table>& 
   return goals;
 }
 
+/// Of a module that tells M_x, with this set beside.
+void addMomentGoals(const Table& table, std::size_t arm, double bearable, double noise_N,
+                    std::vector<Goal>& goals) {
+  const auto find = [&](const char* column, double friction) {
+    return findNumber(table, column,
+                      {{"arm", static_cast<double>(arm)},
+                       {"friction", friction},
+                       {"noise_N", noise_N},
+                       {"bears", bearable}});
+  };
+  const std::string where = std::string("with M_x, ") + kArms[arm] +
+                            (noise_N > 0.0 ? ", noise" : ", no noise") +
+                            (bearable > 0.0 ? ", 0.5 set" : ", nothing set") + ", friction ";
+  goals.push_back(
+      {where + "0.3: peak over the natural scale", 1.3, find("largest_peak_to_scale", 0.3)});
+  goals.push_back(
+      {where + "0.3: force at rest over the limit", 1.1, find("largest_rest_to_limit", 0.3)});
+  goals.push_back({where + "0.3: runs that do not come to rest", 0.0, find("limit_cycles", 0.3)});
+  goals.push_back(
+      {where + "0.6: peak over the natural scale", 2.0, find("largest_peak_to_scale", 0.6)});
+}
+
+/// Alone without noise; with noise a stiff contact wants the cone beside it.
+void addMomentGoals(const Table& table, const ArmBases& bases, std::vector<Goal>& goals) {
+  for (std::size_t arm = 0; arm < bases.size(); arm += 2) {
+    addMomentGoals(table, arm, 0.0, kNoises_N[0], goals);
+    addMomentGoals(table, arm, kBesideMomentX[1], kNoises_N[1], goals);
+  }
+}
+
 ArmBases contactBases(const std::string& path) {
   ArmBases bases;
   for (const char* arm : kArms) {
@@ -228,10 +283,12 @@ StudyResult studyContact(const BenchOptions& options) {
       "F_th; with an arm without mass (0), with masses and rigid gears (1), with flexible ones "
       "(2). "
       "At rest means the largest true force of the last 2 s. First a grid, then points that were "
-      "drawn. What the figures mean is in "
+      "drawn, then the grid with a module that tells M_x. What the figures mean is in "
       "docs/approach_speed_limit.md.";
   result.tables = {gridTable(bases, grid), drawnTable(bases, drawn)};
   result.goals = contactGoals(bases, result.tables);
+  result.tables.push_back(momentTable(bases, grid));
+  addMomentGoals(result.tables.back(), bases, result.goals);
   return result;
 }
 

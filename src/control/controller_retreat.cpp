@@ -18,25 +18,27 @@ bool isExcess(const TactileReading& reading) noexcept {
   return reading.fault == Fault::kTactileInvalid && reading.has_excess;
 }
 
-/// Behind its filter a reading does not jump: where a contact was felt before an excess, that
+/// Not the last sample's: after a blow the module's filter tells of a push from the other side.
+/// Behind that filter a reading does not jump: where a contact was felt before an excess, that
 /// sample knows where it is, and a sensor that lies does not move the arm into it.
 const ContactPointState& lastContact(const TactileReading& reading, double threshold_N) noexcept {
-  const bool is_unknown = reading.contact.force_N <= threshold_N;
-  return is_unknown && isExcess(reading) ? reading.excess : reading.contact;
+  const bool is_unknown = reading.hardest.force_N <= threshold_N;
+  return is_unknown && isExcess(reading) ? reading.excess : reading.hardest;
 }
 
 }  // namespace
 
 /// A contact may be as much softer than the law takes it for. What is assumed is the stiffest that
-/// may be met.
+/// may be met; an estimate may be the stiffer, the more the arm swings.
 double Controller::leastStiffness_N_per_m(const Gains& gains,
                                           const ControllerState& state) const noexcept {
   const ContactControllerState& contact = state.contact;
   const double estimated =
       std::max(contact.estimator.stiffness_N_per_m, contact.approach.estimator.stiffness_N_per_m);
+  const double least = gains.force.assumed_stiffness_N_per_m / kAssumptionMargin;
   if (config_.force_control && config_.force_control->has_estimator && estimated > 0.0)
-    return estimated / kEstimateMargin;
-  return gains.force.assumed_stiffness_N_per_m / kAssumptionMargin;
+    return std::min(estimated / kEstimateMargin, least);
+  return least;
 }
 
 /// From when the arm was where the last sample felt it: that sample's age, and what drives and

@@ -1,5 +1,6 @@
 #include "tactus/control/tactile_reading.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -15,6 +16,14 @@ double judgedForce_N(const TactileSample& sample) noexcept {
                          std::isfinite(sample.moment_x_Nm);
   return is_finite ? std::hypot(sample.force_y_N, sample.force_z_N)
                    : std::numeric_limits<double>::quiet_NaN();
+}
+
+void rememberHardest(double filter_cutoff_hz, TactileReading& reading) noexcept {
+  const ContactPointState& contact = reading.contact;
+  ContactPointState& hardest = reading.hardest;
+  const double fades_s = std::max(kPushFades_s, kPushFadesPeriods / filter_cutoff_hz);
+  hardest.force_N *= std::max(0.0, 1.0 - contact.interval_s / fades_s);
+  if (contact.force_N >= hardest.force_N) hardest = contact;
 }
 
 }  // namespace
@@ -36,6 +45,7 @@ Fault readSample(const TactileModuleConfig& module, const TactileSample& sample,
   if (is_valid) {
     locateContact(sample, module, reading.contact);
     reading.contact.interval_s = interval_s;
+    rememberHardest(module.filter_cutoff_hz, reading);
   } else {
     reading.detail = {judgedForce_N(sample), module.max_force_N, "N"};
     reading.has_excess = reading.detail.value < kMaxBelievable_N;

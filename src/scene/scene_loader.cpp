@@ -134,7 +134,7 @@ SimulatedModuleConfig makeSimulatedModule(const SimulationSection& simulation,
 
 /// The robot as it is simulated, which may differ from the one that the controller reckons with.
 PlantConfig makePlant(const YamlNode& root, const SceneConfig& config, const LoadedRobot& loaded,
-                      const JointVector& q_start) {
+                      const JointVector& q_start, const std::vector<LinkCapsule>& capsules) {
   const SimulationSection& simulation = config.simulation;
   const RobotConfig& robot = loaded.config;
   PlantConfig plant;
@@ -149,7 +149,7 @@ PlantConfig makePlant(const YamlNode& root, const SceneConfig& config, const Loa
   plant.chain = loadPlantChain(root, simulation.link_length_errors_m, loaded);
   for (std::size_t i = 0; i < robot.tactile_modules.size(); ++i)
     plant.modules.push_back(makeSimulatedModule(simulation, robot.tactile_modules[i], i));
-  plant.capsules = loadCapsules(loaded, config.controller.has_value()).capsules;
+  plant.capsules = capsules;
   return plant;
 }
 
@@ -193,6 +193,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
       loadRobot(reader.read(robot_path, "robot", robot_at), settings, reader, numbers);
   const JointVector q_start = readStart(root, config, robot);
   checkScene(root, config, robot, q_start);
+  const NamedCapsules capsules = loadCapsules(robot, config.controller.has_value());
   const std::optional<HardwareConfig> hardware = chooseHardware(config, robot);
   if (hardware && use == SceneUse::kHardware) {
     checkHardware(root, robot.root, config.period_s, robot.config, *hardware);
@@ -205,7 +206,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
               .period_s = config.period_s,
               .duration_s = config.simulation.duration_s,
               .stiffest_N_per_m = stiffness.stiffest_N_per_m.value_or(0.0),
-              .plant = makePlant(root, config, robot, q_start),
+              .plant = makePlant(root, config, robot, q_start, capsules.capsules),
               .arm = describeArm(robot, q_start),
               .robot_name = robot.chain.robot_name,
               .joint_names = robot.chain.joint_names,
@@ -215,7 +216,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
               .numbers = std::move(numbers),
               .hardware = hardware,
               .log = config.log,
-              .capsule_links = loadCapsules(robot, config.controller.has_value()).links,
+              .capsule_links = capsules.links,
               .troubles = loadTroubles(root, config.simulation.troubles, hardware),
               .tree = std::make_shared<const YamlNode>(root)};
   return scene;

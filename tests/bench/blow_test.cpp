@@ -46,16 +46,25 @@ Pressed press(SomeRobot& robot, double speed) {
   return pressed;
 }
 
-/// Beside the middle of the cover, where joint 2 will turn it.
-void placePost(const Scene& scene, ObstacleConfig& post) {
+/// The cover before joint 2 turns it.
+struct CoverPlace {
+  Vector3 middle, aside;  ///< m; level, where it will go
+  double gap_m;           ///< from the middle to what it will just not touch
+};
+
+CoverPlace coverPlace(const Scene& scene) {
   const TactileModuleConfig& module = scene.controller.tactile_modules.front();
   ChainPose pose;
   scene.controller.chain.computePose(scene.controller.q_start, pose);
   const Pose X = framePose(pose, module.link);
   const Vector3 along = X.R_AB.col(0);
-  const double gap_m = scene.plant.modules[0].cover_radius_m + 0.001;
-  const Vector3 place = X.p_AB + 0.5 * module.length_m * along +
-                        gap_m * Vector3(-along.y(), along.x(), 0.0).normalized();
+  return {X.p_AB + 0.5 * module.length_m * along, Vector3(-along.y(), along.x(), 0.0).normalized(),
+          scene.plant.modules[0].cover_radius_m + 0.001};
+}
+
+void placePost(const Scene& scene, ObstacleConfig& post) {
+  const auto& [middle, aside, gap_m] = coverPlace(scene);
+  const Vector3 place = middle + gap_m * aside;
   post.x_m = place.x();
   post.y_m = place.y();
 }
@@ -89,18 +98,12 @@ TEST_P(BlowOnAPost, IsAsHardInMujoco) {
 
 /// A ball beside the middle of the cover, a little above it, or a tilted wall there.
 void placeShape(const Scene& scene, bool is_wall, ObstacleConfig& obstacle) {
-  const TactileModuleConfig& module = scene.controller.tactile_modules.front();
-  ChainPose pose;
-  scene.controller.chain.computePose(scene.controller.q_start, pose);
-  const Pose X = framePose(pose, module.link);
-  const Vector3 along = X.R_AB.col(0);
-  const Vector3 aside = (Vector3(-along.y(), along.x(), 0.0).normalized() + Vector3(0, 0, 0.3));
-  const double gap_m = scene.plant.modules[0].cover_radius_m + 0.001;
-  const Vector3 middle = X.p_AB + 0.5 * module.length_m * along;
+  const auto& [middle, aside, gap_m] = coverPlace(scene);
+  const Vector3 there = aside + Vector3(0.0, 0.0, 0.3);
   if (is_wall) {
-    obstacle.plane = PlaneConfig{middle + gap_m * aside, Vector3(0.3, -1.0, 0.4)};
+    obstacle.plane = PlaneConfig{middle + gap_m * there, Vector3(0.3, -1.0, 0.4)};
   } else {
-    obstacle.sphere = SphereConfig{middle + (gap_m + 0.05) * aside.normalized(), 0.05};
+    obstacle.sphere = SphereConfig{middle + (gap_m + 0.05) * there.normalized(), 0.05};
   }
 }
 

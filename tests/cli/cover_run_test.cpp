@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "support/command_run.h"
@@ -76,6 +77,70 @@ TEST_F(CoverRunTest, WhatALogDoesNotTellIsRefused) {
   EXPECT_NE(refusal().find("cover: the mass is"), std::string::npos) << refusal();
   logRun("free_motion", {});
   EXPECT_NE(refusal().find("no tactile module is read"), std::string::npos) << refusal();
+}
+
+constexpr const char* kCoverScene = TACTUS_SOURCE_DIR "/config/scenes/robots/crops9_cover.yaml";
+
+/// What identifying with these words prints, or how it refuses to.
+std::string identified(std::vector<std::string> words) {
+  words.insert(words.begin(), {"identify", "cover"});
+  std::string output;
+  try {
+    EXPECT_EQ(test::runCommand(addIdentifyCommand, std::move(words), output), kExitDone);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return output;
+}
+
+TEST_F(CoverRunTest, ASceneIsIdentifiedAsTheLogOfItsRun) {
+  const std::vector<Override> settings = withNoise(
+      {{"simulation.tactile_module.cover", "{mass_kg: 0.4, center_m: [0.2, 0.01, -0.02]}"}});
+  logRun("robots/crops9_cover", settings);
+  ASSERT_EQ(identify({"--json"}), kExitDone) << output_;
+  std::vector<std::string> words = {kCoverScene, "--json"};
+  for (const Override& setting : settings)
+    words.insert(words.end(), {"--set", setting.key + "=" + setting.value});
+  const Json of_log = Json::parse(output_);
+  Json of_scene = Json::parse(identified(words));
+  EXPECT_TRUE(of_log["simulated"].is_null());
+  EXPECT_EQ(of_scene["simulated"]["mass_kg"], 0.4);
+  EXPECT_EQ(of_scene["simulated"]["center_m"], Json({0.2, 0.01, -0.02}));
+  of_scene["simulated"] = nullptr;
+  EXPECT_EQ(of_scene, of_log);
+  words.erase(words.begin() + 1);
+  EXPECT_NE(
+      identified(words).find("\nsimulated 0.4000 kg, centre x 0.2000, y 0.0100, z -0.0200 m\n"),
+      std::string::npos)
+      << identified(words);
+}
+
+/// The log of such a run would hold the contact.
+TEST_F(CoverRunTest, ASceneTouchesNothing) {
+  const std::string cover = "simulation.tactile_module.cover.mass_kg=0.4";
+  const std::string post = "simulation.obstacles=[{x_m: 0.65, y_m: 0.06, stiffness_N_per_m: 1e4}]";
+  EXPECT_EQ(identified({kCoverScene, "--set", cover, "--set", post}),
+            identified({kCoverScene, "--set", cover}));
+}
+
+TEST_F(CoverRunTest, WhatASceneDoesNotTellIsRefused) {
+  const auto expectRefusal = [](const std::vector<std::string>& words, const char* problem) {
+    const std::string text = identified(words);
+    EXPECT_NE(text.find(problem), std::string::npos) << text;
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 0) << text;
+  };
+  const std::string mass = "simulation.tactile_module.cover.mass_kg=";
+  expectRefusal({kCoverScene}, "crops9_cover.yaml:1:1: cover: the simulated module has none");
+  expectRefusal({kCoverScene, "--set", mass + "0.4", "--set", "simulation.duration_s=3"},
+                "too short");
+  expectRefusal({kCoverScene, "--set", mass + "0.4", "--module", "1"}, "no tactile module 1");
+  expectRefusal({kCoverScene, "--set", mass + "60"}, "the run ends by tactile_saturated");
+  expectRefusal({kCoverScene, "--set", mass}, "simulation.tactile_module.cover.mass_kg");
+  expectRefusal({std::string(kCoverScene) + "/none.yaml"}, "none.yaml");
+  const std::string scenes = TACTUS_SOURCE_DIR "/config/scenes/";
+  expectRefusal({scenes + "free_motion.yaml"}, "no tactile module is read");
+  expectRefusal({log_.path(), "--set", mass + "0.4"},
+                "--set:1:1: -: a log says what its scene was");
 }
 
 TEST_F(CoverRunTest, ARunWithACompensatedCoverReplaysToTheBit) {

@@ -45,6 +45,25 @@ INSTANTIATE_TEST_SUITE_P(All, TactusScene,
                                          ScenePeaks{"scenario3_tactus_fast", 5.02, 0.0702}),
                          [](const auto& instance) { return instance.param.scene; });
 
+/// On the arm with gears and a cover: the module that tells M_x needs no friction_coefficient.
+TEST(TactusScenes, AModuleThatTellsMomentXBearsFrictionAlone) {
+  const auto run = [](const std::vector<Override>& overrides) {
+    const Scene scene =
+        loadScene(TACTUS_SOURCE_DIR "/config/scenes/real/real_scenario3_mx.yaml", overrides);
+    EXPECT_EQ(scene.controller.force_control->friction_coefficient, 0.0);
+    return simulate(scene, [](const CycleRecord&) {}).figures;
+  };
+  for (const char* noise_N : {"0", "0.025"}) {  // of a channel: 0.05 N and 2.1 mNm
+    const RunFigures figures = run({{"simulation.tactile_module.noise_N", noise_N}});
+    EXPECT_EQ(figures.end.fault, Fault::kNone);
+    EXPECT_LT(figures.peak_force_N, 5.25);
+    EXPECT_NEAR(figures.final_force_N, kGoal_N, 0.05);
+  }
+  const RunFigures without =
+      run({{"robot", TACTUS_SOURCE_DIR "/config/robots/crops9/robot_real.yaml"}});
+  EXPECT_EQ(without.end.fault, Fault::kTactileInvalid) << "this test is blind";
+}
+
 /// The last time at which the tool was further than 5 mm from its path.
 double lastAway_s(const std::string& log) {
   std::ifstream in = openLog(log);

@@ -54,6 +54,9 @@ class Completion(unittest.TestCase):
         self.assertEqual(self.offered("check", ""), ["one.yaml", "runs", "two words.yaml"])
         self.assertEqual(self.offered("check", "tw"), ["two words.yaml"])
         self.assertEqual(self.offered("replay", "runs/mine/"), ["runs/mine/run.ulg"])
+        self.assertEqual(self.offered("identify", ""), ["cover"])
+        self.assertEqual(self.offered("identify", "cover", "o"), ["one.yaml"])
+        self.assertEqual(self.offered("identify", "cover", "runs/mine/"), ["runs/mine/run.ulg"])
         self.assertEqual(self.offered("simulate", "one.yaml", "-o", ""), ["runs"])
         self.assertEqual(self.offered("export", "x.ulg", "-o", ""), ["runs", "table.csv"])
 

@@ -34,10 +34,11 @@ struct StateVisitor {
     list("way_out_added", way_out_added);
     list("q_desired", q_desired);
     list("velocity_before", velocity_before);
-    const auto& [sequence, age_s, sample_fault, detail, sensed_contact, excess, has_excess, cover] =
-        modules.front();
+    const auto& [sequence, age_s, sample_fault, detail, sensed_contact, hardest, excess, has_excess,
+                 cover] = modules.front();
     visit("sample_age_s", 0, age_s);
     point("force_N", "position_m", "direction", sensed_contact);
+    point("hardest.force_N", "hardest.position_m", "hardest.direction", hardest);
     point("excess.force_N", "excess.position_m", "excess.direction", excess);
     compensation(cover);
     answer(contact);

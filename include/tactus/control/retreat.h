@@ -10,7 +10,7 @@ inline constexpr double kMaxRetreat_s = 1.5;
 
 /// What is known of a contact when the arm begins to leave it.
 struct RetreatStart {
-  double force_N = 0.0;            ///< the last that was readable
+  double force_N = 0.0;            ///< the hardest push of late
   double stiffness_N_per_m = 0.0;  ///< the least that it may have
   double speed_m_per_s = 0.0;      ///< of the contact point along the push, at the fault
   double untold_s = 0.0;           ///< since the arm was where that sample felt it
@@ -57,7 +57,7 @@ struct RetreatState {
 /// Felt, it goes on while F > F_th, and ends 0.2 s after that, or when 30 mm of way have not
 /// lowered F by 1 N: such a sensor says nothing of a contact. Not felt, at
 ///   way = min(0.1 m, F / c + |v_0| t_0 + 20 mm)
-/// with the last readable F, the least stiffness c, and the speed v_0 for the time t_0 since the
+/// with the hardest F of late, the least stiffness c, and the speed v_0 for the time t_0 since the
 /// arm was where that sample felt it: also outwards, as a law that answers just now has gone on
 /// before; until then v <= sqrt(2 a (way - way so far)). And after kMaxRetreat_s in any case.
 // clang-format on

@@ -17,10 +17,17 @@ struct TactileReading {
   Fault fault = Fault::kNone;    ///< of that sample; not of its age
   FaultDetail detail;            ///< of that fault, or of a sample too old
   ContactPointState contact;     ///< of the newest valid sample
+  ContactPointState hardest;     ///< push of late, its force less what has faded since
   ContactPointState excess;      ///< of the newest sample beyond the module's range
   bool has_excess = false;       ///< the newest sample is one, and all of it is numbers
   CoverCompensationState cover;  ///< only of a module with one
 };
+
+/// A push fades within this time: an arm that swings in a contact is back by then; or, if that is
+/// longer, within so many periods of the module's cut-off frequency: after a blow its filter tells
+/// of up to an eighth of it from the other side before it rests.
+inline constexpr double kPushFades_s = 0.1;
+inline constexpr double kPushFadesPeriods = 1.5;
 
 /// A new sample is judged and located, an old one ages by a period. Returns kNone, kTactileInvalid
 /// or kTactileStale.

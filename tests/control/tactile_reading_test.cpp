@@ -1,0 +1,104 @@
+#include "tactus/control/tactile_reading.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "support/period.h"
+#include "support/random.h"
+#include "support/tactile_samples.h"
+#include "tactus/math/filter.h"
+
+/// What a reading remembers of the pushes before its newest sample.
+namespace tactus {
+namespace {
+
+constexpr double kAt_m = 0.2;
+constexpr int kSampleCycles = 4;
+
+TactileModuleConfig moduleThatFilters(double cutoff_hz) {
+  TactileModuleConfig module;
+  module.length_m = 0.38;
+  module.max_force_N = 1e3;
+  module.filter_cutoff_hz = cutoff_hz;
+  return module;
+}
+
+struct Remembered {
+  double other_side_N = 0.0;  ///< the largest that samples say of it, of 1 N from this side
+  double other_way_N = 0.0;   ///< of what is remembered
+};
+
+/// A blow of so long from the side of +y, behind the module's filter.
+Remembered blow(double cutoff_hz, double duration_s) {
+  const TactileModuleConfig module = moduleThatFilters(cutoff_hz);
+  ButterworthLowPass filter(cutoff_hz, 1.0 / test::kPeriod_s);
+  TactileReading reading;
+  Remembered worst;
+  double peak_N = 0.0;
+  for (int cycle = 0; cycle * test::kPeriod_s < duration_s + 12.0 / cutoff_hz; ++cycle) {
+    const double phase = cycle * test::kPeriod_s / duration_s;
+    const double force_N = phase < 1.0 ? 90.0 * std::sin(std::numbers::pi * phase) : 0.0;
+    const double felt_N = filter.update(force_N + 1e-3);
+    const auto sequence = static_cast<std::uint32_t>(cycle / kSampleCycles + 1);
+    readSample(module, test::touchAt(kAt_m, felt_N, 0.0, sequence), test::kPeriod_s, reading);
+    peak_N = std::max(peak_N, felt_N);
+    worst.other_side_N = std::max(worst.other_side_N, -felt_N / peak_N);
+    if (reading.hardest.direction.y() < 0.0)
+      worst.other_way_N = std::max(worst.other_way_N, reading.hardest.force_N / peak_N);
+  }
+  return worst;
+}
+
+TEST(HardestPush, IsOfTheSideThatStruckWhateverTheFilterSaysAfterIt) {
+  double other_side_N = 0.0, other_way_N = 0.0;
+  for (const double cutoff_hz : {3.0, 15.0, 60.0}) {
+    for (double duration_s = 0.005; duration_s < 0.5; duration_s *= 1.2) {
+      const Remembered worst = blow(cutoff_hz, duration_s);
+      other_side_N = std::max(other_side_N, worst.other_side_N);
+      other_way_N = std::max(other_way_N, worst.other_way_N);
+    }
+  }
+  std::printf("from the other side %.3f of a blow, remembered %.3f\n", other_side_N, other_way_N);
+  EXPECT_LE(other_side_N, 1.0 / 8.0);
+  EXPECT_GE(other_side_N, 0.1) << "no blow does that: this test is blind";
+  EXPECT_LE(other_way_N, 0.01);
+}
+
+TEST(HardestPush, IsAtLeastTheNewestAndFades) {
+  test::Random random(940);
+  const TactileModuleConfig module = moduleThatFilters(15.0);
+  TactileReading reading;
+  double before_N = 0.0;
+  std::uint32_t sequence = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double force_N = random.uniform(0.0, 50.0);
+    const double angle = random.uniform(-3.0, 3.0);
+    const int cycles = random.integer(1, 20);
+    ++sequence;
+    for (int k = 0; k < cycles; ++k)
+      readSample(module, test::touchAt(kAt_m, force_N, angle, sequence), test::kPeriod_s, reading);
+    ASSERT_GE(reading.hardest.force_N, force_N * (1.0 - 1e-12));
+    ASSERT_LE(reading.hardest.force_N, std::max(force_N, before_N) * (1.0 + 1e-12));
+    before_N = reading.hardest.force_N;
+  }
+  for (int i = 0; i < 100; ++i)  // a sample each 4 cycles of no push
+    for (int k = 0; k < kSampleCycles; ++k)
+      readSample(module, test::touchAt(kAt_m, 0.0, 0.0, sequence + i + 1), test::kPeriod_s,
+                 reading);
+  EXPECT_LE(reading.hardest.force_N, before_N * std::exp(-0.4 / kPushFades_s) * 1.01);
+}
+
+TEST(HardestPush, AnInvalidSampleLeavesIt) {
+  const TactileModuleConfig module = moduleThatFilters(15.0);
+  TactileReading reading;
+  readSample(module, test::touchAt(kAt_m, 9.0, 0.5, 1), test::kPeriod_s, reading);
+  readSample(module, test::touchAt(0.1, 1e4, -2.0, 2), test::kPeriod_s, reading);
+  EXPECT_NEAR(reading.hardest.force_N, 9.0, 1e-9);
+  EXPECT_NEAR(reading.hardest.position_m, kAt_m, 1e-9);
+}
+
+}  // namespace
+}  // namespace tactus
