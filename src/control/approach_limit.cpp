@@ -20,7 +20,7 @@ double approach(const ScaledVector& a, int joints, const ScaledVector& from,
 
 ApproachLimit::ApproachLimit(const ControllerConfig& config)
     : has_estimator_(config.force_control->has_estimator),
-      smoother_(config.tactile_modules.front()),
+      smoother_(config.tactile_modules.front(), config.force_control->friction_coefficient),
       position_(config.drive_lag_s, config.tactile_modules.front().filter_cutoff_hz) {}
 
 ApproachLimitState ApproachLimit::initialState() const noexcept {

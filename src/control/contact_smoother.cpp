@@ -48,15 +48,24 @@ void learnNoise(double min_significant_N, const Vector3& force_N, ContactSmoothe
 
 }  // namespace
 
-ContactSmoother::ContactSmoother(const TactileModuleConfig& module)
+ContactSmoother::ContactSmoother(const TactileModuleConfig& module, double friction_coefficient)
     : half_length_m_(0.5 * module.length_m),
       radius_m_(module.cover_radius_m),
-      ringing_s_(kRinging / module.filter_cutoff_hz) {}
+      ringing_s_(kRinging / module.filter_cutoff_hz),
+      max_turn_(2.0 * friction_coefficient / std::hypot(1.0, friction_coefficient)),
+      max_shift_m_(2.0 * friction_coefficient * module.cover_radius_m) {}
 
 ContactSmootherState ContactSmoother::initialState() const noexcept {
   ContactSmootherState state;
   state.contact.position_m = half_length_m_;
   return state;
+}
+
+/// What the filter still shows of a blow turns a small force by any angle. Without friction that is
+/// told by its other side alone.
+bool ContactSmoother::isOfBlow(const ContactPointState& sensor,
+                               const ContactSmootherState& state) const noexcept {
+  return max_turn_ > 0.0 && sensor.force_N < kMaxRebound * state.peak_N;
 }
 
 bool ContactSmoother::isRebound(const ContactPointState& sensor,
@@ -83,13 +92,15 @@ void ContactSmoother::update(const ForceGains& gains, const ContactPointState& s
       flushed(state.weight * (1.0 - state.smoothing.of(sensor.interval_s, kSmoothing_s)) /
               (1.0 + axis_turn / kTurn));
   if (is_rebound || sensor.force_N <= gains.contact_threshold_N || weight == 0.0) return;
-  state.weight = grows ? weight : state.weight + weight;
+  if (isOfBlow(sensor, state)) return;
   const Vector3 turn = sensor.direction - contact.direction;
   const double shift_m = sensor.position_m - contact.position_m;
   const double shift = shift_m / half_length_m_;
   const double d_N = sensor.force_N * std::sqrt(turn.squaredNorm() + shift * shift);
+  const bool is_sliding = turn.norm() < max_turn_ && std::abs(shift_m) < max_shift_m_;
+  state.weight = grows && !is_sliding ? weight : state.weight + weight;
   const double slow = weight / state.weight;
-  const double ratio = state.significant_N / d_N;
+  const double ratio = is_sliding ? 1.0 : state.significant_N / d_N;
   const double share = 1.0 - (1.0 - slow) * std::min(1.0, ratio * ratio);
   contact.position_m += share * shift_m;
   contact.direction += share * turn;

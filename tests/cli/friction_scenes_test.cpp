@@ -60,6 +60,15 @@ TEST(FrictionScenes, KeepItWithMassAndFlexibleGears) {
   }
 }
 
+/// The arm as a real one may be, which bounces for good where the law follows each tilt.
+TEST(FrictionScenes, ComeToRestOnFlexibleGearsWithOrdinaryRoom) {
+  for (const char* name : {"real/real_scenario3", "real/real_scenario3_fast"}) {
+    const RubbedRun run = rub(rubbing(name, "flexible_gears", 0.3, 0.5));
+    EXPECT_LT(run.peak_N, 1.3 * 5.0) << name;
+    EXPECT_NEAR(run.rest_N, 5.0, 0.05 * 5.0) << name;
+  }
+}
+
 /// With the moment about the link's axis the normal is known, and the law needs no cone: the force
 /// at rest is 5 N along the normal, and friction adds to it across.
 TEST(FrictionScenes, KeepItWithoutAConeWhereTheMomentAboutTheAxisIsFelt) {

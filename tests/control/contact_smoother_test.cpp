@@ -15,11 +15,13 @@ constexpr double kLength_m = 0.38;
 constexpr double kSample_s = 0.004;
 constexpr double kMin_N = 0.2;
 constexpr double kThreshold_N = 1.2;
+constexpr double kRadius_m = 0.06;
 
 TactileModuleConfig coverOf(double filter_cutoff_hz) {
   TactileModuleConfig module;
   module.length_m = kLength_m;
   module.filter_cutoff_hz = filter_cutoff_hz;
+  module.cover_radius_m = kRadius_m;
   return module;
 }
 
@@ -49,7 +51,7 @@ class Smoother : public testing::Test {
   }
 
   test::Random random_{311};
-  ContactSmoother smoother_{coverOf(15.0)};
+  ContactSmoother smoother_{coverOf(15.0), 0.0};
   ContactSmootherState state_ = smoother_.initialState();
   ContactPointState sensor_;
   Pose X_BaseModule_;
@@ -156,7 +158,7 @@ TEST_F(Smoother, NoBlowTurnsTheContactAround) {
     const double blow_s = random_.uniform(0.001, 4.0 / cutoff_hz);
     const int stride = static_cast<int>(random_.uniform(1.0, 0.3e3 / cutoff_hz));  // cycles of 1 ms
     const int phase = static_cast<int>(random_.uniform(0.0, stride));
-    const ContactSmoother smoother(coverOf(cutoff_hz));
+    const ContactSmoother smoother(coverOf(cutoff_hz), 0.0);
     ContactSmootherState state = smoother.initialState();
     ButterworthLowPass filter(cutoff_hz, 1e3);
     for (int i = 0; i < 1000; ++i) {
@@ -171,6 +173,58 @@ TEST_F(Smoother, NoBlowTurnsTheContactAround) {
                               << " ms, at " << i;
     }
   }
+}
+
+class SmootherWithFriction : public Smoother {
+ protected:
+  SmootherWithFriction() { smoother_ = ContactSmoother(coverOf(15.0), kFriction); }
+
+  static constexpr double kFriction = 0.5;
+};
+
+/// However its force tilts within the cone while the link slides to and fro.
+TEST_F(SmootherWithFriction, TheTiltOfOneContactIsAveraged) {
+  const double tilt = 0.98 * std::atan(kFriction);
+  for (int i = 0; i < 1000; ++i) {
+    const double side = i % 24 < 12 ? 1.0 : -1.0;  // about 10 Hz
+    feel(0.2 + 0.98 * side * kFriction * kRadius_m, 5.0, 0.5 + side * tilt);
+    if (i < 500) continue;
+    ASSERT_NEAR(angle(), 0.5, 0.1 * tilt) << i;
+    ASSERT_NEAR(state_.contact.position_m, 0.2, 0.1 * kFriction * kRadius_m) << i;
+  }
+}
+
+/// An arm that swings on its gears bounces, and meets the obstacle anew with another tilt each
+/// time.
+TEST_F(SmootherWithFriction, ABounceDoesNotTurnTheContact) {
+  const double tilt = std::atan(kFriction);
+  for (int i = 0; i < 500; ++i) feel(0.2, 5.0, 0.5);
+  for (int bounce = 0; bounce < 10; ++bounce) {
+    for (int i = 0; i < 20; ++i) feel(0.2, 0.0, 0.5);
+    for (double force_N = 0.5; force_N < 6.0; force_N *= 1.5)
+      feel(0.2, force_N, 0.5 + (bounce % 2 == 0 ? tilt : -tilt));
+    ASSERT_NEAR(angle(), 0.5, 0.2 * tilt) << bounce;
+  }
+}
+
+TEST_F(SmootherWithFriction, FollowsAnotherContactAtOnce) {
+  for (int i = 0; i < 200; ++i) feel(0.1, 4.0, 0.0);
+  feel(0.1, 4.5, 2.1 * std::atan(kFriction));
+  EXPECT_NEAR(angle(), 2.1 * std::atan(kFriction), 0.02) << "turned by more than friction can";
+  feel(0.1 + 2.1 * kFriction * kRadius_m, 5.5, 2.1 * std::atan(kFriction));
+  EXPECT_NEAR(state_.contact.position_m, 0.1 + 2.1 * kFriction * kRadius_m, 0.002);
+}
+
+/// What the filter still shows of a blow turns the first force after it.
+TEST_F(SmootherWithFriction, WhatIsSmallAfterABlowSaysNothingOfTheDirection) {
+  for (int i = 0; i < 10; ++i) feel(0.3, 40.0, 0.5);
+  feel(0.1, 7.0, 0.5 + 0.45 * M_PI);
+  EXPECT_NEAR(angle(), 0.5, 1e-12);
+  EXPECT_NEAR(state_.contact.position_m, 0.3, 1e-12);
+  EXPECT_NEAR(state_.contact.force_N, 7.0, 1e-12) << "but is a force";
+  for (int i = 0; i < 50; ++i) feel(0.3, 0.0, 0.5);
+  feel(0.1, 7.0, 0.5 + 0.45 * M_PI);
+  EXPECT_NEAR(angle(), 0.5 + 0.45 * M_PI, 0.01) << "the blow is long over";
 }
 
 TEST_F(Smoother, QuietensPointAndDirection) {

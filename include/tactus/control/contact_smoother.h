@@ -34,13 +34,20 @@ struct ContactSmootherState {
 /// measured as a force, is followed at once:
 ///   W = W exp(-dt / T_s) / (1 + |du| / theta_s) + F^2,   g = 1 - (1 - F^2 / W) min(1, (s / d)^2),
 ///   d = F |(dF^, dx / (L / 2))|,   x += g dx,  F^ += g dF^
+/// With friction mu the force of one contact tilts by up to atan mu to either side as the link
+/// slides, and x by mu r: what stays within both,
+///   |dF^| < 2 sin atan mu,  |dx| < 2 mu r
+/// is no other contact, hence averaged however large, in an impact, too. A law that followed it
+/// would answer its own sliding, late by the filter.
 /// A force up to F_th says nothing of either. After a blow the module's filter swings through and
 /// shows up to 12 % of it from the other side: such a reading counts as no force. So does all from
-/// the other side that is below 0.35 of the highest force, which is forgotten with 1.5 / f_c.
+/// the other side that is below 0.35 of the highest force, which is forgotten with 1.5 / f_c. With
+/// friction nothing below that says anything of x and F^, from whatever side.
 // clang-format on
 class ContactSmoother {
  public:
-  explicit ContactSmoother(const TactileModuleConfig& module);
+  /// friction_coefficient: mu, 0 for none.
+  ContactSmoother(const TactileModuleConfig& module, double friction_coefficient);
 
   ContactSmootherState initialState() const noexcept;
 
@@ -53,8 +60,12 @@ class ContactSmoother {
   /// Keeps the peak, too.
   bool isRebound(const ContactPointState& sensor, ContactSmootherState& state) const noexcept;
 
+  bool isOfBlow(const ContactPointState& sensor, const ContactSmootherState& state) const noexcept;
+
   double half_length_m_, radius_m_;
   double ringing_s_;
+  double max_turn_;  ///< of the unit force, by sliding
+  double max_shift_m_;
 };
 
 }  // namespace tactus
