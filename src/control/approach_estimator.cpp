@@ -14,7 +14,7 @@ constexpr double kMinWay_m = 50e-6;
 constexpr double kSlow_m_per_s = 0.01;
 constexpr double kMaxLengthening = 4.0;
 /// Up to here an obstacle that comes costs little whatever is taken for its stiffness.
-constexpr double kHarmless_N_per_m = 5e3;
+constexpr double kHarmless_N_per_m = 2.5e3;
 /// T_c: what was learnt of one obstacle is forgotten before the next.
 constexpr double kForgetting_s = 1.0;
 

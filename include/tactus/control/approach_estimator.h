@@ -38,7 +38,7 @@ struct ApproachSample {
 ///   dx <= 0, dF < -F_min, x < -x_min:   r = dF / x: c falls towards it;  re-armed
 ///   force against the way by more than F_min:  re-armed
 /// A soft obstacle that comes gives a quotient that is too large, the more the slower the arm is.
-/// So for c < 20 kN/m a slow way counts as longer, by what leaves c stable: beyond 5 kN/m c
+/// So for c < 20 kN/m a slow way counts as longer, by what leaves c stable: beyond 2.5 kN/m c
 /// rises to no more than dF / min(max(x, v_s t_l), 4 x), with v_s = 10 mm/s and t_l the time since
 /// F_ref in which the limit held the arm back.
 /// r is clamped to its range. Without contact x = F_ref = 0, and c returns to c_0 with T_c.
