@@ -2,17 +2,26 @@
 
 #include <algorithm>
 
+#include "tactus/control/obstacle_speed.h"
+
 namespace tactus {
 namespace {
 
 /// x_min: a shorter way is not known well enough to be divided by; drives and model differ by it.
 constexpr double kMinWay_m = 50e-6;
+/// v_s: slower, and an obstacle that comes may be half of the quotient. No more than four of it:
+/// c_e / c may be five.
+constexpr double kSlow_m_per_s = 0.01;
+constexpr double kMaxLengthening = 4.0;
+/// Up to here an obstacle that comes costs little whatever is taken for its stiffness.
+constexpr double kHarmless_N_per_m = 2.5e3;
 /// T_c: what was learnt of one obstacle is forgotten before the next.
 constexpr double kForgetting_s = 1.0;
 
 void rearm(double F_p_N, ApproachEstimatorState& state) {
   state.x_m = 0.0;
   state.F_ref_N = F_p_N;
+  state.limited_s = 0.0;
 }
 
 /// r = stiffness, clamped; c falls towards it for falling_s.
@@ -26,6 +35,13 @@ void learn(const StiffnessEstimatorGains& gains, double stiffness_N_per_m, doubl
   }
 }
 
+/// By which a change of force is divided where c rises.
+double risingWay(const ApproachEstimatorState& state) {
+  const double way_m = std::max(state.x_m, kMinWay_m);
+  if (state.stiffness_N_per_m > kSoftContact_N_per_m) return way_m;
+  return std::clamp(kSlow_m_per_s * state.limited_s, way_m, kMaxLengthening * way_m);
+}
+
 void load(const ForceGains& gains, const ApproachSample& sample,
           ApproachEstimatorState& state) noexcept {
   const bool is_far = sample.F_p_N < 0.5 * gains.activation_force_N;
@@ -33,9 +49,11 @@ void load(const ForceGains& gains, const ApproachSample& sample,
   if (dF_N > sample.significant_N) {
     // Over too short a way r is a lower bound: nothing that c could fall to.
     const bool is_known = state.x_m > kMinWay_m;
+    const double risen_N_per_m = std::max(kHarmless_N_per_m, dF_N / risingWay(state));
     learn(gains.estimator, dF_N / std::max(state.x_m, kMinWay_m),
           is_known && is_far ? sample.interval_s : 0.0, state);
-    state.stiffness_N_per_m = std::max(state.stiffness_N_per_m, state.stiffness_raw_N_per_m);
+    state.stiffness_N_per_m =
+        std::max(state.stiffness_N_per_m, std::min(state.stiffness_raw_N_per_m, risen_N_per_m));
     if (is_known) rearm(sample.F_p_N, state);
   } else if (dF_N < -sample.significant_N) {
     rearm(sample.F_p_N, state);
@@ -63,6 +81,7 @@ void estimateInContact(const ForceGains& gains, const ApproachSample& sample,
   if (sample.dx_m * state.x_m < 0.0) rearm(state.F_before_N, state);
   state.F_before_N = sample.F_p_N;
   state.x_m += sample.dx_m;
+  if (sample.is_limiting) state.limited_s += sample.interval_s;
   if (sample.dx_m > 0.0) {
     load(gains, sample, state);
   } else {

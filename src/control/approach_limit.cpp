@@ -16,6 +16,16 @@ double approach(const ScaledVector& a, int joints, const ScaledVector& from,
   return way;
 }
 
+/// A contact that is still felt below F_th is the one that is known.
+void passNoForce(const ForceGains& gains, double force_N, double period_s,
+                 ApproachEstimatorState& estimator) noexcept {
+  if (force_N > gains.transition.release_force_N) {
+    leaveForce(estimator);
+  } else {
+    forgetContact(gains, period_s, estimator);
+  }
+}
+
 }  // namespace
 
 ApproachLimit::ApproachLimit(const ControllerConfig& config)
@@ -34,35 +44,38 @@ void ApproachLimit::follow(const ForceGains& gains, const ContactPointState& sen
   smoother_.update(gains, sensor, X_BaseModule, state.smoother);
 }
 
-void ApproachLimit::estimate(const ForceGains& gains, const ScaledVector& a, int joints,
-                             double F_p_N, double period_s,
-                             ApproachLimitState& state) const noexcept {
-  const ContactPointState& contact = state.smoother.contact;
-  if (contact.force_N <= gains.transition.release_force_N) {
-    forgetContact(gains, period_s, state.estimator);
-  } else if (F_p_N <= 0.0) {
-    leaveForce(state.estimator);
-  } else if (contact.isNew()) {
-    const double dx_m = approach(a, joints, state.position.sensed_before, state.position.sensed);
-    estimateInContact(gains, {F_p_N, dx_m, contact.interval_s, state.smoother.significant_N},
+void ApproachLimit::learn(const ForceGains& gains, const ScaledVector& a, int joints, double F_p_N,
+                          ApproachLimitState& state) const noexcept {
+  const double interval_s = state.smoother.contact.interval_s;
+  const double dx_m = approach(a, joints, state.position.sensed_before, state.position.sensed);
+  if (has_estimator_) {
+    estimateInContact(gains,
+                      {F_p_N, dx_m, interval_s, state.smoother.significant_N, state.is_limiting},
                       state.estimator);
   }
+  const double m =
+      std::max(state.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
+  followObstacle(gains, {F_p_N, m, dx_m, interval_s, state.is_limiting}, state.obstacle);
 }
 
 void ApproachLimit::observe(const ForceGains& gains, const ScaledVector& a, double F_p_N,
                             const JointVector& q_desired, double period_s,
                             ApproachLimitState& state) const noexcept {
-  position_.update(q_desired, state.smoother.contact.isNew(), period_s, state.position);
-  if (!has_estimator_ || state.estimator.stiffness_N_per_m == 0.0) {
-    state.estimator.stiffness_N_per_m = gains.assumed_stiffness_N_per_m;
-    state.estimator.stiffness_raw_N_per_m = gains.assumed_stiffness_N_per_m;
+  const bool is_new = state.smoother.contact.isNew();
+  position_.update(q_desired, is_new, period_s, state.position);
+  ApproachEstimatorState& estimator = state.estimator;
+  if (!has_estimator_ || estimator.stiffness_N_per_m == 0.0) {
+    estimator.stiffness_N_per_m = gains.assumed_stiffness_N_per_m;
+    estimator.stiffness_raw_N_per_m = gains.assumed_stiffness_N_per_m;
   }
   const auto joints = static_cast<int>(q_desired.size());
-  if (has_estimator_) estimate(gains, a, joints, F_p_N, period_s, state);
-  const double c = state.estimator.stiffness_N_per_m;
   if (F_p_N > 0.0) {
-    state.memory_N_per_m = std::max(c, gains.min_approach_stiffness_N_per_m);
+    if (is_new) learn(gains, a, joints, F_p_N, state);
+    state.memory_N_per_m =
+        std::max(estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
   } else {
+    if (has_estimator_) passNoForce(gains, state.smoother.contact.force_N, period_s, estimator);
+    state.obstacle.v_m_per_s = state.obstacle.F_before_N = state.obstacle.high_s = 0.0;
     state.memory_N_per_m -= state.fade.of(period_s, gains.time_constant_s) * state.memory_N_per_m;
     if (state.memory_N_per_m < kNoMemory_N_per_m) state.memory_N_per_m = 0.0;
   }
@@ -75,7 +88,8 @@ double ApproachLimit::excess(const ForceGains& gains, double F_p_N, double v_res
   const double F_ahead_N = std::max(0.0, F_p_N + m * state.way_ahead_m);
   // T m (v_res + v_max): finite also where m has faded away.
   const double Tm = gains.time_constant_s * m;
-  const double excess_N = Tm * v_res_m_per_s + gains.activation_force_N - F_ahead_N;
+  const double excess_N =
+      Tm * (v_res_m_per_s - state.obstacle.v_m_per_s) + gains.activation_force_N - F_ahead_N;
   state.is_limiting = excess_N < 0.0;
   return state.is_limiting ? excess_N / Tm : 0.0;
 }
@@ -86,7 +100,8 @@ void ApproachLimit::limitRows(const ForceGains& gains, double F_p_N, double cosi
   const double F_ahead_N = std::max(0.0, F_p_N + m * state.way_ahead_m);
   const double Tm = gains.time_constant_s * m;
   for (int i = 0; i < rows.size; ++i) {
-    rows.row[i].v_max_m_per_s = cosine * (gains.activation_force_N - F_ahead_N) / Tm;
+    rows.row[i].v_max_m_per_s =
+        cosine * ((gains.activation_force_N - F_ahead_N) / Tm - state.obstacle.v_m_per_s);
     rows.row[i].damping_N_s_per_m = Tm;
   }
 }

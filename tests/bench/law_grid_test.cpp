@@ -109,6 +109,31 @@ TEST(LawTrials, AProfileThatComesMovesEvenly) {
   }
 }
 
+/// Some of the 168 points that are soft: 7 kN/m at most, in series with the arm.
+TEST(LawTrials, TheLimitBearsSoftProfilesThatComeOrGo) {
+  const std::vector<LawTrial> trials = lawDisturbances();
+  const auto rest = [&](const LawGridPoint& point, const std::string& trial, bool has_estimator) {
+    RunSetup setup = lawGridSetup(base(), point, GridLaw::kLimited);
+    setup.controller.force_control->has_estimator = has_estimator;
+    std::ranges::find(trials, trial, &LawTrial::name)->change(setup);
+    setup.duration_s += 3.0;
+    return judgeRun(setup);
+  };
+  const LawGridPoint points[] = {{0.0, 3e3, 7e3, 0.5},  {0.0, 7e3, kNoLimit, 0.5},
+                                 {0.0, 1e6, 7e3, 1.0},  {10.0, 17e3, 7e3, 0.5},
+                                 {30.0, 1e5, 7e3, 5.0}, {60.0, 3e3, kNoLimit, 0.5}};
+  for (const LawGridPoint& point : points) {
+    const JudgedRun run = rest(point, "profile comes at 5 mm/s", true);
+    EXPECT_LT(run.peak_at_rest_N, 7.5) << point.band_N_per_m << ", " << point.profile_N_per_m;
+    EXPECT_FALSE(run.isRestless()) << point.band_N_per_m << ", " << point.profile_N_per_m;
+    EXPECT_GT(run.final_force_N, 4.9) << "it does press";
+    EXPECT_LT(rest(point, "profile goes at 5 mm/s", true).peak_at_rest_N, 5.1);
+  }
+  const JudgedRun assumed = rest(points[1], "profile comes at 5 mm/s", false);
+  EXPECT_GT(assumed.final_force_N, 6.0) << "of 8.5 N by (3), 2.5 at most are known";
+  EXPECT_LT(assumed.peak_at_rest_N, 7.5);
+}
+
 /// The corners of the grid, where it is hardest.
 TEST(LawGrid, TheLimitPeaksNearTheNaturalScaleAndComesToRest) {
   std::vector<LawGridRow> rows;

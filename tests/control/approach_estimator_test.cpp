@@ -24,10 +24,17 @@ ApproachEstimatorState assumedApproach() {
 class ApproachEstimate : public testing::Test {
  protected:
   void touch(double F_p_N, double dx_m) {
-    estimateInContact({}, {F_p_N, dx_m, kSample_s, kMin_N}, state_);
+    estimateInContact({}, {F_p_N, dx_m, kSample_s, kMin_N, is_limiting_}, state_);
+  }
+  /// Ten samples of such a way each, then 4 N more.
+  void push(double dx_m) {
+    state_.F_ref_N = 3.0;
+    for (int i = 0; i < 9; ++i) touch(3.0, dx_m);
+    touch(7.0, dx_m);
   }
   double c() const { return state_.stiffness_N_per_m; }
 
+  bool is_limiting_ = false;
   ApproachEstimatorState state_ = assumedApproach();
 };
 
@@ -65,6 +72,35 @@ TEST_F(ApproachEstimate, AShortWayCountsAsTheShortestKnown) {
   EXPECT_EQ(state_.F_ref_N, 0.0) << "not re-armed: the way is still too short";
   touch(0.5, 1e-9);
   EXPECT_NEAR(c(), 2e4, 1e-8) << "1e4 is a lower bound only";
+}
+
+TEST_F(ApproachEstimate, ASlowWayCountsAsLongerWhileTheArmIsHeldBack) {
+  is_limiting_ = true;
+  push(2e-5);  // 0.2 mm in 40 ms, at half of v_s
+  EXPECT_NEAR(c(), 4.0 / 4e-4, 1e-8);
+  EXPECT_EQ(state_.limited_s, 0.0) << "re-armed";
+  push(1e-5);  // slower, but no more than four times as long
+  EXPECT_NEAR(c(), 4.0 / 4e-4, 1e-8);
+  push(0.6e-5);
+  EXPECT_NEAR(c(), 4.0 / 2.4e-4, 1e-8);
+}
+
+TEST_F(ApproachEstimate, AFastWayIsTakenAsItIs) {
+  is_limiting_ = true;
+  push(4.4e-5);  // 11 mm/s
+  EXPECT_NEAR(c(), 4.0 / 4.4e-4, 1e-8);
+}
+
+TEST_F(ApproachEstimate, ASlowWayIsTakenAsItIsWhereNothingHoldsTheArmBack) {
+  push(1e-5);
+  EXPECT_NEAR(c(), 4.0 / 1e-4, 1e-8);
+}
+
+TEST_F(ApproachEstimate, ASlowWayIsTakenAsItIsOnceTheContactIsStiff) {
+  state_.stiffness_N_per_m = 21e3;
+  is_limiting_ = true;
+  push(1e-5);
+  EXPECT_NEAR(c(), 4.0 / 1e-4, 1e-8);
 }
 
 TEST_F(ApproachEstimate, UnloadingTellsTheStiffnessToo) {

@@ -92,6 +92,48 @@ TEST(ApproachLimit, CutsExactlyTheExcessByHand) {
       << "no force is less than none";
 }
 
+TEST(ApproachLimit, TakesTheObstaclesSpeedOffTheApproach) {
+  const ApproachLimit limit(bareRail(0.1));
+  ApproachLimitState state = limit.initialState();
+  state.memory_N_per_m = 2000.0;
+  state.obstacle.v_m_per_s = 0.002;
+  EXPECT_EQ(limit.excess(kGains, 1.8, -0.0079, state), 0.0);
+  EXPECT_NEAR(limit.excess(kGains, 1.8, -0.0125, state), -0.0045, 1e-15);
+  SpeedRows rows;
+  rows.size = 1;
+  limit.limitRows(kGains, 1.8, 0.5, state, rows);
+  EXPECT_NEAR(rows.row[0].v_max_m_per_s, 0.5 * 0.008, 1e-15);
+  const ScaledVector a = -ScaledVector::Unit(0);
+  limit.observe(kGains, a, 0.0, JointVector::Zero(2), kPeriod_s, state);
+  EXPECT_EQ(state.obstacle.v_m_per_s, 0.0) << "forgotten without contact";
+}
+
+/// Force at rest of an obstacle of 7000 N/m against an arm that knows it.
+double restingForce_N(double coming_m_per_s) {
+  ControllerConfig config = bareRail(0.1);
+  config.gains.force.assumed_stiffness_N_per_m = 7000.0;
+  config.gains.force.contact_threshold_N = 1.2;
+  const Controller controller(config);
+  test::RailWorld world{7000.0, 0.01};
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  for (int cycle = 0; cycle < 6000; ++cycle) {
+    world.surface_m -= coming_m_per_s * kPeriod_s;
+    controller.update(world.input(state), controller.initialGains(), cycle * kPeriod_s, kPeriod_s,
+                      state, output);
+  }
+  return world.force_N(state.q_desired);
+}
+
+TEST(ApproachLimit, ASoftObstacleThatComesRestsWithinOneAndAHalfOfTheLimit) {
+  EXPECT_NEAR(restingForce_N(0.0), 5.0, 0.01);
+  // F_act + F_th + T m v_o = 8.5 N, less half of F_act + F_th.
+  EXPECT_NEAR(restingForce_N(0.005), 6.0, 0.05);
+  EXPECT_LT(restingForce_N(0.003), 5.55) << "known within a tenth";
+  EXPECT_GT(restingForce_N(-0.005), 0.0);
+  EXPECT_LT(restingForce_N(-0.005), 5.0);
+}
+
 TEST(ApproachLimit, MemoryFadesAfterContactAndThenLimitsNothing) {
   const ApproachLimit limit(bareRail(0.1));
   ApproachLimitState state = limit.initialState();
@@ -186,7 +228,7 @@ TEST(ApproachLimit, IsNeverExceededByTheCommand) {
       const double m = approach.memory_N_per_m;
       if (m == 0.0) continue;
       const double F_N = std::max(0.0, contact.force_contact_N + m * approach.way_ahead_m);
-      const double v_max = (kLimit_N - F_N) / (kT_s * m);
+      const double v_max = (kLimit_N - F_N) / (kT_s * m) - approach.obstacle.v_m_per_s;
       const double v = robot.approach(approach.smoother.contact, output);
       const double tolerance = 1e-6 * (1.0 + output.velocity.norm());
       ASSERT_LE(v, v_max + tolerance) << "robot " << i << ", cycle " << cycle;

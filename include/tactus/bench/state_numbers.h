@@ -108,7 +108,7 @@ struct StateVisitor {
   }
 
   void limit(const ApproachLimitState& approach) const {
-    const auto& [smoother, position, approach_estimator, memory, way_ahead, is_limiting,
+    const auto& [smoother, position, approach_estimator, obstacle, memory, way_ahead, is_limiting,
                  memory_fade] = approach;
     const auto& [significant, before, two_before, peak, weight, X_BaseModule, smooth, ringing,
                  smoothing] = smoother;
@@ -130,12 +130,17 @@ struct StateVisitor {
     list("sensed.s2", s2);
     list("sensed.sensed", sensed);
     list("sensed.sensed_before", sensed_before);
-    const auto& [c, r, x_m, F_ref, F_before, falling, forgetting] = approach_estimator;
+    const auto& [c, r, x_m, F_ref, F_before, limited_s, falling, forgetting] = approach_estimator;
     visit("approach.c", 0, c);
     visit("approach.r", 0, r);
     visit("approach.x", 0, x_m);
     visit("approach.F_ref", 0, F_ref);
     visit("approach.F_before", 0, F_before);
+    visit("approach.limited_s", 0, limited_s);
+    const auto& [v_o, F_before_o, high_s, speed_filter] = obstacle;
+    visit("obstacle.v", 0, v_o);
+    visit("obstacle.F_before", 0, F_before_o);
+    visit("obstacle.high_s", 0, high_s);
     visit("approach.memory", 0, memory);
     visit("approach.way_ahead", 0, way_ahead);
   }

@@ -11,6 +11,7 @@ struct ApproachEstimatorState {
   double x_m = 0.0;                    ///< way since F_ref, as sensed; > 0 towards the obstacle
   double F_ref_N = 0.0;
   double F_before_N = 0.0;  ///< F_p of the newest sample
+  double limited_s = 0.0;   ///< of the time since F_ref, while the limit held the arm back
   KnownLagShare filter, forgetting;
 };
 
@@ -20,6 +21,7 @@ struct ApproachSample {
   double dx_m = 0.0;           ///< as sensed, since the sample before, towards the obstacle
   double interval_s = 0.0;     ///< since the sample before
   double significant_N = 0.0;  ///< F_min: a smaller change of force is noise
+  bool is_limiting = false;    ///< the limit holds the arm back
 };
 
 // clang-format off: equations
@@ -35,6 +37,10 @@ struct ApproachSample {
 ///                         r = (max(dF, 0) + F_min) / x is an upper bound: c falls towards it
 ///   dx <= 0, dF < -F_min, x < -x_min:   r = dF / x: c falls towards it;  re-armed
 ///   force against the way by more than F_min:  re-armed
+/// A soft obstacle that comes gives a quotient that is too large, the more the slower the arm is.
+/// So for c < 20 kN/m a slow way counts as longer, by what leaves c stable: beyond 2.5 kN/m c
+/// rises to no more than dF / min(max(x, v_s t_l), 4 x), with v_s = 10 mm/s and t_l the time since
+/// F_ref in which the limit held the arm back.
 /// r is clamped to its range. Below F_th x = F_ref = 0, and c returns to c_0 with T_c below F_rel
 /// alone: a contact that rests at F_th would else be taken for softer each time it swings below.
 // clang-format on

@@ -2,6 +2,7 @@
 
 #include "tactus/control/approach_estimator.h"
 #include "tactus/control/contact_smoother.h"
+#include "tactus/control/obstacle_speed.h"
 #include "tactus/control/sensed_position.h"
 #include "tactus/control/speed_rows.h"
 
@@ -11,6 +12,7 @@ struct ApproachLimitState {
   ContactSmootherState smoother;
   SensedPositionState position;
   ApproachEstimatorState estimator;
+  ObstacleSpeedState obstacle;
   double memory_N_per_m = 0.0;  ///< m; 0: no limit
   double way_ahead_m = 0.0;     ///< e
   bool is_limiting = false;     ///< the residual motion was cut in the last cycle
@@ -20,12 +22,13 @@ struct ApproachLimitState {
 // clang-format off: equations
 /// The approach-speed limit. While the contact point approaches at v, contact of stiffness c_e
 /// obeys dF/dt = c_e v. So let it approach no faster than
-///   v_max = (F_act - F^) / (T m)
+///   v_max = (F_act - F^) / (T m) - v_o
 /// and for m = c_e the force follows dF/dt = -(F - F_act) / T at most: it settles at F_act without
 /// overshoot, whatever pushes the arm on. The derivation, and how small m may be, are in
 /// docs/approach_speed_limit.md.
 ///   F^ = max(0, F_p + m e),   e = -a^T (q_d - q_f): the way that no sample has told of yet
 ///   m  = max(c, c_floor) in contact, fading with T after it
+///   v_o: that of a soft obstacle which comes, see obstacle_speed.h; else 0
 /// What the rest of (1) would do, v_res = a^T (J# w_eff - N (b u_n + alpha W^-1 dH/dq)) with
 /// v_res < 0 towards the obstacle, is cut by exactly the excess:
 ///   u_t = min(0, v_res + v_max) / k_t
@@ -56,8 +59,9 @@ class ApproachLimit {
                  const ApproachLimitState& state, SpeedRows& rows) const noexcept;
 
  private:
-  void estimate(const ForceGains& gains, const ScaledVector& a, int joints, double F_p_N,
-                double period_s, ApproachLimitState& state) const noexcept;
+  /// A new force sample in contact.
+  void learn(const ForceGains& gains, const ScaledVector& a, int joints, double F_p_N,
+             ApproachLimitState& state) const noexcept;
 
   bool has_estimator_;
   ContactSmoother smoother_;
