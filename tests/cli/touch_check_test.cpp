@@ -9,6 +9,7 @@
 #include "support/closed_loop.h"
 #include "support/shipped_scene.h"
 #include "tactus/control/controller.h"
+#include "tactus/control/obstacle_speed.h"
 #include "tactus/sim/simulated_robot.h"
 
 namespace tactus {
@@ -144,14 +145,21 @@ TEST(TouchCheck, SaysHowFastAnObstacleMayMove) {
   EXPECT_NEAR(moving.force_N, 7.5, 1e-12);
   Scene scene = test::shippedScene("scenario3_tactus");
   scene.controller.force_control->has_estimator = false;
-  scene.controller.gains.force.assumed_stiffness_N_per_m = moving.stiffness_N_per_m;
-  double largest_N = 0.0;
-  for (int i = 0; i < 16; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / 16.0;
-    const Vector3 velocity = moving.speed_m_per_s * Vector3(std::cos(angle), std::sin(angle), 0.0);
-    largest_N = std::max(largest_N, forceWithMotion(scene, velocity));
-  }
-  EXPECT_NEAR(largest_N, moving.force_N, 0.1 * moving.force_N);
+  const auto restsAt_N = [&](double stiffness_N_per_m) {
+    scene.controller.gains.force.assumed_stiffness_N_per_m = stiffness_N_per_m;
+    const double speed = moving.speed_m_per_s * moving.stiffness_N_per_m / stiffness_N_per_m;
+    double largest_N = 0.0;
+    for (int i = 0; i < 16; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / 16.0;
+      const Vector3 velocity = speed * Vector3(std::cos(angle), std::sin(angle), 0.0);
+      largest_N = std::max(largest_N, forceWithMotion(scene, velocity));
+    }
+    return largest_N;
+  };
+  EXPECT_NEAR(restsAt_N(1.2 * kSoftContact_N_per_m), moving.force_N, 0.1 * moving.force_N);
+  ASSERT_LT(moving.stiffness_N_per_m, kSoftContact_N_per_m);
+  EXPECT_LT(restsAt_N(moving.stiffness_N_per_m), 0.85 * moving.force_N)
+      << "the law finds how fast a soft one comes";
 }
 
 TEST(TouchCheck, WarnsOfObstaclesThatNothingTouches) {

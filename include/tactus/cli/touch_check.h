@@ -37,7 +37,7 @@ struct PeakReport {
 };
 
 /// How fast an obstacle may come or go: at v_o the approach limit lets the force rest off F_act by
-/// T m v_o, m being the stiffness that it counts on.
+/// T m v_o, m being the stiffness that it counts on. Less where that is soft, see obstacle_speed.h.
 struct MovingObstacle {
   double stiffness_N_per_m;  ///< m
   double speed_m_per_s;      ///< (F_act + F_th) / (2 T m)
