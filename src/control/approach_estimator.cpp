@@ -10,7 +10,7 @@ namespace {
 /// x_min: a shorter way is not known well enough to be divided by; drives and model differ by it.
 constexpr double kMinWay_m = 50e-6;
 /// v_s: slower, and an obstacle that comes may be half of the quotient. No more than four of it:
-/// c_e / c may be five.
+/// for T of 0.1 s and more c_e / c may be five.
 constexpr double kSlow_m_per_s = 0.01;
 constexpr double kMaxLengthening = 4.0;
 /// Up to here an obstacle that comes costs little whatever is taken for its stiffness.

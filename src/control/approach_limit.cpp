@@ -17,9 +17,9 @@ double approach(const ScaledVector& a, int joints, const ScaledVector& from,
 }
 
 /// A contact that is still felt below F_th is the one that is known.
-void passNoForce(const ForceGains& gains, double force_N, double period_s,
+void passNoForce(const ForceGains& gains, bool is_felt, double period_s,
                  ApproachEstimatorState& estimator) noexcept {
-  if (force_N > gains.transition.release_force_N) {
+  if (is_felt) {
     leaveForce(estimator);
   } else {
     forgetContact(gains, period_s, estimator);
@@ -58,7 +58,7 @@ void ApproachLimit::learn(const ForceGains& gains, const ScaledVector& a, int jo
   followObstacle(gains, {F_p_N, m, dx_m, interval_s, state.is_limiting}, state.obstacle);
 }
 
-void ApproachLimit::observe(const ForceGains& gains, const ScaledVector& a, double F_p_N,
+void ApproachLimit::observe(const ForceGains& gains, const ScaledVector& a, const FeltForce& force,
                             const JointVector& q_desired, double period_s,
                             ApproachLimitState& state) const noexcept {
   const bool is_new = state.smoother.contact.isNew();
@@ -69,12 +69,12 @@ void ApproachLimit::observe(const ForceGains& gains, const ScaledVector& a, doub
     estimator.stiffness_raw_N_per_m = gains.assumed_stiffness_N_per_m;
   }
   const auto joints = static_cast<int>(q_desired.size());
-  if (F_p_N > 0.0) {
-    if (is_new) learn(gains, a, joints, F_p_N, state);
+  if (force.F_p_N > 0.0) {
+    if (is_new) learn(gains, a, joints, force.F_p_N, state);
     state.memory_N_per_m =
         std::max(estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
   } else {
-    if (has_estimator_) passNoForce(gains, state.smoother.contact.force_N, period_s, estimator);
+    if (has_estimator_) passNoForce(gains, force.is_felt, period_s, estimator);
     state.obstacle.v_m_per_s = state.obstacle.F_before_N = state.obstacle.high_s = 0.0;
     state.memory_N_per_m -= state.fade.of(period_s, gains.time_constant_s) * state.memory_N_per_m;
     if (state.memory_N_per_m < kNoMemory_N_per_m) state.memory_N_per_m = 0.0;

@@ -141,7 +141,11 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
                                  ContactControllerState& state, ContactReport& report,
                                  ControlLawInput& input) const noexcept {
   if (approach_limit_) {
-    approach_limit_->observe(gains, contact.a, input.F_p_N, commanded.q, period_s, state.approach);
+    const bool is_felt =
+        state.approach.smoother.contact.force_N > gains.transition.release_force_N &&
+        state.transition.gamma > 0.0;
+    approach_limit_->observe(gains, contact.a, {input.F_p_N, is_felt}, commanded.q, period_s,
+                             state.approach);
     input.stiffness_N_per_m = state.approach.estimator.stiffness_N_per_m;
     input.hold_integral = state.approach.is_limiting;
     report.stiffness_raw_N_per_m = state.approach.estimator.stiffness_raw_N_per_m;
@@ -243,6 +247,7 @@ void ContactController::rest(const ForceGains& gains, const Contact& contact, do
                              ControlLawInput& input) const noexcept {
   const double fade = lagShare(period_s, gains.transition.max_time_constant_s);
   input.integral_decay = input.F_p_N > 0.0 ? 1.0 : 1.0 - fade;
+  state.approach.obstacle.high_s = 0.0;
   if (is_joint_space_) restTransition(state.joint_space_transition);
   report.gamma = is_joint_space_ ? state.joint_space_transition.gamma : state.transition.gamma;
   report.x_dot_eff_m_per_s = contact.space.x_dot_eff_m_per_s;
@@ -259,7 +264,10 @@ void ContactController::passContact(const ForceGains& gains, const Contact& cont
   report.x_dot_eff_m_per_s = x_dot_eff;
   if (!approach_limit_ || !state.transition.touched) return;
   input.F_p_N = signedContactForce_N(gains, state.approach.smoother.contact.force_N);
-  if (input.F_p_N < 0.0) input.integral_decay = 1.0;
+  if (input.F_p_N >= 0.0) return;
+  // An offset of the sensor may look like it: that must not move the arm on and on.
+  input.F_p_N *= state.transition.gamma;
+  input.integral_decay += state.transition.gamma * (1.0 - input.integral_decay);
 }
 
 void ContactController::passJointSpaceContact(const Gains& gains, const TaskKinematics& kinematics,

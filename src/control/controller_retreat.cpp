@@ -59,7 +59,7 @@ void Controller::beginRetreat(const Gains& gains, ControllerState& state) const 
   state.retreat.velocity_at_fault = velocity;
   takePush(gains, state);
   if (state.retreat.has_push) return;
-  // Where the last good sample felt no contact there is none; since then there may be.
+  // Where no push of late is left there is no contact; since then there may be.
   state.retreat.is_over = velocity.isZero(kStandstill);
   double longest_s = 0.0;
   for (int i = 0; i < modules(); ++i) longest_s = std::max(longest_s, untold_s(i, state));

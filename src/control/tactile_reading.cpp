@@ -18,12 +18,9 @@ double judgedForce_N(const TactileSample& sample) noexcept {
                    : std::numeric_limits<double>::quiet_NaN();
 }
 
-void rememberHardest(double filter_cutoff_hz, TactileReading& reading) noexcept {
-  const ContactPointState& contact = reading.contact;
-  ContactPointState& hardest = reading.hardest;
+double fadedShare(double filter_cutoff_hz, double interval_s) noexcept {
   const double fades_s = std::max(kPushFades_s, kPushFadesPeriods / filter_cutoff_hz);
-  hardest.force_N *= std::max(0.0, 1.0 - contact.interval_s / fades_s);
-  if (contact.force_N >= hardest.force_N) hardest = contact;
+  return std::max(0.0, 1.0 - interval_s / fades_s);
 }
 
 }  // namespace
@@ -40,12 +37,13 @@ Fault readSample(const TactileModuleConfig& module, const TactileSample& sample,
   reading.sequence = sample.sequence;
   const double interval_s = reading.age_s + period_s;
   reading.age_s = 0.0;
+  reading.hardest.force_N *= fadedShare(module.filter_cutoff_hz, interval_s);
   const bool is_valid = isValid(sample, module);
   reading.fault = is_valid ? Fault::kNone : Fault::kTactileInvalid;
   if (is_valid) {
     locateContact(sample, module, reading.contact);
     reading.contact.interval_s = interval_s;
-    rememberHardest(module.filter_cutoff_hz, reading);
+    if (reading.contact.force_N >= reading.hardest.force_N) reading.hardest = reading.contact;
   } else {
     reading.detail = {judgedForce_N(sample), module.max_force_N, "N"};
     reading.has_excess = reading.detail.value < kMaxBelievable_N;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/controller_run.h"
+#include "support/crops9.h"
 #include "support/period.h"
 #include "support/rail_robot.h"
 
@@ -61,18 +62,49 @@ TEST(ApproachLimit, KnowsAContactAsLongAsItIsFelt) {
   const ApproachLimit limit(config);
   ForceGains gains = kGains;
   gains.contact_threshold_N = 1.2;
-  const double release_N = gains.transition.release_force_N;
-  const auto stiffnessAfter = [&](double force_N) {
+  const auto stiffnessAfter = [&](bool is_felt) {
     ApproachLimitState state = limit.initialState();
     state.estimator.stiffness_N_per_m = 50.0 * kC_N_per_m;
-    state.smoother.contact.force_N = force_N;
     for (int i = 0; i < 5000; ++i)
-      limit.observe(gains, ScaledVector::Zero(), 0.0, config.q_start, kPeriod_s, state);
+      limit.observe(gains, ScaledVector::Zero(), {0.0, is_felt}, config.q_start, kPeriod_s, state);
     return state.estimator.stiffness_N_per_m;
   };
-  EXPECT_EQ(stiffnessAfter(gains.contact_threshold_N), 50.0 * kC_N_per_m);
-  EXPECT_EQ(stiffnessAfter(1.01 * release_N), 50.0 * kC_N_per_m);
-  EXPECT_NEAR(stiffnessAfter(release_N), kC_N_per_m, 0.01 * 50.0 * kC_N_per_m);
+  EXPECT_EQ(stiffnessAfter(true), 50.0 * kC_N_per_m);
+  EXPECT_NEAR(stiffnessAfter(false), kC_N_per_m, 0.01 * 50.0 * kC_N_per_m);
+}
+
+/// Drift of the sensor, or what is left of a cover's weight, between F_rel and F_th looks like a
+/// contact that is about to be lost.
+TEST(ApproachLimit, AnOffsetBelowTheThresholdDoesNotMoveTheArmOnAndOn) {
+  for (const double c_N_per_m : {30.0, 7000.0}) {
+    SCOPED_TRACE(c_N_per_m);
+    ControllerConfig config = test::crops9Controller(Variant::kNullLimit, true);
+    config.task.trajectory.waypoints.clear();
+    const TactileModuleConfig& module = config.tactile_modules.front();
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    RobotInput input;
+    ChainPose pose;
+    const auto run = [&](double force_N, double duration_s) {
+      for (long i = 0; i < std::lround(duration_s / kPeriod_s); ++i) {
+        input.q_measured = state.q_desired;
+        const std::uint32_t next = input.tactile[0].sequence + (i % 4 == 0 ? 1 : 0);
+        input.tactile[0] = test::touchAt(0.2, force_N, 2.8, next);
+        controller.update(input, controller.initialGains(), 0.0, kPeriod_s, state, output);
+      }
+      config.chain.computePose(state.q_desired, pose);
+      const Pose X = framePose(pose, module.link);
+      return Vector3(X.p_AB + 0.2 * X.R_AB.col(0));
+    };
+    run(2.0, 0.5);
+    state.contact.approach.estimator.stiffness_N_per_m = c_N_per_m;
+    const Vector3 lost = run(1.3, 0.1);
+    const Vector3 later = run(0.7, 30.0);
+    EXPECT_LT((later - lost).norm(), 1.2 * controller.initialGains().force.transition.distance_m);
+    EXPECT_LT((run(0.7, 10.0) - later).norm(), 1e-3);
+    EXPECT_NEAR(state.contact.approach.estimator.stiffness_N_per_m, 7000.0, 1000.0);
+  }
 }
 
 TEST(ApproachLimit, CutsExactlyTheExcessByHand) {
@@ -104,7 +136,7 @@ TEST(ApproachLimit, TakesTheObstaclesSpeedOffTheApproach) {
   limit.limitRows(kGains, 1.8, 0.5, state, rows);
   EXPECT_NEAR(rows.row[0].v_max_m_per_s, 0.5 * 0.008, 1e-15);
   const ScaledVector a = -ScaledVector::Unit(0);
-  limit.observe(kGains, a, 0.0, JointVector::Zero(2), kPeriod_s, state);
+  limit.observe(kGains, a, {0.0, false}, JointVector::Zero(2), kPeriod_s, state);
   EXPECT_EQ(state.obstacle.v_m_per_s, 0.0) << "forgotten without contact";
 }
 
@@ -140,11 +172,11 @@ TEST(ApproachLimit, MemoryFadesAfterContactAndThenLimitsNothing) {
   const JointVector q = JointVector::Zero(2);
   const ScaledVector a = -ScaledVector::Unit(0);
   EXPECT_EQ(limit.excess(kGains, 0.0, -1e9, state), 0.0) << "before the first contact";
-  limit.observe(kGains, a, 1.0, q, kPeriod_s, state);
+  limit.observe(kGains, a, {1.0, true}, q, kPeriod_s, state);
   EXPECT_EQ(state.memory_N_per_m, kC_N_per_m);
-  for (int i = 0; i < 100; ++i) limit.observe(kGains, a, 0.0, q, kPeriod_s, state);
+  for (int i = 0; i < 100; ++i) limit.observe(kGains, a, {0.0, false}, q, kPeriod_s, state);
   EXPECT_NEAR(state.memory_N_per_m, kC_N_per_m * std::exp(-1.0), 1e-6);
-  for (int i = 0; i < 20000; ++i) limit.observe(kGains, a, 0.0, q, kPeriod_s, state);
+  for (int i = 0; i < 20000; ++i) limit.observe(kGains, a, {0.0, false}, q, kPeriod_s, state);
   EXPECT_EQ(state.memory_N_per_m, 0.0) << "and not a denormal number";
   EXPECT_EQ(limit.excess(kGains, 0.0, -1e9, state), 0.0);
 }
@@ -154,8 +186,8 @@ TEST(ApproachLimit, SofterContactIsApproachedNoFasterThanTheFloorAllows) {
   config.gains.force.assumed_stiffness_N_per_m = 20.0;
   const ApproachLimit limit(config);
   ApproachLimitState state = limit.initialState();
-  limit.observe(config.gains.force, -ScaledVector::Unit(0), 1.0, JointVector::Zero(2), kPeriod_s,
-                state);
+  limit.observe(config.gains.force, -ScaledVector::Unit(0), {1.0, true}, JointVector::Zero(2),
+                kPeriod_s, state);
   EXPECT_EQ(state.memory_N_per_m, 300.0);
 }
 

@@ -91,13 +91,16 @@ TEST(HardestPush, IsAtLeastTheNewestAndFades) {
   EXPECT_LE(reading.hardest.force_N, before_N * std::exp(-0.4 / kPushFades_s) * 1.01);
 }
 
-TEST(HardestPush, AnInvalidSampleLeavesIt) {
+TEST(HardestPush, AnInvalidSampleLeavesItButForWhatFades) {
   const TactileModuleConfig module = moduleThatFilters(15.0);
   TactileReading reading;
   readSample(module, test::touchAt(kAt_m, 9.0, 0.5, 1), test::kPeriod_s, reading);
   readSample(module, test::touchAt(0.1, 1e4, -2.0, 2), test::kPeriod_s, reading);
-  EXPECT_NEAR(reading.hardest.force_N, 9.0, 1e-9);
+  EXPECT_NEAR(reading.hardest.force_N, 9.0 * (1.0 - test::kPeriod_s / kPushFades_s), 1e-9);
   EXPECT_NEAR(reading.hardest.position_m, kAt_m, 1e-9);
+  for (int i = 3; i < 2000; ++i)
+    readSample(module, test::touchAt(0.1, 1e4, -2.0, i), test::kPeriod_s, reading);
+  EXPECT_LT(reading.hardest.force_N, 1e-6) << "two seconds later nothing of it is left";
 }
 
 }  // namespace

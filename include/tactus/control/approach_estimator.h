@@ -41,8 +41,9 @@ struct ApproachSample {
 /// So for c < 20 kN/m a slow way counts as longer, by what leaves c stable: beyond 2.5 kN/m c
 /// rises to no more than dF / min(max(x, v_s t_l), 4 x), with v_s = 10 mm/s and t_l the time since
 /// F_ref in which the limit held the arm back.
-/// r is clamped to its range. Below F_th x = F_ref = 0, and c returns to c_0 with T_c below F_rel
-/// alone: a contact that rests at F_th would else be taken for softer each time it swings below.
+/// r is clamped to its range. Below F_th x = F_ref = 0, and c returns to c_0 with T_c, but not
+/// where the contact is still felt: one that rests at F_th would else be taken for another each
+/// time it swings below.
 // clang-format on
 void estimateInContact(const ForceGains& gains, const ApproachSample& sample,
                        ApproachEstimatorState& state) noexcept;

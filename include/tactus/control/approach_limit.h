@@ -19,6 +19,11 @@ struct ApproachLimitState {
   KnownLagShare fade;           ///< of m
 };
 
+struct FeltForce {
+  double F_p_N = 0.0;    ///< >= 0
+  bool is_felt = false;  ///< the contact that was, also below F_th: F_sen > F_rel near where it was
+};
+
 // clang-format off: equations
 /// The approach-speed limit. While the contact point approaches at v, contact of stiffness c_e
 /// obeys dF/dt = c_e v. So let it approach no faster than
@@ -45,7 +50,7 @@ class ApproachLimit {
               ApproachLimitState& state) const noexcept;
 
   /// a: J_p^T F^ of that contact; q_desired: at the start of the cycle.
-  void observe(const ForceGains& gains, const ScaledVector& a, double F_p_N,
+  void observe(const ForceGains& gains, const ScaledVector& a, const FeltForce& force,
                const JointVector& q_desired, double period_s,
                ApproachLimitState& state) const noexcept;
 

@@ -38,8 +38,9 @@ struct ControlLawOutput {
   double u_n = 0.0, u_j = 0.0, u_t = 0.0;
 };
 
-/// F_p of null_limit's null-space law: below F_th, where the contact is still felt, it has gone
-/// back too far and is negative, -min(F_th - F_sen, F_sen - F_rel), else F_p.
+/// F_p of null_limit's null-space law, to be taken times gamma where it is negative: below F_th,
+/// where the contact is still felt, the arm has gone back too far, -min(F_th - F_sen, F_sen -
+/// F_rel), else F_p.
 double signedContactForce_N(const ForceGains& gains, double force_N) noexcept;
 
 /// The paper's laws. One space, (5), with 1/k regularised and P = 2 d / (T c):

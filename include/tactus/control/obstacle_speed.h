@@ -32,8 +32,8 @@ struct ObstacleSample {
 ///   limiting and F_p > F_act + 0.1 F_l for 3T:  v += kappa ((dF_p / m - dx) / dt - v)
 ///   F_p < F_act:                                v -= kappa v
 ///   0 <= v <= 0.5 F_l / (T m);  v = 0 for m > 20 kN/m
-/// So it never costs more force than half of F_l, and is nothing where the limit does what it
-/// shall. Derivation and figures: docs/approach_speed_limit.md.
+/// So it never costs more force than half of F_l, and for m = c_e is nothing where the limit
+/// does what it shall. Derivation and figures: docs/approach_speed_limit.md.
 // clang-format on
 void followObstacle(const ForceGains& gains, const ObstacleSample& sample,
                     ObstacleSpeedState& state) noexcept;

@@ -13,7 +13,7 @@ struct RetreatStart {
   double force_N = 0.0;            ///< the hardest push of late
   double stiffness_N_per_m = 0.0;  ///< the least that it may have
   double speed_m_per_s = 0.0;      ///< of the contact point along the push, at the fault
-  double untold_s = 0.0;           ///< since the arm was where that sample felt it
+  double untold_s = 0.0;           ///< since the arm was where the last sample felt it
 };
 
 /// What the module says in a cycle.

@@ -23,9 +23,9 @@ struct TactileReading {
   CoverCompensationState cover;  ///< only of a module with one
 };
 
-/// A push fades within this time: an arm that swings in a contact is back by then; or, if that is
-/// longer, within so many periods of the module's cut-off frequency: after a blow its filter tells
-/// of up to an eighth of it from the other side before it rests.
+/// A push fades with this time constant: an arm that swings in a contact is back by then; or, if
+/// that is longer, with so many periods of the module's cut-off frequency: after a blow its filter
+/// tells of up to an eighth of it from the other side before it rests.
 inline constexpr double kPushFades_s = 0.1;
 inline constexpr double kPushFadesPeriods = 1.5;
 
