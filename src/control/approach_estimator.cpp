@@ -89,15 +89,11 @@ void estimateInContact(const ForceGains& gains, const ApproachSample& sample,
   }
 }
 
-void leaveForce(ApproachEstimatorState& state) noexcept {
+void forgetContact(const ForceGains& gains, double duration_s,
+                   ApproachEstimatorState& state) noexcept {
   rearm(0.0, state);
   state.F_before_N = 0.0;
-}
-
-void forgetContact(const ForceGains& gains, double period_s,
-                   ApproachEstimatorState& state) noexcept {
-  leaveForce(state);
-  state.stiffness_N_per_m += state.forgetting.of(period_s, kForgetting_s) *
+  state.stiffness_N_per_m += state.forgetting.of(duration_s, kForgetting_s) *
                              (gains.assumed_stiffness_N_per_m - state.stiffness_N_per_m);
   state.stiffness_raw_N_per_m = state.stiffness_N_per_m;
 }

@@ -16,16 +16,6 @@ double approach(const ScaledVector& a, int joints, const ScaledVector& from,
   return way;
 }
 
-/// A contact that is still felt below F_th is the one that is known.
-void passNoForce(const ForceGains& gains, bool is_felt, double period_s,
-                 ApproachEstimatorState& estimator) noexcept {
-  if (is_felt) {
-    leaveForce(estimator);
-  } else {
-    forgetContact(gains, period_s, estimator);
-  }
-}
-
 }  // namespace
 
 ApproachLimit::ApproachLimit(const ControllerConfig& config)
@@ -74,7 +64,7 @@ void ApproachLimit::observe(const ForceGains& gains, const ScaledVector& a, cons
     state.memory_N_per_m =
         std::max(estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
   } else {
-    if (has_estimator_) passNoForce(gains, force.is_felt, period_s, estimator);
+    if (has_estimator_) forgetContact(gains, (1.0 - force.nearness) * period_s, estimator);
     state.obstacle.v_m_per_s = state.obstacle.F_before_N = state.obstacle.high_s = 0.0;
     state.memory_N_per_m -= state.fade.of(period_s, gains.time_constant_s) * state.memory_N_per_m;
     if (state.memory_N_per_m < kNoMemory_N_per_m) state.memory_N_per_m = 0.0;

@@ -141,10 +141,9 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
                                  ContactControllerState& state, ContactReport& report,
                                  ControlLawInput& input) const noexcept {
   if (approach_limit_) {
-    const bool is_felt =
-        state.approach.smoother.contact.force_N > gains.transition.release_force_N &&
-        state.transition.gamma > 0.0;
-    approach_limit_->observe(gains, contact.a, {input.F_p_N, is_felt}, commanded.q, period_s,
+    const bool is_felt = state.approach.smoother.contact.force_N > gains.transition.release_force_N;
+    const double nearness = is_felt ? state.transition.gamma : 0.0;
+    approach_limit_->observe(gains, contact.a, {input.F_p_N, nearness}, commanded.q, period_s,
                              state.approach);
     input.stiffness_N_per_m = state.approach.estimator.stiffness_N_per_m;
     input.hold_integral = state.approach.is_limiting;

@@ -139,7 +139,7 @@ TEST_F(ApproachEstimate, ForgetsWithoutContact) {
 TEST_F(ApproachEstimate, BeginsAnewBelowTheThresholdWithWhatItKnows) {
   touch(3.0, 1e-4);
   touch(3.1, 1e-5);
-  leaveForce(state_);
+  forgetContact({}, 0.0, state_);
   EXPECT_NEAR(c(), 3e4, 1e-8);
   EXPECT_EQ(state_.x_m, 0.0);
   EXPECT_EQ(state_.F_ref_N, 0.0);

@@ -62,15 +62,15 @@ TEST(ApproachLimit, KnowsAContactAsLongAsItIsFelt) {
   const ApproachLimit limit(config);
   ForceGains gains = kGains;
   gains.contact_threshold_N = 1.2;
-  const auto stiffnessAfter = [&](bool is_felt) {
+  const auto stiffnessAfter = [&](double nearness) {
     ApproachLimitState state = limit.initialState();
     state.estimator.stiffness_N_per_m = 50.0 * kC_N_per_m;
     for (int i = 0; i < 5000; ++i)
-      limit.observe(gains, ScaledVector::Zero(), {0.0, is_felt}, config.q_start, kPeriod_s, state);
+      limit.observe(gains, ScaledVector::Zero(), {0.0, nearness}, config.q_start, kPeriod_s, state);
     return state.estimator.stiffness_N_per_m;
   };
-  EXPECT_EQ(stiffnessAfter(true), 50.0 * kC_N_per_m);
-  EXPECT_NEAR(stiffnessAfter(false), kC_N_per_m, 0.01 * 50.0 * kC_N_per_m);
+  EXPECT_EQ(stiffnessAfter(1.0), 50.0 * kC_N_per_m);
+  EXPECT_NEAR(stiffnessAfter(0.0), kC_N_per_m, 0.01 * 50.0 * kC_N_per_m);
 }
 
 /// Drift of the sensor, or what is left of a cover's weight, between F_rel and F_th looks like a
@@ -136,7 +136,7 @@ TEST(ApproachLimit, TakesTheObstaclesSpeedOffTheApproach) {
   limit.limitRows(kGains, 1.8, 0.5, state, rows);
   EXPECT_NEAR(rows.row[0].v_max_m_per_s, 0.5 * 0.008, 1e-15);
   const ScaledVector a = -ScaledVector::Unit(0);
-  limit.observe(kGains, a, {0.0, false}, JointVector::Zero(2), kPeriod_s, state);
+  limit.observe(kGains, a, {0.0, 0.0}, JointVector::Zero(2), kPeriod_s, state);
   EXPECT_EQ(state.obstacle.v_m_per_s, 0.0) << "forgotten without contact";
 }
 
@@ -172,11 +172,11 @@ TEST(ApproachLimit, MemoryFadesAfterContactAndThenLimitsNothing) {
   const JointVector q = JointVector::Zero(2);
   const ScaledVector a = -ScaledVector::Unit(0);
   EXPECT_EQ(limit.excess(kGains, 0.0, -1e9, state), 0.0) << "before the first contact";
-  limit.observe(kGains, a, {1.0, true}, q, kPeriod_s, state);
+  limit.observe(kGains, a, {1.0, 1.0}, q, kPeriod_s, state);
   EXPECT_EQ(state.memory_N_per_m, kC_N_per_m);
-  for (int i = 0; i < 100; ++i) limit.observe(kGains, a, {0.0, false}, q, kPeriod_s, state);
+  for (int i = 0; i < 100; ++i) limit.observe(kGains, a, {0.0, 0.0}, q, kPeriod_s, state);
   EXPECT_NEAR(state.memory_N_per_m, kC_N_per_m * std::exp(-1.0), 1e-6);
-  for (int i = 0; i < 20000; ++i) limit.observe(kGains, a, {0.0, false}, q, kPeriod_s, state);
+  for (int i = 0; i < 20000; ++i) limit.observe(kGains, a, {0.0, 0.0}, q, kPeriod_s, state);
   EXPECT_EQ(state.memory_N_per_m, 0.0) << "and not a denormal number";
   EXPECT_EQ(limit.excess(kGains, 0.0, -1e9, state), 0.0);
 }
@@ -186,7 +186,7 @@ TEST(ApproachLimit, SofterContactIsApproachedNoFasterThanTheFloorAllows) {
   config.gains.force.assumed_stiffness_N_per_m = 20.0;
   const ApproachLimit limit(config);
   ApproachLimitState state = limit.initialState();
-  limit.observe(config.gains.force, -ScaledVector::Unit(0), {1.0, true}, JointVector::Zero(2),
+  limit.observe(config.gains.force, -ScaledVector::Unit(0), {1.0, 1.0}, JointVector::Zero(2),
                 kPeriod_s, state);
   EXPECT_EQ(state.memory_N_per_m, 300.0);
 }

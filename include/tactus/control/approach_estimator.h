@@ -42,17 +42,14 @@ struct ApproachSample {
 /// rises to no more than dF / min(max(x, v_s t_l), 4 x), with v_s = 10 mm/s and t_l the time since
 /// F_ref in which the limit held the arm back.
 /// r is clamped to its range. Below F_th x = F_ref = 0, and c returns to c_0 with T_c, but not
-/// where the contact is still felt: one that rests at F_th would else be taken for another each
-/// time it swings below.
+/// where the contact is still felt where it was: one that rests at F_th would else be taken for
+/// another each time it swings below.
 // clang-format on
 void estimateInContact(const ForceGains& gains, const ApproachSample& sample,
                        ApproachEstimatorState& state) noexcept;
 
-/// A cycle in which the force is below F_th, but felt: the next quotient begins anew.
-void leaveForce(ApproachEstimatorState& state) noexcept;
-
-/// A cycle without contact.
-void forgetContact(const ForceGains& gains, double period_s,
+/// A cycle without force. duration_s: less than the period while the contact may still be the same.
+void forgetContact(const ForceGains& gains, double duration_s,
                    ApproachEstimatorState& state) noexcept;
 
 }  // namespace tactus

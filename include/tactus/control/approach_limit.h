@@ -20,8 +20,9 @@ struct ApproachLimitState {
 };
 
 struct FeltForce {
-  double F_p_N = 0.0;    ///< >= 0
-  bool is_felt = false;  ///< the contact that was, also below F_th: F_sen > F_rel near where it was
+  double F_p_N = 0.0;  ///< >= 0
+  double nearness =
+      0.0;  ///< of a contact felt below F_th, F_sen > F_rel, to the one that was: 0 to 1
 };
 
 // clang-format off: equations
