@@ -16,6 +16,12 @@ double approach(const ScaledVector& a, int joints, const ScaledVector& from,
   return way;
 }
 
+/// m in contact.
+double stiffnessInContact(const ForceGains& gains,
+                          const ApproachEstimatorState& estimator) noexcept {
+  return std::max(estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
+}
+
 }  // namespace
 
 ApproachLimit::ApproachLimit(const ControllerConfig& config)
@@ -43,8 +49,7 @@ void ApproachLimit::learn(const ForceGains& gains, const ScaledVector& a, int jo
                       {F_p_N, dx_m, interval_s, state.smoother.significant_N, state.is_limiting},
                       state.estimator);
   }
-  const double m =
-      std::max(state.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
+  const double m = stiffnessInContact(gains, state.estimator);
   followObstacle(gains, {F_p_N, m, dx_m, interval_s, state.is_limiting}, state.obstacle);
 }
 
@@ -61,8 +66,7 @@ void ApproachLimit::observe(const ForceGains& gains, const ScaledVector& a, cons
   const auto joints = static_cast<int>(q_desired.size());
   if (force.F_p_N > 0.0) {
     if (is_new) learn(gains, a, joints, force.F_p_N, state);
-    state.memory_N_per_m =
-        std::max(estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
+    state.memory_N_per_m = stiffnessInContact(gains, estimator);
   } else {
     if (has_estimator_) forgetContact(gains, (1.0 - force.nearness) * period_s, estimator);
     state.obstacle.v_m_per_s = state.obstacle.F_before_N = state.obstacle.high_s = 0.0;

@@ -6,8 +6,8 @@ namespace tactus {
 namespace {
 
 constexpr double kHigh = 0.1;  ///< of F_l: no noise, and more than a wrong contact point costs
-constexpr double kSettling =
-    3.0;  ///< of T: on what stands still, and for m = c_e, the force has fallen by then
+/// Of T: on what stands still, and for m = c_e, the force has fallen by then.
+constexpr double kSettling = 3.0;
 constexpr double kSmoothing = 5.0;  ///< of T
 constexpr double kMaxShare = 0.5;   ///< of F_l
 

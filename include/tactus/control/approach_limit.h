@@ -21,8 +21,8 @@ struct ApproachLimitState {
 
 struct FeltForce {
   double F_p_N = 0.0;  ///< >= 0
-  double nearness =
-      0.0;  ///< of a contact felt below F_th, F_sen > F_rel, to the one that was: 0 to 1
+  /// Of a contact felt below F_th, F_sen > F_rel, to the one that was: 0 to 1.
+  double nearness = 0.0;
 };
 
 // clang-format off: equations
