@@ -74,13 +74,10 @@ std::vector<LawGridPoint> contactPoints(double robot_stiffness_N_per_m) {
 /// Where nobody has looked when the law was made.
 std::vector<LawGridPoint> drawnPoints(double robot_stiffness_N_per_m) {
   BenchRandom random(kDrawnSeed);
-  const auto logUniform = [&random](double low, double high) {
-    return low * std::pow(high / low, random.uniform(0.0, 1.0));
-  };
   std::vector<LawGridPoint> points;
   for (int i = 0; i < kDrawn; ++i) {
-    const double band = i % 3 == 0 ? 0.0 : logUniform(10.0, 600.0);
-    const double profile = logUniform(1e3, 1e6);
+    const double band = i % 3 == 0 ? 0.0 : random.logUniform(10.0, 600.0);
+    const double profile = random.logUniform(1e3, 1e6);
     const double robot = i % 2 == 0 ? kNoLimit : robot_stiffness_N_per_m;
     points.push_back({band, profile, robot, random.uniform(0.5, 3.0)});
   }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "tactus/bench/law_grid.h"
 #include "tactus/bench/parallel.h"
 #include "tactus/bench/random.h"
 #include "tactus/control/controller.h"
@@ -21,19 +20,7 @@ constexpr double kDrawnRest_s = 20.0;
 constexpr double kEnd_m = 0.1;  ///< how far beyond an end a post may come over it
 constexpr double kHighPeak = 1.15, kWorsePeak = 1.02, kHighRest = 1.01;
 
-struct Draw {
-  explicit Draw(std::uint64_t seed) : random(seed) {}
-
-  double uniform(double low, double high) { return random.uniform(low, high); }
-  double logUniform(double low, double high) {
-    return low * std::pow(high / low, uniform(0.0, 1.0));
-  }
-  bool chance(double share) { return uniform(0.0, 1.0) < share; }
-
-  BenchRandom random;
-};
-
-void drawPath(Draw& draw, RunSetup& setup) {
+void drawPath(BenchRandom& draw, RunSetup& setup) {
   ControllerConfig& controller = setup.controller;
   JointVector& q = controller.q_start;
   for (int i = 0; i < q.size(); ++i) {
@@ -76,8 +63,8 @@ std::vector<Pose> freePath(RunSetup setup) {
 }
 
 /// Before the cover at a moment of its path, if it moves sidewards there.
-bool placePost(Draw& draw, const RunSetup& setup, const std::vector<Pose>& path, double earliest,
-               ObstacleConfig& post) {
+bool placePost(BenchRandom& draw, const RunSetup& setup, const std::vector<Pose>& path,
+               double earliest, ObstacleConfig& post) {
   const double share = draw.uniform(earliest, 0.9);
   const double x_m = draw.uniform(0.08, 0.92) * setup.controller.tactile_modules.front().length_m;
   const auto k =
@@ -98,16 +85,19 @@ bool placePost(Draw& draw, const RunSetup& setup, const std::vector<Pose>& path,
 }
 
 /// Returns whether the link meets the last of them on a free path.
-bool drawPosts(Draw& draw, RunSetup& setup) {
+bool drawPosts(BenchRandom& draw, RunSetup& setup) {
   const std::vector<Pose> path = freePath(setup);
   PlantConfig& plant = setup.plant;
   plant.obstacles.clear();
-  plant.robot_stiffness_N_per_m = draw.chance(0.4) ? kNoLimit : draw.logUniform(2e3, 1e5);
+  plant.robot_stiffness_N_per_m =
+      draw.uniform(0.0, 1.0) < 0.4 ? kNoLimit : draw.logUniform(2e3, 1e5);
   ObstacleConfig band, profile;
   band.stiffness_N_per_m = draw.logUniform(5.0, 600.0);
-  if (draw.chance(0.7) && placePost(draw, setup, path, 0.1, band)) plant.obstacles.push_back(band);
+  if (draw.uniform(0.0, 1.0) < 0.7 && placePost(draw, setup, path, 0.1, band))
+    plant.obstacles.push_back(band);
   profile.stiffness_N_per_m = draw.logUniform(1e3, 1e6);
-  if (draw.chance(0.3)) profile.foam = {{draw.logUniform(300.0, 3000.0), draw.uniform(2.0, 16.0)}};
+  if (draw.uniform(0.0, 1.0) < 0.3)
+    profile.foam = {{draw.logUniform(300.0, 3000.0), draw.uniform(2.0, 16.0)}};
   const bool is_met = placePost(draw, setup, path, 0.2, profile);
   plant.obstacles.push_back(profile);
   return is_met;
@@ -150,7 +140,7 @@ class EndWatch {
 }  // namespace
 
 std::vector<RunSetup> drawEnvironments(const RunSetup& base, std::uint64_t seed, int count) {
-  Draw draw(seed);
+  BenchRandom draw(seed);
   std::vector<RunSetup> setups;
   for (int i = 0; i < count; ++i) {
     RunSetup setup = base;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 
@@ -12,6 +13,9 @@ class BenchRandom {
 
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  double logUniform(double low, double high) {
+    return low * std::pow(high / low, uniform(0.0, 1.0));
   }
 
  private:
