@@ -24,10 +24,10 @@ double stiffnessInContact(const ForceGains& gains,
 
 }  // namespace
 
-ApproachLimit::ApproachLimit(const ControllerConfig& config)
+ApproachLimit::ApproachLimit(const ControllerConfig& config, const TactileModuleConfig& module)
     : has_estimator_(config.force_control->has_estimator),
-      smoother_(config.tactile_modules.front(), config.force_control->friction_coefficient),
-      position_(config.drive_lag_s, config.tactile_modules.front().filter_cutoff_hz) {}
+      smoother_(module, config.force_control->friction_coefficient),
+      position_(config.drive_lag_s, module.filter_cutoff_hz) {}
 
 ApproachLimitState ApproachLimit::initialState() const noexcept {
   ApproachLimitState state;
@@ -70,7 +70,8 @@ void ApproachLimit::observe(const ForceGains& gains, const ScaledVector& a, cons
   } else {
     if (has_estimator_) forgetContact(gains, (1.0 - force.nearness) * period_s, estimator);
     state.obstacle.v_m_per_s = state.obstacle.F_before_N = state.obstacle.high_s = 0.0;
-    state.memory_N_per_m -= state.fade.of(period_s, gains.time_constant_s) * state.memory_N_per_m;
+    const double fade = state.fade.of(period_s, gains.time_constant_s) * force.fading;
+    state.memory_N_per_m -= fade * state.memory_N_per_m;
     if (state.memory_N_per_m < kNoMemory_N_per_m) state.memory_N_per_m = 0.0;
   }
   state.way_ahead_m = approach(a, joints, state.position.sensed, state.position.commanded);
@@ -89,11 +90,12 @@ double ApproachLimit::excess(const ForceGains& gains, double F_p_N, double v_res
 }
 
 void ApproachLimit::limitRows(const ForceGains& gains, double F_p_N, double cosine,
-                              const ApproachLimitState& state, SpeedRows& rows) const noexcept {
+                              const ApproachLimitState& state, int first,
+                              SpeedRows& rows) const noexcept {
   const double m = state.memory_N_per_m;
   const double F_ahead_N = std::max(0.0, F_p_N + m * state.way_ahead_m);
   const double Tm = gains.time_constant_s * m;
-  for (int i = 0; i < rows.size; ++i) {
+  for (int i = first; i < rows.size; ++i) {
     rows.row[i].v_max_m_per_s =
         cosine * ((gains.activation_force_N - F_ahead_N) / Tm - state.obstacle.v_m_per_s);
     rows.row[i].damping_N_s_per_m = Tm;

@@ -69,8 +69,7 @@ ContactController::ContactController(const ControllerConfig& config,
       inv_sqrt_weights_(inv_sqrt_weights),
       law_(*config.force_control, config.chain, inv_sqrt_weights) {
   if (config.force_control->variant != Variant::kNullLimit) return;
-  approach_limit_.emplace(config);
-  limit_rows_.emplace(config.limits);
+  approach_limit_.emplace(config, config.tactile_modules.front());
   if (config.force_control->friction_coefficient <= 0.0) return;
   friction_cone_.emplace(config.tactile_modules.front(),
                          config.force_control->friction_coefficient);
@@ -86,8 +85,9 @@ ContactControllerState ContactController::initialState() const {
 
 void ContactController::update(const Gains& gains, const TaskKinematics& kinematics,
                                const ContactPointState& sensor, const CommandedMotion& commanded,
-                               double period_s, ContactControllerState& state,
-                               ContactReport& report, Motion& motion) const noexcept {
+                               const MotionGate& gate, double period_s,
+                               ContactControllerState& state, ContactReport& report,
+                               Motion& motion) const noexcept {
   const ContactPointState& point = follow(gains, sensor, kinematics, commanded, period_s, state);
   const Contact contact = locate(kinematics, point, motion.a);
 
@@ -123,7 +123,8 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
   if (friction_cone_) state.approach.is_limiting = false;
   if (friction_cone_ || (approach_limit_ && (state.cut_m_per_s > 0.0 || state.keeps_joints)))
-    u.u_t += limitRows(gains.force, kinematics, commanded.q, contact.space, F_p_N, state, motion);
+    u.u_t +=
+        limitRows(gains.force, kinematics, commanded.q, contact.space, F_p_N, gate, state, motion);
 
   if (is_multi_space_ && commanded.is_followed && hasReturnSpeed(gains.task)) {
     state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * contact.space.a_task);
@@ -164,8 +165,8 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
 
 double ContactController::limitRows(const ForceGains& gains, const TaskKinematics& kinematics,
                                     const JointVector& q_desired, const ContactSpace& space,
-                                    double F_p_N, ContactControllerState& state,
-                                    Motion& motion) const noexcept {
+                                    double F_p_N, const MotionGate& gate,
+                                    ContactControllerState& state, Motion& motion) const noexcept {
   state.cut_by_rows_m_per_s = 0.0;
   state.keeps_joints = false;
   const double memory = state.approach.memory_N_per_m;
@@ -173,25 +174,24 @@ double ContactController::limitRows(const ForceGains& gains, const TaskKinematic
   SpeedRows rows;
   double cosine = 1.0;
   if (friction_cone_) {
-    friction_cone_->corners(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_,
-                            rows);
+    friction_cone_->add(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_,
+                        rows);
     cosine = friction_cone_->cosine();
   } else {
     rows.row[0].a_scaled = space.a_scaled;
     rows.row[0].a_task = space.a_task;
     rows.size = 1;
   }
-  approach_limit_->limitRows(gains, F_p_N, cosine, state.approach, rows);
+  approach_limit_->limitRows(gains, F_p_N, cosine, state.approach, 0, rows);
   const int corners = rows.size;
   const double in_contact =
       std::max(state.approach.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
-  limit_rows_->add(q_desired, kinematics, inv_sqrt_weights_, std::min(1.0, memory / in_contact),
-                   rows);
   const auto retreat = [&] {
     return dot(space.a_scaled, motion.v_scaled) + dot(space.a_task, motion.y, task_.size);
   };
   const double retreat_before = retreat();
-  const RowVector l = keepSpeedRows(rows, task_.size, motion);
+  const RowVector l =
+      gate.keep(q_desired, kinematics, std::min(1.0, memory / in_contact), rows, motion);
   const double sum = l.head(corners).sum();
   state.keeps_joints = rows.size > corners;
   state.cut_by_rows_m_per_s = state.keeps_joints ? std::max(0.0, retreat_before - retreat()) : 0.0;

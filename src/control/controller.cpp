@@ -48,7 +48,7 @@ Controller::Controller(const ControllerConfig& config)
       inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
       has_rotation_(config.task.hasRotation()),
       limiter_(config.limits),
-      limit_rows_(config.limits) {
+      gate_(config, inv_sqrt_weights_) {
   if (config.has_joint_limit_avoidance)
     joint_limit_avoidance_.emplace(config.limits, inv_sqrt_weights_);
   if (std::ranges::any_of(config.tactile_modules,
@@ -56,9 +56,15 @@ Controller::Controller(const ControllerConfig& config)
     for (const TactileModuleConfig& module : config.tactile_modules)
       covers_.emplace_back(config, module);
   if (!config.force_control) return;
-  if (config.tactile_modules.size() != 1)
-    throw std::invalid_argument("force control needs one tactile module");
-  contact_controller_.emplace(config, inv_sqrt_weights_);
+  const std::size_t modules = config.tactile_modules.size();
+  if (modules == 0 || (modules > 1 && config.force_control->variant != Variant::kNullLimit))
+    throw std::invalid_argument(
+        "force control needs a tactile module, null_limit alone takes more");
+  if (modules > 1) {
+    several_contacts_.emplace(config, inv_sqrt_weights_);
+  } else {
+    contact_controller_.emplace(config, inv_sqrt_weights_);
+  }
 }
 
 ControllerState Controller::initialState(const JointVector& q) const {
@@ -67,6 +73,7 @@ ControllerState Controller::initialState(const JointVector& q) const {
   for (int i = 0; i < modules(); ++i)
     state.modules[i].contact.position_m = 0.5 * config_.tactile_modules[i].length_m;
   if (contact_controller_) state.contact = contact_controller_->initialState();
+  if (several_contacts_) state.several = several_contacts_->initialState();
   return state;
 }
 
@@ -130,11 +137,7 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   state.progress = prepared.progress;
   output.contact = {};
   sense(input, period_s, state, output);
-  if (contact_controller_)
-    contact_controller_->update(
-        gains, kinematics, state.modules.front().contact,
-        {state.q_desired, state.velocity_before, mayMove(state), state.return_share}, period_s,
-        state.contact, output.contact, motion);
+  if (config_.force_control) answerContact(gains, kinematics, period_s, state, output, motion);
 
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
@@ -145,6 +148,20 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
       leaveContact(gains, kinematics, period_s, state, output.velocity);
   }
   limit(motion, period_s, state, output);
+}
+
+void Controller::answerContact(const Gains& gains, const TaskKinematics& kinematics,
+                               double period_s, ControllerState& state, ControllerOutput& output,
+                               Motion& motion) const noexcept {
+  const CommandedMotion commanded{state.q_desired, state.velocity_before, mayMove(state),
+                                  state.return_share};
+  if (several_contacts_) {
+    several_contacts_->update(gains, kinematics, state.modules, commanded, gate_, period_s,
+                              state.several, output.contact, motion);
+  } else {
+    contact_controller_->update(gains, kinematics, state.modules.front().contact, commanded, gate_,
+                                period_s, state.contact, output.contact, motion);
+  }
 }
 
 void Controller::coast(int missed_cycles, double period_s, ControllerState& state) const noexcept {

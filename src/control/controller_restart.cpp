@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "tactus/control/controller.h"
 #include "tactus/control/return_speed.h"
 
@@ -13,6 +15,7 @@ void Controller::restart(const Gains& gains, ControllerState& state) const noexc
   state.return_share = 0.0;
   for (TactileReading& reading : state.modules) reading.cover.has_started = false;
   if (contact_controller_) state.contact = contact_controller_->initialState();
+  if (several_contacts_) state.several = several_contacts_->initialState();
 }
 
 void Controller::place(const JointVector& q, const Gains& gains,
@@ -22,8 +25,12 @@ void Controller::place(const JointVector& q, const Gains& gains,
   state.fault = Fault::kNone;
   state.retreat.velocity_at_fault = state.velocity_before;
   if (!joint_limit_avoidance_) return;
-  state.is_leaning = contact_controller_ &&
-                     state.modules.front().contact.force_N > gains.force.transition.release_force_N;
+  state.is_leaning =
+      config_.force_control &&
+      std::any_of(state.modules.begin(), state.modules.begin() + modules(),
+                  [&](const auto& module) {
+                    return module.contact.force_N > gains.force.transition.release_force_N;
+                  });
   state.way_out_added = -limitCost(gains, state).gradient;
   if (state.is_leaning) state.way_out_added -= state.way_out_before;
 }

@@ -30,11 +30,13 @@ const ContactPointState& lastContact(const TactileReading& reading, double thres
 
 /// A contact may be as much softer than the law takes it for. What is assumed is the stiffest that
 /// may be met; an estimate may be the stiffer, the more the arm swings.
-double Controller::leastStiffness_N_per_m(const Gains& gains,
+double Controller::leastStiffness_N_per_m(const Gains& gains, int module,
                                           const ControllerState& state) const noexcept {
   const ContactControllerState& contact = state.contact;
+  const ApproachLimitState& approach =
+      several_contacts_ ? state.several.modules[module].approach : contact.approach;
   const double estimated =
-      std::max(contact.estimator.stiffness_N_per_m, contact.approach.estimator.stiffness_N_per_m);
+      std::max(contact.estimator.stiffness_N_per_m, approach.estimator.stiffness_N_per_m);
   const double least = gains.force.assumed_stiffness_N_per_m / kAssumptionMargin;
   if (config_.force_control && config_.force_control->has_estimator && estimated > 0.0)
     return std::min(estimated / kEstimateMargin, least);
@@ -79,7 +81,7 @@ void Controller::takePush(const Gains& gains, ControllerState& state) const noex
     retreat.push = contact;
     retreat.has_push = true;
     retreat.untold_s = untold_s(i, state);
-    retreat.stiffness_N_per_m = leastStiffness_N_per_m(gains, state);
+    retreat.stiffness_N_per_m = leastStiffness_N_per_m(gains, i, state);
   }
 }
 
@@ -135,17 +137,17 @@ JointVector Controller::retreatVelocity(const Gains& gains, const TaskKinematics
                                         double speed_m_per_s,
                                         const ControllerState& state) const noexcept {
   SpeedRows rows;
-  rows.size = 1;
-  SpeedRow& contact = rows.row[0];
+  SpeedRow& contact = rows.row[rows.size++];
   contact.a_scaled = inv_sqrt_weights_.cwiseProduct(state.retreat.row);
   contact.a_task = kinematics.pseudoinverse.project(contact.a_scaled);
   contact.v_max_m_per_s = -speed_m_per_s;
   contact.damping_N_s_per_m = gains.force.time_constant_s * state.retreat.stiffness_N_per_m;
-  limit_rows_.add(state.q_desired, kinematics, inv_sqrt_weights_, 1.0, rows);
+  if (several_contacts_)
+    several_contacts_->addRows(gains.force, kinematics, state.retreat.module, state.several, rows);
   Motion motion;
   motion.y.setZero();
   motion.v_scaled.setZero();
-  keepSpeedRows(rows, config_.task.size, motion);
+  gate_.keep(state.q_desired, kinematics, 1.0, rows, motion);
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
   return motion.v_scaled.head(config_.chain.size());

@@ -5,19 +5,18 @@
 namespace tactus {
 namespace {
 
-constexpr double kNullSpaceShare = 30.0;  ///< kappa
-constexpr double kYielding_N_s_m = 1.5;   ///< delta_0
+constexpr double kYielding_N_s_m = 1.5;  ///< delta_0
 constexpr double kProximal = 1e-6;
 constexpr int kRepetitions = 4;
 
-RowMatrix responses(const SpeedRows& rows, int task_size) {
+RowMatrix responses(const SpeedRows& rows, const RowSpace& space, int task_size) {
   RowMatrix K(rows.size, rows.size);
   for (int i = 0; i < rows.size; ++i) {
     const SpeedRow& a = rows.row[i];
     for (int j = 0; j <= i; ++j) {
       const SpeedRow& b = rows.row[j];
-      K(i, j) = K(j, i) = kNullSpaceShare * dot(a.a_scaled, b.a_scaled) +
-                          (1.0 - kNullSpaceShare) * dot(a.a_task, b.a_task, task_size);
+      K(i, j) = K(j, i) = space.null_space * dot(a.a_scaled, b.a_scaled) +
+                          (space.task - space.null_space) * dot(a.a_task, b.a_task, task_size);
     }
     K(i, i) = std::max({K(i, i), 1e-3 * dot(a.a_scaled, a.a_scaled), 1e-4});
   }
@@ -39,31 +38,59 @@ RowVector yielding(const SpeedRows& rows, const RowMatrix& K) {
   return delta;
 }
 
+/// a^T q_dot
+double speedAlong(const SpeedRow& row, int task_size, const Motion& motion) {
+  return dot(row.a_scaled, motion.v_scaled) + dot(row.a_task, motion.y, task_size);
+}
+
+/// The motion as a whole, until it keeps the rows that standing still keeps.
+void slowDown(const SpeedRows& rows, int task_size, Motion& motion) {
+  double share = 1.0;
+  for (int i = 0; i < rows.size; ++i) {
+    const double approach = -speedAlong(rows.row[i], task_size, motion);
+    const double v_max = rows.row[i].v_max_m_per_s;
+    if (v_max >= 0.0 && share * approach > v_max) share = v_max / approach;
+  }
+  motion.v_scaled *= share;
+  motion.y *= share;
+}
+
 }  // namespace
 
-RowVector keepSpeedRows(const SpeedRows& rows, int task_size, Motion& motion) noexcept {
+RowMultipliers findMultipliers(const SpeedRows& rows, const RowSpace& space, int task_size,
+                               const Motion& motion, int steps) noexcept {
   RowVector lacking(rows.size);
   for (int i = 0; i < rows.size; ++i) {
     const SpeedRow& row = rows.row[i];
     lacking[i] = -row.v_max_m_per_s - dot(row.a_scaled, motion.v_scaled) -
                  dot(row.a_task, motion.y, task_size);
   }
-  RowVector l = RowVector::Zero(rows.size);
-  if ((lacking.array() <= 0.0).all()) return l;
-  RowMatrix K = responses(rows, task_size);
+  RowMultipliers found{RowVector::Zero(rows.size)};
+  if ((lacking.array() <= 0.0).all()) return found;
+  RowMatrix K = responses(rows, space, task_size);
   const RowVector delta = yielding(rows, K);
   K.diagonal() += delta;
-  for (int i = 0; i < kRepetitions; ++i) {
+  RowVector& l = found.l;
+  for (int i = 0; i < kRepetitions && found.is_whole; ++i) {
     const RowVector d = lacking + delta.cwiseProduct(l);
-    RowVector next = l;
-    if (!solveComplementarity(K, d, next)) break;
-    l = next;
+    found.is_whole = solveComplementarity(K, d, l, steps);
   }
+  return found;
+}
+
+void addRows(const SpeedRows& rows, const RowVector& l, const RowSpace& space,
+             Motion& motion) noexcept {
   for (int i = 0; i < rows.size; ++i) {
-    motion.v_scaled += kNullSpaceShare * l[i] * rows.row[i].a_scaled;
-    motion.y += (1.0 - kNullSpaceShare) * l[i] * rows.row[i].a_task;
+    motion.v_scaled += space.null_space * l[i] * rows.row[i].a_scaled;
+    motion.y += (space.task - space.null_space) * l[i] * rows.row[i].a_task;
   }
-  return l;
+}
+
+RowVector keepSpeedRows(const SpeedRows& rows, int task_size, Motion& motion, int steps) noexcept {
+  const RowMultipliers found = findMultipliers(rows, kBothSpaces, task_size, motion, steps);
+  addRows(rows, found.l, kBothSpaces, motion);
+  if (!found.is_whole) slowDown(rows, task_size, motion);
+  return found.l;
 }
 
 }  // namespace tactus

@@ -73,11 +73,12 @@ bool goTo(const RowVector& z, ActiveRows& active, RowVector& l) {
 
 }  // namespace
 
-bool solveComplementarity(const RowMatrix& K, const RowVector& d, RowVector& l) noexcept {
+bool solveComplementarity(const RowMatrix& K, const RowVector& d, RowVector& l,
+                          int steps) noexcept {
   const auto rows = static_cast<int>(d.size());
   l.setZero(rows);
   ActiveRows active;
-  int left = 3 * rows;
+  int left = steps * rows;
   for (int row = neediest(K, d, l, active); row >= 0; row = neediest(K, d, l, active)) {
     active.add(row);
     while (true) {

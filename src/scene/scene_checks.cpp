@@ -136,18 +136,18 @@ void checkSensorRange(const Checked& c) {
   }
 }
 
-/// The laws answer one contact; without a law any number of modules is read.
+/// The paper's laws answer one contact.
 void checkModules(const Checked& c) {
   const std::size_t modules = c.robot.config.tactile_modules.size();
   if (modules == 0) {
     c.fail("controller", "the robot has no tactile_modules", "no controller, or such a robot");
   }
   const Variant variant = c.scene.controller->variant;
-  if (modules > 1 && variant != Variant::kNone) {
+  if (modules > 1 && variant != Variant::kNone && variant != Variant::kNullLimit) {
     c.fail("controller.variant",
            fmt::format("{} answers the contact of one tactile module, the robot has {}",
                        wordOf(kVariantWords, variant), modules),
-           "none, or a robot with one");
+           "null_limit, none, or a robot with one");
   }
 }
 

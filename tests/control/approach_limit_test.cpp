@@ -59,7 +59,7 @@ TEST(ApproachLimit, LetsTheForceSettleExponentiallyAtTheActivationForce) {
 TEST(ApproachLimit, KnowsAContactAsLongAsItIsFelt) {
   ControllerConfig config = bareRail(0.1);
   config.force_control->has_estimator = true;
-  const ApproachLimit limit(config);
+  const ApproachLimit limit(config, config.tactile_modules.front());
   ForceGains gains = kGains;
   gains.contact_threshold_N = 1.2;
   const auto stiffnessAfter = [&](double nearness) {
@@ -108,7 +108,8 @@ TEST(ApproachLimit, AnOffsetBelowTheThresholdDoesNotMoveTheArmOnAndOn) {
 }
 
 TEST(ApproachLimit, CutsExactlyTheExcessByHand) {
-  const ApproachLimit limit(bareRail(0.1));
+  const ControllerConfig config = bareRail(0.1);
+  const ApproachLimit limit(config, config.tactile_modules.front());
   ApproachLimitState state = limit.initialState();
   state.memory_N_per_m = 2000.0;  // T m = 200 Ns/m
   EXPECT_EQ(limit.excess(kGains, 1.8, -0.0099, state), 0.0) << "2 N are left: 10 mm/s";
@@ -125,7 +126,8 @@ TEST(ApproachLimit, CutsExactlyTheExcessByHand) {
 }
 
 TEST(ApproachLimit, TakesTheObstaclesSpeedOffTheApproach) {
-  const ApproachLimit limit(bareRail(0.1));
+  const ControllerConfig config = bareRail(0.1);
+  const ApproachLimit limit(config, config.tactile_modules.front());
   ApproachLimitState state = limit.initialState();
   state.memory_N_per_m = 2000.0;
   state.obstacle.v_m_per_s = 0.002;
@@ -133,7 +135,7 @@ TEST(ApproachLimit, TakesTheObstaclesSpeedOffTheApproach) {
   EXPECT_NEAR(limit.excess(kGains, 1.8, -0.0125, state), -0.0045, 1e-15);
   SpeedRows rows;
   rows.size = 1;
-  limit.limitRows(kGains, 1.8, 0.5, state, rows);
+  limit.limitRows(kGains, 1.8, 0.5, state, 0, rows);
   EXPECT_NEAR(rows.row[0].v_max_m_per_s, 0.5 * 0.008, 1e-15);
   const ScaledVector a = -ScaledVector::Unit(0);
   limit.observe(kGains, a, {0.0, 0.0}, JointVector::Zero(2), kPeriod_s, state);
@@ -167,7 +169,8 @@ TEST(ApproachLimit, ASoftObstacleThatComesRestsWithinOneAndAHalfOfTheLimit) {
 }
 
 TEST(ApproachLimit, MemoryFadesAfterContactAndThenLimitsNothing) {
-  const ApproachLimit limit(bareRail(0.1));
+  const ControllerConfig config = bareRail(0.1);
+  const ApproachLimit limit(config, config.tactile_modules.front());
   ApproachLimitState state = limit.initialState();
   const JointVector q = JointVector::Zero(2);
   const ScaledVector a = -ScaledVector::Unit(0);
@@ -184,7 +187,7 @@ TEST(ApproachLimit, MemoryFadesAfterContactAndThenLimitsNothing) {
 TEST(ApproachLimit, SofterContactIsApproachedNoFasterThanTheFloorAllows) {
   ControllerConfig config = bareRail(0.1);
   config.gains.force.assumed_stiffness_N_per_m = 20.0;
-  const ApproachLimit limit(config);
+  const ApproachLimit limit(config, config.tactile_modules.front());
   ApproachLimitState state = limit.initialState();
   limit.observe(config.gains.force, -ScaledVector::Unit(0), {1.0, 1.0}, JointVector::Zero(2),
                 kPeriod_s, state);

@@ -28,8 +28,8 @@ struct ConeCase {
                        scaled(JointVector(JointVector::Ones(n)), ScaledVector::Ones()), J);
     kinematics.pseudoinverse.factorise(J, n, 2);
     FrictionCone(module, mu)
-        .corners(chain, kinematics, contact,
-                 scaled(JointVector(JointVector::Ones(n)), ScaledVector::Ones()), rows);
+        .add(chain, kinematics, contact,
+             scaled(JointVector(JointVector::Ones(n)), ScaledVector::Ones()), rows);
   }
 
   Vector3 pointInBase(const JointVector& at, double position_m) const {
@@ -91,8 +91,8 @@ TEST(FrictionCone, EveryNormalLiesBetweenItsCorners) {
     other.position_m += shift * c.mu * c.module.cover_radius_m;
     SpeedRows rows;
     FrictionCone(c.module, 0.0)
-        .corners(c.chain, c.kinematics, other,
-                 scaled(JointVector(JointVector::Ones(c.n)), ScaledVector::Ones()), rows);
+        .add(c.chain, c.kinematics, other,
+             scaled(JointVector(JointVector::Ones(c.n)), ScaledVector::Ones()), rows);
     const double edge = std::atan(c.mu);
     const double share[] = {std::sin(edge + angle) / std::sin(2.0 * edge),
                             std::sin(edge - angle) / std::sin(2.0 * edge)};

@@ -146,7 +146,7 @@ TEST(TactileModules, ThatDoNotFitAreRefused) {
   test::expectError(errorOf(law),
                     {"", "a law", "scene.yaml:11:12: controller.variant: ",
                      "null_task answers the contact of one tactile module, the robot has 2",
-                     "none, or a robot with one"});
+                     "null_limit, none, or a robot with one"});
 }
 
 TEST(TactileModules, WithOneIdOnABusAreRefused) {

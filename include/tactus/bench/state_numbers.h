@@ -25,8 +25,8 @@ struct StateVisitor {
 
   void all(const ControllerState& state) const {
     const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
-                 way_out_before, way_out_added, is_leaning, modules, contact, zones, retreat] =
-        state;
+                 way_out_before, way_out_added, is_leaning, modules, contact, several, zones,
+                 retreat] = state;
     visit("waited_s", 0, waited_s);
     visit("progress", 0, progress);
     visit("return_share", 0, return_share);
@@ -148,8 +148,9 @@ struct StateVisitor {
 
 /// Calls visit(name, index, value) for every number that a controller remembers from one cycle to
 /// the next; index is that of a joint or an axis, 0 for a single number.
-/// Of the tactile modules the first is visited, which laws act on. Left out are sequences, which
-/// count, what is no number, and what only spares computing it again.
+/// Of the tactile modules the first is visited, and the state of a law for several is not: none of
+/// the extreme cases has several. Left out are sequences, which count, what is no number, and what
+/// only spares computing it again.
 template <typename Visit>
 void visitNumbers(const ControllerState& state, const Visit& visit) {
   StateVisitor<Visit>{visit}.all(state);

@@ -23,6 +23,7 @@ struct FeltForce {
   double F_p_N = 0.0;  ///< >= 0
   /// Of a contact felt below F_th, F_sen > F_rel, to the one that was: 0 to 1.
   double nearness = 0.0;
+  double fading = 1.0;  ///< share of the cycle in which m fades where F_p = 0
 };
 
 // clang-format off: equations
@@ -41,8 +42,8 @@ struct FeltForce {
 // clang-format on
 class ApproachLimit {
  public:
-  /// config.force_control must be there, and one tactile module.
-  explicit ApproachLimit(const ControllerConfig& config);
+  /// config.force_control must be there; module: one of its tactile modules.
+  ApproachLimit(const ControllerConfig& config, const TactileModuleConfig& module);
 
   ApproachLimitState initialState() const noexcept;
 
@@ -59,10 +60,11 @@ class ApproachLimit {
   double excess(const ForceGains& gains, double F_p_N, double v_res_m_per_s,
                 ApproachLimitState& state) const noexcept;
 
-  /// For rows that limit the approach instead: v_max of (1) times the cosine of the angle between a
-  /// row and F^, see docs/approach_speed_limit.md, and T m, of all alike.
+  /// For rows, from the first of them on, that limit the approach instead: v_max of (1) times the
+  /// cosine of the angle between a row and F^, see docs/approach_speed_limit.md, and T m, of all
+  /// alike.
   void limitRows(const ForceGains& gains, double F_p_N, double cosine,
-                 const ApproachLimitState& state, SpeedRows& rows) const noexcept;
+                 const ApproachLimitState& state, int first, SpeedRows& rows) const noexcept;
 
  private:
   /// A new force sample in contact.

@@ -8,9 +8,9 @@
 #include "tactus/control/control_law.h"
 #include "tactus/control/controller_config.h"
 #include "tactus/control/friction_cone.h"
-#include "tactus/control/joint_limit_rows.h"
 #include "tactus/control/joint_space_transition.h"
 #include "tactus/control/motion.h"
+#include "tactus/control/motion_gate.h"
 #include "tactus/control/stiffness_estimator.h"
 
 namespace tactus {
@@ -62,8 +62,8 @@ class ContactController {
 
   /// sensor: the newest contact point.
   void update(const Gains& gains, const TaskKinematics& kinematics, const ContactPointState& sensor,
-              const CommandedMotion& commanded, double period_s, ContactControllerState& state,
-              ContactReport& report, Motion& motion) const noexcept;
+              const CommandedMotion& commanded, const MotionGate& gate, double period_s,
+              ContactControllerState& state, ContactReport& report, Motion& motion) const noexcept;
 
  private:
   struct Contact;
@@ -92,7 +92,8 @@ class ContactController {
   /// Returns what stands for u_t.
   double limitRows(const ForceGains& gains, const TaskKinematics& kinematics,
                    const JointVector& q_desired, const ContactSpace& space, double F_p_N,
-                   ContactControllerState& state, Motion& motion) const noexcept;
+                   const MotionGate& gate, ContactControllerState& state,
+                   Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
   TaskVector pull(const Gains& gains, const PaddedTaskVector& error) const noexcept;
 
@@ -107,7 +108,6 @@ class ContactController {
   ControlLaw law_;
   std::optional<ApproachLimit> approach_limit_;
   std::optional<FrictionCone> friction_cone_;  ///< with the approach limit alone
-  std::optional<JointLimitRows> limit_rows_;   ///< likewise
 };
 
 }  // namespace tactus

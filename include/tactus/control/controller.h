@@ -10,10 +10,11 @@
 #include "tactus/control/controller_config.h"
 #include "tactus/control/fault.h"
 #include "tactus/control/joint_limit_avoidance.h"
-#include "tactus/control/joint_limit_rows.h"
 #include "tactus/control/motion.h"
+#include "tactus/control/motion_gate.h"
 #include "tactus/control/retreat.h"
 #include "tactus/control/robot.h"
+#include "tactus/control/several_contacts.h"
 #include "tactus/control/tactile_reading.h"
 
 namespace tactus {
@@ -47,7 +48,8 @@ struct ControllerState {
   bool is_leaning = false;  ///< on something, where it stands since
   std::array<TactileReading, kMaxTactileModules> modules;
   ContactControllerState contact;
-  JointLimitZones zones;  ///< of the last gains
+  SeveralContactsState several;  ///< instead, with several modules
+  JointLimitZones zones;         ///< of the last gains
   RetreatState retreat;
 };
 
@@ -143,7 +145,11 @@ class Controller {
              TactileReading& reading) const noexcept;
   void sense(const RobotInput& input, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
-  double leastStiffness_N_per_m(const Gains& gains, const ControllerState& state) const noexcept;
+  void answerContact(const Gains& gains, const TaskKinematics& kinematics, double period_s,
+                     ControllerState& state, ControllerOutput& output,
+                     Motion& motion) const noexcept;
+  double leastStiffness_N_per_m(const Gains& gains, int module,
+                                const ControllerState& state) const noexcept;
   double untold_s(int module, const ControllerState& state) const noexcept;
   void takePush(const Gains& gains, ControllerState& state) const noexcept;
   void computeRow(const ChainPose& pose, RetreatState& retreat) const noexcept;
@@ -164,10 +170,11 @@ class Controller {
   ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
   bool has_rotation_;
   CommandLimiter limiter_;
-  JointLimitRows limit_rows_;              ///< of a retreat
+  MotionGate gate_;
   std::vector<CoverCompensation> covers_;  ///< one a module, or none
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
   std::optional<ContactController> contact_controller_;
+  std::optional<SeveralContacts> several_contacts_;  ///< instead, with several modules
 };
 
 }  // namespace tactus

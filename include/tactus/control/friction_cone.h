@@ -21,10 +21,10 @@ class FrictionCone {
 
   double cosine() const noexcept { return cos_; }  ///< of atan mu_max
 
-  /// The rows' a; the rest of each stays as it is.
-  void corners(const SerialChain& chain, const TaskKinematics& kinematics,
-               const ContactPointState& contact, const ScaledVector& inv_sqrt_weights,
-               SpeedRows& rows) const noexcept;
+  /// Adds four rows; speed and damping of each are left to the caller.
+  void add(const SerialChain& chain, const TaskKinematics& kinematics,
+           const ContactPointState& contact, const ScaledVector& inv_sqrt_weights,
+           SpeedRows& rows) const noexcept;
 
  private:
   AttachedFrame link_;

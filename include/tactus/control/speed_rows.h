@@ -11,8 +11,8 @@ namespace tactus {
 struct SpeedRow {
   ScaledVector a_scaled;    ///< W^-1/2 a
   PaddedTaskVector a_task;  ///< Q^T W^-1/2 a
-  double v_max_m_per_s = 0.0;
-  double damping_N_s_per_m = 0.0;  ///< D = dF/dv: force that costs one m/s too much, > 0
+  double v_max_m_per_s;
+  double damping_N_s_per_m;  ///< D = dF/dv: force that costs one m/s too much, > 0
 };
 
 /// So many of them, without memory of more.
@@ -21,19 +21,43 @@ struct SpeedRows {
   int size = 0;
 };
 
+/// What a change of the motion costs: M = (task J#J + null_space N) W^-1.
+struct RowSpace {
+  double task, null_space;
+};
+
+inline constexpr RowSpace kNullSpaceAlone{0.0, 1.0};
+/// The null space, being cheap, does most, and stopping all is within reach.
+inline constexpr RowSpace kBothSpaces{1.0, 30.0};
+
 // clang-format off: equations
 /// The least change of a motion q_1 that keeps all rows:
-///   q_dot = q_1 + M A^T l,    M = (J#J + kappa N) W^-1,    kappa = 30
+///   q_dot = q_1 + M A^T l
 ///   l >= 0,   K l >= -v_max - A q_1,  complementary,       K = A M A^T
-/// So the null space, being cheap, does most of it, and stopping all of it is within reach.
 /// Rows that oppose each other (K_ij < 0) may exclude each other. They yield by slack_i = delta_i
 /// l_i with delta_i in proportion to 1 / D_i, which is an equilibrium of forces; rows without
 /// opponents are exact. From l = 0 four times
 ///   l <- LCP(K + diag(delta), d + delta l),
 ///   delta_i = delta_0 / D_i min(1, sum_j o_ij) + 1e-6 K_ii,   o_ij = min(0, K_ij)^2 / (K_ii K_jj)
-/// with delta_0 = 1.5 N s m and K_ii at least max(1e-3 |W^-1/2 a_i|^2, 1e-4).
-/// Adds M A^T l to the motion and returns l, m/s each m^2.
+/// with delta_0 = 1.5 N s m and K_ii at least max(1e-3 |W^-1/2 a_i|^2, 1e-4). Derived in
+/// docs/gate.md.
 // clang-format on
-RowVector keepSpeedRows(const SpeedRows& rows, int task_size, Motion& motion) noexcept;
+struct RowMultipliers {
+  RowVector l;           ///< m/s each m^2
+  bool is_whole = true;  ///< false: the solver's steps were not enough; l keeps some of the rows
+};
+
+/// steps: of the solver, for each row.
+RowMultipliers findMultipliers(const SpeedRows& rows, const RowSpace& space, int task_size,
+                               const Motion& motion, int steps = kStepsEachRow) noexcept;
+
+/// Adds M A^T l to the motion.
+void addRows(const SpeedRows& rows, const RowVector& l, const RowSpace& space,
+             Motion& motion) noexcept;
+
+/// Both, by kBothSpaces. Where the solver's steps are not enough, the whole motion is slowed down
+/// until it keeps all rows with v_max >= 0. Returns l.
+RowVector keepSpeedRows(const SpeedRows& rows, int task_size, Motion& motion,
+                        int steps = kStepsEachRow) noexcept;
 
 }  // namespace tactus

@@ -4,7 +4,9 @@
 
 namespace tactus {
 
-inline constexpr int kMaxRows = 20;  ///< that one motion has to keep
+inline constexpr int kMaxRows = 48;  ///< that one motion has to keep
+
+inline constexpr int kStepsEachRow = 3;
 
 using RowVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxRows, 1>;
 using RowMatrix =
@@ -15,8 +17,9 @@ using RowMatrix =
 /// for a symmetric positive definite K: its one solution, with relative errors of about 1e-12 times
 /// the condition of K. These are the multipliers of the least squares min 1/2 l^T K l - d^T l,
 /// l >= 0, found as by Lawson and Hanson (Solving Least Squares Problems, 1974, chapter 23): one
-/// factorisation for each row that enters or leaves. False if 3 n of them were not enough; l >= 0
-/// then keeps the rows that it holds.
-bool solveComplementarity(const RowMatrix& K, const RowVector& d, RowVector& l) noexcept;
+/// factorisation for each row that enters or leaves. False if steps * n of them were not enough; l
+/// >= 0 then keeps the rows that it holds.
+bool solveComplementarity(const RowMatrix& K, const RowVector& d, RowVector& l,
+                          int steps = kStepsEachRow) noexcept;
 
 }  // namespace tactus

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "tactus/bench/judged_run.h"
+#include "tactus/bench/random.h"
+#include "tactus/sim/obstacle_shape.h"
+
+/// Posts, vertical and endless, where links come along.
+namespace tactus {
+
+/// A start near the base's, and a straight path. base: one waypoint.
+void drawPath(BenchRandom& draw, RunSetup& setup);
+
+/// Poses of each module's frame without obstacles, every 20 ms.
+using ModulePaths = std::vector<std::vector<Pose>>;
+ModulePaths freePaths(RunSetup setup);
+
+struct PostPlace {
+  double path_share = 0.5;    ///< of the module's path, where it stands
+  double length_share = 0.5;  ///< of the cover
+  double gap_m = 0.0;         ///< between cover and post there
+  bool is_behind = false;     ///< on the side that the cover moves away from
+};
+
+/// Beside the cover at a moment of its path; false where it does not move sidewards.
+bool placePost(const RunSetup& setup, const std::vector<Pose>& path, std::size_t module,
+               const PostPlace& place, ObstacleConfig& post);
+
+/// Whether posts come over the ends of the covers.
+class EndWatch {
+ public:
+  explicit EndWatch(const RunSetup& setup);
+
+  bool isOut(const JointVector& q, bool is_start);
+
+ private:
+  /// A post as a cover meets it, and as a longer one does.
+  struct Post {
+    std::size_t module;
+    ObstacleShape at_cover, at_longer;
+  };
+
+  SerialChain chain_;
+  std::vector<TactileModuleConfig> modules_;
+  std::vector<double> radii_m_;
+  std::vector<Post> posts_;
+  ChainPose pose_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+
+#include "tactus/bench/judged_run.h"
+
+namespace tactus {
+
+/// How a run went with the contacts of several modules. Forces are true ones.
+struct SeveralRun {
+  struct Module {
+    double peak_N = 0.0;
+    /// What no law could avoid, see naturalScale(): the largest of the first touches of all
+    /// obstacles on this module.
+    double scale_N = 0.0;
+    double restlessness_N = 0.0;  ///< standard deviation over the last JudgedRun::kRest_s
+    double mean_at_rest_N = 0.0;  ///< over them
+    double peak_at_rest_N = 0.0;
+    bool was_touched = false;
+  };
+
+  std::array<Module, kMaxTactileModules> modules;
+  double largest_peak_to_scale = 0.0;
+  double restlessness_N = 0.0;  ///< largest
+  double peak_at_rest_N = 0.0;  ///< largest
+  int touched_modules = 0;
+  double tcp_error_final_m = 0.0;
+  /// Largest change of a joint's speed within a cycle in which no module had a new sample.
+  double step_between_samples = 0.0;
+  bool is_out = false;  ///< see EndWatch
+  Fault fault = Fault::kNone;
+};
+
+SeveralRun runSeveral(const RunSetup& setup);
+
+}  // namespace tactus

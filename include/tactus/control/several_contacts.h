@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "tactus/control/approach_limit.h"
+#include "tactus/control/contact_controller.h"
+#include "tactus/control/contact_transition.h"
+#include "tactus/control/control_law.h"
+#include "tactus/control/friction_cone.h"
+#include "tactus/control/motion_gate.h"
+#include "tactus/control/tactile_reading.h"
+
+namespace tactus {
+
+/// What is known of the contact of one module.
+struct ModuleContactState {
+  ApproachLimitState approach;
+  ContactTransitionState transition;  ///< gamma alone: is it still the contact that it was?
+};
+
+struct SeveralContactsState {
+  std::array<ModuleContactState, kMaxTactileModules> modules;
+  NullSpeedLimits null_speed;
+};
+
+// clang-format off: equations
+/// null_limit for robots with several tactile modules, each with a contact of its own: rows of two
+/// levels, with the force F_i, stiffness m_i and way ahead e_i of each as in approach_limit.h.
+///   level 1, null space alone:  a_i^T q_dot >= (F_i - F_th + m_i e_i) / (T m_i)
+///            holds contacts at F_th, from above and below; limited to the null-space speed
+///   level 2, task, too:         a_ij^T q_dot >= -v_max,i,   the approach limit of each
+///            a_ij: a_i, or the corners of the friction cone
+/// A contact is there while m_i > 0. Nothing else is remembered: no integral, no feedforward.
+/// Derived in docs/gate.md.
+// clang-format on
+class SeveralContacts {
+ public:
+  /// config.force_control must be there, with null_limit.
+  SeveralContacts(const ControllerConfig& config, const ScaledVector& inv_sqrt_weights);
+
+  SeveralContactsState initialState() const noexcept;
+
+  /// readings: of each module. The report is of the contact that presses most.
+  void update(const Gains& gains, const TaskKinematics& kinematics,
+              const std::array<TactileReading, kMaxTactileModules>& readings,
+              const CommandedMotion& commanded, const MotionGate& gate, double period_s,
+              SeveralContactsState& state, ContactReport& report, Motion& motion) const noexcept;
+
+  /// The second level's rows of all contacts but that of one module; -1: of all.
+  void addRows(const ForceGains& gains, const TaskKinematics& kinematics, int without_module,
+               const SeveralContactsState& state, SpeedRows& rows) const noexcept;
+
+ private:
+  struct Module {
+    AttachedFrame link;
+    ApproachLimit limit;
+    std::optional<FrictionCone> cone;
+  };
+  struct Place;
+
+  void locate(const TaskKinematics& kinematics, const Module& module,
+              const ContactPointState& point, Place& place) const noexcept;
+  void project(const TaskKinematics& kinematics, Place& place) const noexcept;
+  void sense(const Gains& gains, const TaskKinematics& kinematics, const ContactPointState& sensor,
+             const CommandedMotion& commanded, double period_s, const Module& module,
+             ModuleContactState& state, Place& place) const noexcept;
+  void addRow(const ForceGains& gains, const TaskKinematics& kinematics, const Module& module,
+              const ModuleContactState& state, const Place& place, SpeedRows& rows) const noexcept;
+  double holdInNullSpace(const ForceGains& gains, const SpeedRows& rows, NullSpeedLimits& limits,
+                         Motion& motion) const noexcept;
+
+  SerialChain chain_;
+  int task_size_;
+  ScaledVector inv_sqrt_weights_;
+  ControlLaw law_;
+  std::vector<Module> modules_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,137 @@
+#include "tactus/bench/several_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tactus/bench/post_placing.h"
+#include "tactus/bench/spread.h"
+#include "tactus/control/controller.h"
+#include "tactus/sim/obstacle.h"
+#include "tactus/sim/simulated_robot.h"
+
+namespace tactus {
+namespace {
+
+/// One obstacle on one module, to see when they meet first and how fast.
+struct FirstTouch {
+  FirstTouch(const RunSetup& setup, std::size_t on_module, ObstacleConfig config)
+      : module(on_module),
+        stiffness_N_per_m(inSeries(config.stiffness_N_per_m, setup.plant.robot_stiffness_N_per_m)),
+        obstacle(withUnitSpring(std::move(config)), kNoLimit) {}
+
+  static ObstacleConfig withUnitSpring(ObstacleConfig config) {
+    config.stiffness_N_per_m = 1.0;  // force is depth
+    config.foam.clear();
+    config.friction_coefficient = 0.0;
+    return config;
+  }
+
+  std::size_t module;
+  double stiffness_N_per_m;
+  Obstacle obstacle;
+  double depth_m = 0.0;  ///< a cycle before
+  bool is_over = false;
+};
+
+class TouchWatch {
+ public:
+  explicit TouchWatch(const RunSetup& setup) : setup_(setup) {
+    for (std::size_t i = 0; i < setup.controller.tactile_modules.size(); ++i)
+      for (const ObstacleConfig& obstacle : setup.plant.obstacles)
+        touches_.emplace_back(setup, i, obstacle);
+  }
+
+  void update(const JointVector& q, double t_s, SeveralRun& run, const ControllerOutput& output) {
+    setup_.controller.chain.computePose(q, pose_);
+    for (FirstTouch& touch : touches_) {
+      const TactileModuleConfig& module = setup_.controller.tactile_modules[touch.module];
+      const Pose X = framePose(pose_, module.link);
+      const double depth_m = touch.obstacle
+                                 .touch({X.p_AB, X.R_AB.col(0), module.length_m,
+                                         setup_.plant.modules[touch.module].cover_radius_m},
+                                        t_s)
+                                 .force_N;
+      if (!touch.is_over && touch.depth_m > 0.0 && depth_m > touch.depth_m)
+        note(touch, (depth_m - touch.depth_m) / setup_.period_s,
+             output.sensed[touch.module].force_N, run.modules[touch.module]);
+      touch.depth_m = depth_m;
+    }
+  }
+
+ private:
+  void note(FirstTouch& touch, double speed_m_per_s, double before_N, SeveralRun::Module& module) {
+    const ForceGains& force = setup_.controller.gains.force;
+    const double unseen_N = touch.stiffness_N_per_m * speed_m_per_s * feedbackDelay_s(setup_.plant);
+    const double limit_N = force.activation_force_N + force.contact_threshold_N;
+    module.scale_N = std::max(
+        {module.scale_N, limit_N, std::max(before_N, force.contact_threshold_N) + unseen_N});
+    module.was_touched = touch.is_over = true;
+  }
+
+  RunSetup setup_;
+  std::vector<FirstTouch> touches_;
+  ChainPose pose_;
+};
+
+double largestStep(const JointVector& a, const JointVector& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+void sumUp(const std::vector<Spread>& rest, SeveralRun& run) {
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    SeveralRun::Module& module = run.modules[i];
+    module.restlessness_N = rest[i].deviation();
+    module.mean_at_rest_N = rest[i].mean;
+    run.restlessness_N = std::max(run.restlessness_N, module.restlessness_N);
+    run.peak_at_rest_N = std::max(run.peak_at_rest_N, module.peak_at_rest_N);
+    if (!module.was_touched) continue;
+    ++run.touched_modules;
+    run.largest_peak_to_scale = std::max(run.largest_peak_to_scale, module.peak_N / module.scale_N);
+  }
+}
+
+}  // namespace
+
+SeveralRun runSeveral(const RunSetup& setup) {
+  const Controller controller(setup.controller);
+  SimulatedRobot robot(setup.controller, setup.plant, setup.period_s);
+  TouchWatch touches(setup);
+  EndWatch ends(setup);
+  ControllerState state = controller.initialState();
+  RobotInput input;
+  ControllerOutput output;
+  SeveralRun run;
+  std::vector<Spread> rest(setup.controller.tactile_modules.size());
+  JointVector before = JointVector::Zero(setup.controller.chain.size());
+  const long cycles = std::lround(setup.duration_s / setup.period_s);
+  const long rest_from = cycles - std::lround(JudgedRun::kRest_s / setup.period_s);
+  for (long cycle = 0; cycle < cycles; ++cycle) {
+    const double t_s = static_cast<double>(cycle) * setup.period_s;
+    robot.read(input);
+    controller.update(input, setup.controller.gains, t_s, setup.period_s, state, output);
+    const Vector3 goal = output.w_d.size() >= 3 ? Vector3(output.w_d.head<3>()) : Vector3::Zero();
+    run.tcp_error_final_m = (goal - robot.toolPosition()).norm();
+    robot.write(output.velocity);
+    bool is_new = false;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      is_new = is_new || output.sensed[i].isNew();
+      const double force_N = robot.trueForce_N(static_cast<int>(i));
+      run.modules[i].peak_N = std::max(run.modules[i].peak_N, force_N);
+      if (cycle < rest_from) continue;
+      rest[i].add(force_N);
+      run.modules[i].peak_at_rest_N = std::max(run.modules[i].peak_at_rest_N, force_N);
+    }
+    if (!is_new && cycle > 0)
+      run.step_between_samples =
+          std::max(run.step_between_samples, largestStep(output.velocity, before));
+    before = output.velocity;
+    touches.update(input.q_measured, t_s, run, output);
+    run.is_out = run.is_out || ends.isOut(input.q_measured, cycle == 0);
+  }
+  sumUp(rest, run);
+  run.fault = output.fault;
+  return run;
+}
+
+}  // namespace tactus

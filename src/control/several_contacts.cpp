@@ -1,0 +1,173 @@
+#include "tactus/control/several_contacts.h"
+
+#include <algorithm>
+
+namespace tactus {
+namespace {
+
+/// As gamma would be without an end: where the contact was, and still is felt.
+double nearness(const ForceGains& gains, const ModuleContactState& state) noexcept {
+  const double force_N = state.approach.smoother.contact.force_N;
+  return force_N > gains.transition.release_force_N ? state.transition.gamma : 0.0;
+}
+
+double contactForce_N(const ForceGains& gains, const ModuleContactState& state) noexcept {
+  return std::max(0.0, state.approach.smoother.contact.force_N - gains.contact_threshold_N);
+}
+
+/// Of the first level.
+void holdRow(const ForceGains& gains, const ApproachLimitState& state, SpeedRow& row) noexcept {
+  const double m = state.memory_N_per_m;
+  const double Tm = gains.time_constant_s * m;
+  row.v_max_m_per_s =
+      (gains.contact_threshold_N - state.smoother.contact.force_N - m * state.way_ahead_m) / Tm;
+  row.damping_N_s_per_m = Tm;
+}
+
+void tell(const ForceGains& gains, const ModuleContactState& state,
+          ContactReport& report) noexcept {
+  report.force_contact_N = contactForce_N(gains, state);
+  report.stiffness_N_per_m = state.approach.estimator.stiffness_N_per_m;
+  report.stiffness_raw_N_per_m = state.approach.estimator.stiffness_raw_N_per_m;
+  report.gamma = state.transition.gamma;
+}
+
+}  // namespace
+
+/// A contact as the joints see it.
+struct SeveralContacts::Place {
+  Vector3 p_Base;
+  ScaledVector a;  ///< J_p^T F^
+  SpeedRow row;    ///< without speed and damping; set where there is a contact
+};
+
+SeveralContacts::SeveralContacts(const ControllerConfig& config,
+                                 const ScaledVector& inv_sqrt_weights)
+    : chain_(config.chain),
+      task_size_(config.task.size),
+      inv_sqrt_weights_(inv_sqrt_weights),
+      law_(*config.force_control, config.chain, inv_sqrt_weights) {
+  const double mu = config.force_control->friction_coefficient;
+  for (const TactileModuleConfig& module : config.tactile_modules) {
+    modules_.push_back({module.link, ApproachLimit(config, module), std::nullopt});
+    if (mu > 0.0) modules_.back().cone.emplace(module, mu);
+  }
+}
+
+SeveralContactsState SeveralContacts::initialState() const noexcept {
+  SeveralContactsState state;
+  for (std::size_t i = 0; i < modules_.size(); ++i)
+    state.modules[i].approach = modules_[i].limit.initialState();
+  return state;
+}
+
+void SeveralContacts::locate(const TaskKinematics& kinematics, const Module& module,
+                             const ContactPointState& point, Place& place) const noexcept {
+  const Pose& X_JointModule = module.link.X_JointFrame;
+  const Vector3 p_JointContact = X_JointModule.p_AB + point.position_m * X_JointModule.R_AB.col(0);
+  const Vector3 F_Joint = X_JointModule.R_AB.lazyProduct(point.direction);
+  place.p_Base = pointInBase(kinematics.pose, module.link.joint, p_JointContact);
+  const Vector3 F_Base = vectorInBase(kinematics.pose, module.link.joint, F_Joint);
+  applyPointJacobianTranspose(chain_, kinematics.pose, module.link.joint, place.p_Base, F_Base,
+                              place.a);
+}
+
+void SeveralContacts::project(const TaskKinematics& kinematics, Place& place) const noexcept {
+  place.row.a_scaled = inv_sqrt_weights_.cwiseProduct(place.a);
+  place.row.a_task = kinematics.pseudoinverse.project(place.row.a_scaled);
+}
+
+void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics,
+                            const ContactPointState& sensor, const CommandedMotion& commanded,
+                            double period_s, const Module& module, ModuleContactState& state,
+                            Place& place) const noexcept {
+  ContactPointState& contact = state.approach.smoother.contact;
+  contact.interval_s = 0.0;
+  if (sensor.isNew())
+    module.limit.follow(gains.force, sensor, framePose(kinematics.pose, module.link),
+                        state.approach);
+  locate(kinematics, module, contact, place);
+  const double F_p_N = contactForce_N(gains.force, state);
+  const double near = nearness(gains.force, state);
+  module.limit.observe(gains.force, place.a, {F_p_N, near, 1.0 - near}, commanded.q, period_s,
+                       state.approach);
+  passTransition(gains.force.transition, F_p_N, place.p_Base, period_s, state.transition);
+  if (!commanded.is_followed) state.approach.obstacle.high_s = 0.0;
+  if (state.approach.memory_N_per_m > 0.0) project(kinematics, place);
+}
+
+/// The second level's.
+void SeveralContacts::addRow(const ForceGains& gains, const TaskKinematics& kinematics,
+                             const Module& module, const ModuleContactState& state,
+                             const Place& place, SpeedRows& rows) const noexcept {
+  const int first = rows.size;
+  double cosine = 1.0;
+  if (module.cone) {
+    module.cone->add(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_, rows);
+    cosine = module.cone->cosine();
+  } else {
+    rows.row[rows.size++] = place.row;
+  }
+  module.limit.limitRows(gains, contactForce_N(gains, state), cosine, state.approach, first, rows);
+}
+
+void SeveralContacts::addRows(const ForceGains& gains, const TaskKinematics& kinematics,
+                              int without_module, const SeveralContactsState& state,
+                              SpeedRows& rows) const noexcept {
+  for (int i = 0; i < static_cast<int>(modules_.size()); ++i) {
+    const ApproachLimitState& approach = state.modules[i].approach;
+    if (i == without_module || approach.memory_N_per_m == 0.0) continue;
+    Place place;
+    locate(kinematics, modules_[i], approach.smoother.contact, place);
+    project(kinematics, place);
+    addRow(gains, kinematics, modules_[i], state.modules[i], place, rows);
+  }
+}
+
+/// The first level.
+double SeveralContacts::holdInNullSpace(const ForceGains& gains, const SpeedRows& rows,
+                                        NullSpeedLimits& limits, Motion& motion) const noexcept {
+  RowVector l = findMultipliers(rows, kNullSpaceAlone, task_size_, motion).l;
+  ScaledVector v_scaled = ScaledVector::Zero();
+  for (int i = 0; i < rows.size; ++i) v_scaled += l[i] * rows.row[i].a_scaled;
+  l *= law_.speedShare(gains, v_scaled, limits);
+  tactus::addRows(rows, l, kNullSpaceAlone, motion);
+  return l.sum();
+}
+
+void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematics,
+                             const std::array<TactileReading, kMaxTactileModules>& readings,
+                             const CommandedMotion& commanded, const MotionGate& gate,
+                             double period_s, SeveralContactsState& state, ContactReport& report,
+                             Motion& motion) const noexcept {
+  SpeedRows null_rows, rows;
+  std::array<int, kMaxTactileModules + 1> first{};
+  int leading = 0;
+  double most_N = -1.0;
+  for (int i = 0; i < static_cast<int>(modules_.size()); ++i) {
+    Place place;
+    ModuleContactState& contact = state.modules[i];
+    const ApproachLimitState& approach = contact.approach;
+    sense(gains, kinematics, readings[i].contact, commanded, period_s, modules_[i], contact, place);
+    if (approach.memory_N_per_m > 0.0) {
+      null_rows.row[null_rows.size] = place.row;
+      holdRow(gains.force, approach, null_rows.row[null_rows.size++]);
+      addRow(gains.force, kinematics, modules_[i], contact, place, rows);
+    }
+    first[i + 1] = rows.size;
+    if (approach.smoother.contact.force_N <= most_N) continue;
+    most_N = approach.smoother.contact.force_N;
+    leading = i;
+    motion.a = place.a;
+  }
+  report.u_n = -holdInNullSpace(gains.force, null_rows, state.null_speed, motion);
+  const RowVector l = gate.keep(commanded.q, kinematics, 1.0, rows, motion);
+  for (int i = 0; i < static_cast<int>(modules_.size()); ++i) {
+    const double sum = l.segment(first[i], first[i + 1] - first[i]).sum();
+    state.modules[i].approach.is_limiting = sum > 0.0;
+    report.u_t -= sum;
+  }
+  tell(gains.force, state.modules[leading], report);
+}
+
+}  // namespace tactus
