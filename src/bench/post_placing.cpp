@@ -11,7 +11,6 @@ namespace tactus {
 namespace {
 
 constexpr double kPathSample_s = 0.02;
-constexpr double kMinSpeedShare = 0.2;    ///< of the tool's, of the cover against the post
 constexpr double kMaxInclination = 0.85;  ///< of the axis' z: no post meets a link that stands
 constexpr double kEnd_m = 0.1;            ///< how far beyond an end a post may come over it
 
@@ -73,7 +72,7 @@ bool placePost(const RunSetup& setup, const std::vector<Pose>& path, std::size_t
   const Vector3 way = path[k + 1].p_AB + x_m * path[k + 1].R_AB.col(0) - p_Base;
   const double speed = side.dot(way) / kPathSample_s;
   const Waypoint& line = setup.controller.task.trajectory.waypoints.front();
-  if (std::abs(speed) < kMinSpeedShare * line.speed_m_per_s) return false;
+  if (std::abs(speed) < place.min_speed_share * line.speed_m_per_s) return false;
   const Vector3 p_BasePost =
       p_Base + std::copysign(setup.plant.modules[module].cover_radius_m + place.gap_m,
                              place.is_behind ? -speed : speed) *
@@ -85,27 +84,30 @@ bool placePost(const RunSetup& setup, const std::vector<Pose>& path, std::size_t
 
 EndWatch::EndWatch(const RunSetup& setup)
     : chain_(setup.controller.chain), modules_(setup.controller.tactile_modules) {
-  for (std::size_t i = 0; i < modules_.size(); ++i) {
+  for (std::size_t i = 0; i < modules_.size(); ++i)
     radii_m_.push_back(setup.plant.modules[i].cover_radius_m);
-    for (const ObstacleConfig& obstacle : setup.plant.obstacles)
-      posts_.push_back({i, ObstacleShape(obstacle), ObstacleShape(obstacle)});
+  for (const ObstacleConfig& obstacle : setup.plant.obstacles) {
+    const std::vector<ObstacleShape> shapes(modules_.size(), ObstacleShape(obstacle));
+    posts_.push_back({shapes, shapes});
   }
 }
 
 bool EndWatch::isOut(const JointVector& q, bool is_start) {
   chain_.computePose(q, pose_);
-  bool is_out = false;
-  for (auto& [module, at_cover, at_longer] : posts_) {
-    const Pose X = framePose(pose_, modules_[module].link);
-    const Vector3 u = X.R_AB.col(0);
-    const double length_m = modules_[module].length_m, radius_m = radii_m_[module];
-    const CoverAxis cover{X.p_AB, u, length_m, radius_m};
-    const CoverAxis longer{X.p_AB - kEnd_m * u, u, length_m + 2.0 * kEnd_m, radius_m};
-    const bool touches = at_cover.meet(cover, Vector3::Zero()).depth_m > 0.0;
-    const bool touches_longer = at_longer.meet(longer, Vector3::Zero()).depth_m > 0.0;
-    is_out = is_out || (is_start ? touches_longer : touches_longer && !touches);
+  for (Post& post : posts_) {
+    bool touches = false, touches_longer = false;
+    for (std::size_t i = 0; i < modules_.size(); ++i) {
+      const Pose X = framePose(pose_, modules_[i].link);
+      const Vector3 u = X.R_AB.col(0);
+      const double length_m = modules_[i].length_m;
+      const CoverAxis cover{X.p_AB, u, length_m, radii_m_[i]};
+      const CoverAxis longer{X.p_AB - kEnd_m * u, u, length_m + 2.0 * kEnd_m, radii_m_[i]};
+      touches |= post.at_cover[i].meet(cover, Vector3::Zero()).depth_m > 0.0;
+      touches_longer |= post.at_longer[i].meet(longer, Vector3::Zero()).depth_m > 0.0;
+    }
+    if (touches_longer && (is_start || !touches)) return true;
   }
-  return is_out;
+  return false;
 }
 
 }  // namespace tactus

@@ -126,13 +126,15 @@ void SeveralContacts::addRows(const ForceGains& gains, const TaskKinematics& kin
 
 /// The first level.
 double SeveralContacts::holdInNullSpace(const ForceGains& gains, const SpeedRows& rows,
-                                        NullSpeedLimits& limits, Motion& motion) const noexcept {
+                                        int contacts, NullSpeedLimits& limits,
+                                        Motion& motion) const noexcept {
+  if (contacts == 0) return 0.0;
   RowVector l = findMultipliers(rows, kNullSpaceAlone, task_size_, motion).l;
   ScaledVector v_scaled = ScaledVector::Zero();
   for (int i = 0; i < rows.size; ++i) v_scaled += l[i] * rows.row[i].a_scaled;
   l *= law_.speedShare(gains, v_scaled, limits);
   tactus::addRows(rows, l, kNullSpaceAlone, motion);
-  return l.sum();
+  return l.head(contacts).sum();
 }
 
 void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematics,
@@ -160,8 +162,11 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
     leading = i;
     motion.a = place.a;
   }
-  report.u_n = -holdInNullSpace(gains.force, null_rows, state.null_speed, motion);
-  const RowVector l = gate.keep(commanded.q, kinematics, 1.0, rows, motion);
+  const int contacts = null_rows.size;
+  gate.add(commanded.q, kinematics, 1.0, null_rows);
+  for (int i = contacts; i < null_rows.size; ++i) rows.row[rows.size++] = null_rows.row[i];
+  report.u_n = -holdInNullSpace(gains.force, null_rows, contacts, state.null_speed, motion);
+  const RowVector l = keepSpeedRows(rows, task_size_, motion);
   for (int i = 0; i < static_cast<int>(modules_.size()); ++i) {
     const double sum = l.segment(first[i], first[i + 1] - first[i]).sum();
     state.modules[i].approach.is_limiting = sum > 0.0;

@@ -17,17 +17,18 @@ using ModulePaths = std::vector<std::vector<Pose>>;
 ModulePaths freePaths(RunSetup setup);
 
 struct PostPlace {
-  double path_share = 0.5;    ///< of the module's path, where it stands
-  double length_share = 0.5;  ///< of the cover
-  double gap_m = 0.0;         ///< between cover and post there
-  bool is_behind = false;     ///< on the side that the cover moves away from
+  double path_share = 0.5;       ///< of the module's path, where it stands
+  double length_share = 0.5;     ///< of the cover
+  double gap_m = 0.0;            ///< between cover and post there
+  bool is_behind = false;        ///< on the side that the cover moves away from
+  double min_speed_share = 0.2;  ///< of the tool's, of the cover against the post
 };
 
 /// Beside the cover at a moment of its path; false where it does not move sidewards.
 bool placePost(const RunSetup& setup, const std::vector<Pose>& path, std::size_t module,
                const PostPlace& place, ObstacleConfig& post);
 
-/// Whether posts come over the ends of the covers.
+/// Whether a post comes over an end of a cover, and on no other.
 class EndWatch {
  public:
   explicit EndWatch(const RunSetup& setup);
@@ -35,10 +36,9 @@ class EndWatch {
   bool isOut(const JointVector& q, bool is_start);
 
  private:
-  /// A post as a cover meets it, and as a longer one does.
+  /// A post as each cover meets it, and as longer ones do.
   struct Post {
-    std::size_t module;
-    ObstacleShape at_cover, at_longer;
+    std::vector<ObstacleShape> at_cover, at_longer;
   };
 
   SerialChain chain_;

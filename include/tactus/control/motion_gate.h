@@ -15,11 +15,17 @@ class MotionGate {
         inv_sqrt_weights_(inv_sqrt_weights),
         joint_limits_(config.limits) {}
 
-  /// Adds the other rows to those of contacts and keeps all. q: at the start of the cycle;
-  /// joint_share: see JointLimitRows. Returns l, that of the contacts first.
+  /// Adds what is known without a sensor. q: at the start of the cycle; joint_share: see
+  /// JointLimitRows.
+  void add(const JointVector& q, const TaskKinematics& kinematics, double joint_share,
+           SpeedRows& rows) const noexcept {
+    joint_limits_.add(q, kinematics, inv_sqrt_weights_, joint_share, rows);
+  }
+
+  /// Keeps these rows and those of add(). Returns l, in that order.
   RowVector keep(const JointVector& q, const TaskKinematics& kinematics, double joint_share,
                  SpeedRows& rows, Motion& motion) const noexcept {
-    joint_limits_.add(q, kinematics, inv_sqrt_weights_, joint_share, rows);
+    add(q, kinematics, joint_share, rows);
     return keepSpeedRows(rows, task_size_, motion);
   }
 

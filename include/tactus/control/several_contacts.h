@@ -68,8 +68,8 @@ class SeveralContacts {
              ModuleContactState& state, Place& place) const noexcept;
   void addRow(const ForceGains& gains, const TaskKinematics& kinematics, const Module& module,
               const ModuleContactState& state, const Place& place, SpeedRows& rows) const noexcept;
-  double holdInNullSpace(const ForceGains& gains, const SpeedRows& rows, NullSpeedLimits& limits,
-                         Motion& motion) const noexcept;
+  double holdInNullSpace(const ForceGains& gains, const SpeedRows& rows, int contacts,
+                         NullSpeedLimits& limits, Motion& motion) const noexcept;
 
   SerialChain chain_;
   int task_size_;

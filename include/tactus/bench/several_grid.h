@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tactus/bench/several_run.h"
+#include "tactus/bench/table.h"
+
+namespace tactus {
+
+/// How the posts of a case stand to each other.
+enum class SeveralKind {
+  kAtOnce,     ///< before two links at the same moment of their paths
+  kSequence,   ///< one later than the other
+  kOpposite,   ///< the second behind its link, where the arm gives way to
+  kSqueezed,   ///< both sides of one link, or of two, with little room
+  kVanishing,  ///< the first is gone a while after the second has come
+  kMoving,     ///< the second comes and goes slowly
+};
+inline constexpr int kSeveralKinds = 6;
+const char* severalKindName(SeveralKind kind);
+
+struct SeveralCase {
+  SeveralKind kind;
+  int modules = 0;  ///< that have a post of their own
+  RunSetup setup;
+};
+
+/// Environments for a robot with several modules: starts and paths as drawEnvironments(), two or
+/// three posts of 100 to 1e6 N/m before their links. Draws whose links do not come to their posts
+/// are left out. mu: of all posts; bearable_mu: what the controller is told.
+std::vector<SeveralCase> drawSeveral(const RunSetup& base, std::uint64_t seed, int count);
+
+/// A row of the table for each kind, over the runs that say something, and one of all.
+Table emptySeveralTable(const std::string& name);
+void addSeveralRows(const std::string& trial, const std::vector<SeveralCase>& cases,
+                    const std::vector<SeveralRun>& runs, Table& table);
+
+}  // namespace tactus
