@@ -49,6 +49,7 @@ Controller::Controller(const ControllerConfig& config)
       has_rotation_(config.task.hasRotation()),
       limiter_(config.limits),
       limit_rows_(config.limits) {
+  if (config.clearance) clearance_.emplace(config);
   if (config.has_joint_limit_avoidance)
     joint_limit_avoidance_.emplace(config.limits, inv_sqrt_weights_);
   if (std::ranges::any_of(config.tactile_modules,
@@ -114,6 +115,7 @@ void Controller::computeMotion(const Gains& gains, double path_time_s, Controlle
   } else {
     motion.v_scaled.setZero();
   }
+  if (clearance_) lookAround(state, prepared);
 }
 
 void Controller::respond(const RobotInput& input, const Gains& gains, double period_s,
@@ -135,16 +137,18 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
         gains, kinematics, state.modules.front().contact,
         {state.q_desired, state.velocity_before, mayMove(state), state.return_share}, period_s,
         state.contact, output.contact, motion);
+  const double cut_m_per_s =
+      clearance_ && mayMove(state) ? keepClear(period_s, state, prepared) : 0.0;
 
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
   output.velocity = motion.v_scaled.head(config_.chain.size());
   if (!mayMove(state)) {
     output.velocity.setZero();
-    if (state.retreat.is_under_way)
-      leaveContact(gains, kinematics, period_s, state, output.velocity);
+    if (state.retreat.is_under_way) leaveContact(gains, prepared, period_s, state, output.velocity);
   }
-  limit(motion, period_s, state, output);
+  limit(prepared, period_s, state, output);
+  state.contact.cut_m_per_s += cut_m_per_s;
 }
 
 void Controller::coast(int missed_cycles, double period_s, ControllerState& state) const noexcept {
@@ -155,24 +159,34 @@ void Controller::coast(int missed_cycles, double period_s, ControllerState& stat
   }
 }
 
-void Controller::limit(const Motion& motion, double period_s, ControllerState& state,
+void Controller::limit(const PreparedCycle& prepared, double period_s, ControllerState& state,
                        ControllerOutput& output) const noexcept {
   state.contact.cut_m_per_s = 0.0;
-  if (!limiter_.admits(state.q_desired, state.velocity_before, period_s, output.velocity))
-    cut(motion, period_s, state, output);
+  if (!admits(prepared, period_s, state, output.velocity)) cut(prepared, period_s, state, output);
   output.fault = state.fault;
   assign(state.q_desired, output.q_desired);
   assign(output.velocity, state.velocity_before);
   passTime(period_s, state);
 }
 
+bool Controller::admits(const PreparedCycle& prepared, double period_s,
+                        const ControllerState& state, const JointVector& velocity) const noexcept {
+  return limiter_.admits(state.q_desired, state.velocity_before, period_s, velocity) &&
+         (!clearance_ ||
+          clearance_->canStopAfter(prepared.near, state.q_desired, velocity, period_s));
+}
+
 /// What the limits cut from the contact point's motion is told to the law, which must not ask for
 /// more and more of it.
-void Controller::cut(const Motion& motion, double period_s, ControllerState& state,
+void Controller::cut(const PreparedCycle& prepared, double period_s, ControllerState& state,
                      ControllerOutput& output) const noexcept {
+  const Motion& motion = prepared.motion;
   const JointVector wanted = output.velocity;
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
+  if (clearance_)
+    clearance_->holdBack(prepared.near, state.q_desired, state.velocity_before, period_s,
+                         output.velocity);
   if (contact_controller_ && mayMove(state) && !isEqual(wanted, output.velocity))
     state.contact.cut_m_per_s =
         std::max(0.0, retreat(motion.a, wanted) - retreat(motion.a, output.velocity));

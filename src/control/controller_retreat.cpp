@@ -113,17 +113,17 @@ RetreatReading Controller::readForRetreat(const ControllerState& state) const no
           isExcess(reading) ? reading.excess.force_N : reading.contact.force_N};
 }
 
-void Controller::leaveContact(const Gains& gains, const TaskKinematics& kinematics, double period_s,
+void Controller::leaveContact(const Gains& gains, const PreparedCycle& prepared, double period_s,
                               ControllerState& state, JointVector& velocity) const noexcept {
   RetreatState& retreat = state.retreat;
   if (!retreat.has_push) takePush(gains, state);
-  if (retreat.has_push) computeRow(kinematics.pose, retreat);
+  if (retreat.has_push) computeRow(prepared.kinematics.pose, retreat);
   const double speed =
       retreatSpeed(readForRetreat(state), gains.force.contact_threshold_N, period_s, retreat);
   if (speed == 0.0) return;
   retreat.has_moved = true;
   if (retreat.has_push) {
-    velocity = retreatVelocity(gains, kinematics, speed, state);
+    velocity = retreatVelocity(gains, prepared, speed, period_s, state);
   } else {
     velocity = -speed * retreat.velocity_at_fault;
     retreat.row = scaled(velocity, ScaledVector::Ones()) / velocity.squaredNorm();
@@ -131,9 +131,10 @@ void Controller::leaveContact(const Gains& gains, const TaskKinematics& kinemati
 }
 
 /// The task, whose time stands still, is given up for as much as the null space cannot do.
-JointVector Controller::retreatVelocity(const Gains& gains, const TaskKinematics& kinematics,
-                                        double speed_m_per_s,
+JointVector Controller::retreatVelocity(const Gains& gains, const PreparedCycle& prepared,
+                                        double speed_m_per_s, double period_s,
                                         const ControllerState& state) const noexcept {
+  const TaskKinematics& kinematics = prepared.kinematics;
   SpeedRows rows;
   rows.size = 1;
   SpeedRow& contact = rows.row[0];
@@ -141,7 +142,7 @@ JointVector Controller::retreatVelocity(const Gains& gains, const TaskKinematics
   contact.a_task = kinematics.pseudoinverse.project(contact.a_scaled);
   contact.v_max_m_per_s = -speed_m_per_s;
   contact.damping_N_s_per_m = gains.force.time_constant_s * state.retreat.stiffness_N_per_m;
-  limit_rows_.add(state.q_desired, kinematics, inv_sqrt_weights_, 1.0, rows);
+  addKeptRows(prepared, period_s, state, rows);
   Motion motion;
   motion.y.setZero();
   motion.v_scaled.setZero();

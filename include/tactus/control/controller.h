@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "tactus/control/clearance.h"
 #include "tactus/control/command_limiter.h"
 #include "tactus/control/contact_controller.h"
 #include "tactus/control/controller_config.h"
@@ -63,7 +64,8 @@ struct PreparedCycle {
   TaskGains task_gains;  ///< and these gains
   JointLimitAvoidanceGains limit_gains;
   TaskKinematics kinematics;
-  Motion motion;  ///< of task and joint limits, without contact
+  NearBodies near;  ///< only with a clearance
+  Motion motion;    ///< of task, joint limits and clearance, without contact
   PaddedTaskVector w, w_d_dot;
   Vector3 rotation_vector_d;  ///< of the reference; only for tasks with a rotation, rad
   double progress = 1.0;      ///< of the reference, by how far the tool lags
@@ -148,14 +150,22 @@ class Controller {
   void takePush(const Gains& gains, ControllerState& state) const noexcept;
   void computeRow(const ChainPose& pose, RetreatState& retreat) const noexcept;
   RetreatReading readForRetreat(const ControllerState& state) const noexcept;
-  void leaveContact(const Gains& gains, const TaskKinematics& kinematics, double period_s,
+  void leaveContact(const Gains& gains, const PreparedCycle& prepared, double period_s,
                     ControllerState& state, JointVector& velocity) const noexcept;
-  JointVector retreatVelocity(const Gains& gains, const TaskKinematics& kinematics,
-                              double speed_m_per_s, const ControllerState& state) const noexcept;
+  JointVector retreatVelocity(const Gains& gains, const PreparedCycle& prepared,
+                              double speed_m_per_s, double period_s,
+                              const ControllerState& state) const noexcept;
+  void lookAround(const ControllerState& state, PreparedCycle& prepared) const noexcept;
+  void addKeptRows(const PreparedCycle& prepared, double period_s, const ControllerState& state,
+                   SpeedRows& rows) const noexcept;
+  double keepClear(double period_s, const ControllerState& state,
+                   PreparedCycle& prepared) const noexcept;
   FaultDetail notFinite(const Motion& motion) const noexcept;
-  void limit(const Motion& motion, double period_s, ControllerState& state,
+  void limit(const PreparedCycle& prepared, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
-  void cut(const Motion& motion, double period_s, ControllerState& state,
+  bool admits(const PreparedCycle& prepared, double period_s, const ControllerState& state,
+              const JointVector& velocity) const noexcept;
+  void cut(const PreparedCycle& prepared, double period_s, ControllerState& state,
            ControllerOutput& output) const noexcept;
   void passTime(double duration_s, ControllerState& state) const noexcept;
 
@@ -164,10 +174,11 @@ class Controller {
   ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
   bool has_rotation_;
   CommandLimiter limiter_;
-  JointLimitRows limit_rows_;              ///< of a retreat
+  JointLimitRows limit_rows_;              ///< of a retreat, and with a clearance
   std::vector<CoverCompensation> covers_;  ///< one a module, or none
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
   std::optional<ContactController> contact_controller_;
+  std::optional<Clearance> clearance_;
 };
 
 }  // namespace tactus
