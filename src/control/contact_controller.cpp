@@ -110,7 +110,8 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   input.cut_m_per_s = state.cut_m_per_s + state.cut_by_rows_m_per_s;
   ControlLawOutput u;
   law_.update(gains.force, input, contact.space, period_s, state.law, u);
-  if (approach_limit_ && !friction_cone_) {
+  const bool has_rows = approach_limit_ && (friction_cone_ || gate.clearance());
+  if (approach_limit_ && !has_rows) {
     const ContactSpace& space = contact.space;
     const double v_res = dot(space.a_task, motion.y, task_.size) +
                          dot(space.a_scaled, motion.v_scaled) - space.k_n * u.u_n;
@@ -121,10 +122,10 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
   motion.y += (u.u_n - u.u_t) * contact.space.a_task;
   motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
-  if (friction_cone_) state.approach.is_limiting = false;
-  if (friction_cone_ || (approach_limit_ && (state.cut_m_per_s > 0.0 || state.keeps_joints)))
-    u.u_t +=
-        limitRows(gains.force, kinematics, commanded.q, contact.space, F_p_N, gate, state, motion);
+  if (has_rows) state.approach.is_limiting = false;
+  if (has_rows || (approach_limit_ && (state.cut_m_per_s > 0.0 || state.keeps_joints)))
+    u.u_t += limitRows(gains.force, kinematics, commanded, contact.space, F_p_N, gate, period_s,
+                       state, motion);
 
   if (is_multi_space_ && commanded.is_followed && hasReturnSpeed(gains.task)) {
     state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * contact.space.a_task);
@@ -161,42 +162,6 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
   }
   input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
   report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
-}
-
-double ContactController::limitRows(const ForceGains& gains, const TaskKinematics& kinematics,
-                                    const JointVector& q_desired, const ContactSpace& space,
-                                    double F_p_N, const MotionGate& gate,
-                                    ContactControllerState& state, Motion& motion) const noexcept {
-  state.cut_by_rows_m_per_s = 0.0;
-  state.keeps_joints = false;
-  const double memory = state.approach.memory_N_per_m;
-  if (memory == 0.0) return 0.0;
-  SpeedRows rows;
-  double cosine = 1.0;
-  if (friction_cone_) {
-    friction_cone_->add(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_,
-                        rows);
-    cosine = friction_cone_->cosine();
-  } else {
-    rows.row[0].a_scaled = space.a_scaled;
-    rows.row[0].a_task = space.a_task;
-    rows.size = 1;
-  }
-  approach_limit_->limitRows(gains, F_p_N, cosine, state.approach, 0, rows);
-  const int corners = rows.size;
-  const double in_contact =
-      std::max(state.approach.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
-  const auto retreat = [&] {
-    return dot(space.a_scaled, motion.v_scaled) + dot(space.a_task, motion.y, task_.size);
-  };
-  const double retreat_before = retreat();
-  const RowVector l =
-      gate.keep(q_desired, kinematics, std::min(1.0, memory / in_contact), rows, motion);
-  const double sum = l.head(corners).sum();
-  state.keeps_joints = rows.size > corners;
-  state.cut_by_rows_m_per_s = state.keeps_joints ? std::max(0.0, retreat_before - retreat()) : 0.0;
-  state.approach.is_limiting = state.approach.is_limiting || sum > 0.0;
-  return -sum;
 }
 
 const ContactPointState& ContactController::follow(const Gains& gains,

@@ -121,6 +121,7 @@ void Controller::computeMotion(const Gains& gains, double path_time_s, Controlle
   } else {
     motion.v_scaled.setZero();
   }
+  if (gate_.clearance()) lookAround(state, prepared);
 }
 
 void Controller::respond(const RobotInput& input, const Gains& gains, double period_s,
@@ -138,6 +139,10 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   output.contact = {};
   sense(input, period_s, state, output);
   if (config_.force_control) answerContact(gains, kinematics, period_s, state, output, motion);
+  const bool keeps_rows =
+      config_.force_control && config_.force_control->variant == Variant::kNullLimit;
+  if (gate_.clearance() && !keeps_rows)
+    state.contact.cut_by_rows_m_per_s = keepClear(kinematics, period_s, state, motion);
 
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
@@ -147,7 +152,7 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
     if (state.retreat.is_under_way)
       leaveContact(gains, kinematics, period_s, state, output.velocity);
   }
-  limit(motion, period_s, state, output);
+  limit(prepared, period_s, state, output);
 }
 
 void Controller::answerContact(const Gains& gains, const TaskKinematics& kinematics,
@@ -172,24 +177,34 @@ void Controller::coast(int missed_cycles, double period_s, ControllerState& stat
   }
 }
 
-void Controller::limit(const Motion& motion, double period_s, ControllerState& state,
+void Controller::limit(const PreparedCycle& prepared, double period_s, ControllerState& state,
                        ControllerOutput& output) const noexcept {
   state.contact.cut_m_per_s = 0.0;
-  if (!limiter_.admits(state.q_desired, state.velocity_before, period_s, output.velocity))
-    cut(motion, period_s, state, output);
+  if (!admits(prepared, period_s, state, output.velocity)) cut(prepared, period_s, state, output);
   output.fault = state.fault;
   assign(state.q_desired, output.q_desired);
   assign(output.velocity, state.velocity_before);
   passTime(period_s, state);
 }
 
+bool Controller::admits(const PreparedCycle& prepared, double period_s,
+                        const ControllerState& state, const JointVector& velocity) const noexcept {
+  return limiter_.admits(state.q_desired, state.velocity_before, period_s, velocity) &&
+         (!gate_.clearance() || gate_.clearance()->canStopAfter(
+                                    prepared.kinematics.near, state.q_desired, velocity, period_s));
+}
+
 /// What the limits cut from the contact point's motion is told to the law, which must not ask for
 /// more and more of it.
-void Controller::cut(const Motion& motion, double period_s, ControllerState& state,
+void Controller::cut(const PreparedCycle& prepared, double period_s, ControllerState& state,
                      ControllerOutput& output) const noexcept {
+  const Motion& motion = prepared.motion;
   const JointVector wanted = output.velocity;
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
+  if (gate_.clearance())
+    gate_.clearance()->holdBack(prepared.kinematics.near, state.q_desired, state.velocity_before,
+                                period_s, output.velocity);
   if (contact_controller_ && mayMove(state) && !isEqual(wanted, output.velocity))
     state.contact.cut_m_per_s =
         std::max(0.0, retreat(motion.a, wanted) - retreat(motion.a, output.velocity));

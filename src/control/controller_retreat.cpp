@@ -125,7 +125,7 @@ void Controller::leaveContact(const Gains& gains, const TaskKinematics& kinemati
   if (speed == 0.0) return;
   retreat.has_moved = true;
   if (retreat.has_push) {
-    velocity = retreatVelocity(gains, kinematics, speed, state);
+    velocity = retreatVelocity(gains, kinematics, speed, period_s, state);
   } else {
     velocity = -speed * retreat.velocity_at_fault;
     retreat.row = scaled(velocity, ScaledVector::Ones()) / velocity.squaredNorm();
@@ -134,7 +134,7 @@ void Controller::leaveContact(const Gains& gains, const TaskKinematics& kinemati
 
 /// The task, whose time stands still, is given up for as much as the null space cannot do.
 JointVector Controller::retreatVelocity(const Gains& gains, const TaskKinematics& kinematics,
-                                        double speed_m_per_s,
+                                        double speed_m_per_s, double period_s,
                                         const ControllerState& state) const noexcept {
   SpeedRows rows;
   SpeedRow& contact = rows.row[rows.size++];
@@ -147,7 +147,8 @@ JointVector Controller::retreatVelocity(const Gains& gains, const TaskKinematics
   Motion motion;
   motion.y.setZero();
   motion.v_scaled.setZero();
-  gate_.keep(state.q_desired, kinematics, 1.0, rows, motion);
+  gate_.keep({state.q_desired, state.velocity_before, true}, kinematics, 1.0, period_s, rows,
+             motion);
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
   return motion.v_scaled.head(config_.chain.size());

@@ -163,7 +163,7 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
     motion.a = place.a;
   }
   const int contacts = null_rows.size;
-  gate.add(commanded.q, kinematics, 1.0, null_rows);
+  gate.add(commanded, kinematics, 1.0, period_s, null_rows);
   for (int i = contacts; i < null_rows.size; ++i) rows.row[rows.size++] = null_rows.row[i];
   report.u_n = -holdInNullSpace(gains.force, null_rows, contacts, state.null_speed, motion);
   const RowVector l = keepSpeedRows(rows, task_size_, motion);

@@ -6,7 +6,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kParallel = 1e-8;    ///< sine of the angle below which lines are
+constexpr double kParallel = 1e-10;   ///< sine of the angle below which lines are
 constexpr double kTouching_m = 1e-9;  ///< below it a difference of points has no direction
 
 Vector3 anyVectorAcross(const Vector3& direction) noexcept {

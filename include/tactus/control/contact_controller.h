@@ -43,14 +43,6 @@ struct ContactControllerState {
   bool is_resting = false;           ///< the last cycle's command did not move the arm
 };
 
-/// Where earlier commands have led to.
-struct CommandedMotion {
-  const JointVector& q;         ///< desired, at the start of this cycle
-  const JointVector& velocity;  ///< the previous command
-  bool is_followed;             ///< this cycle's command moves the arm; false: it stops, or rests
-  double return_share = 1.0;    ///< of the pull, see return_speed.h
-};
-
 /// The answer to contact: contact space, stiffness estimate, contact transition and law, added to
 /// the motion that the task asks for.
 class ContactController {
@@ -88,11 +80,14 @@ class ContactController {
                              const Contact& contact, double return_share, double period_s,
                              ContactControllerState& state, ContactReport& report,
                              ControlLawInput& input, Motion& motion) const noexcept;
-  /// The approach limit beside the joints' limits, with friction that of all corners of the cone.
-  /// Returns what stands for u_t.
+  void addContactRows(const ForceGains& gains, const TaskKinematics& kinematics,
+                      const ContactSpace& space, double F_p_N, const ApproachLimitState& approach,
+                      SpeedRows& rows) const noexcept;
+  /// The approach limit, with friction that of all corners of the cone, beside all else that is
+  /// kept. Returns what stands for u_t.
   double limitRows(const ForceGains& gains, const TaskKinematics& kinematics,
-                   const JointVector& q_desired, const ContactSpace& space, double F_p_N,
-                   const MotionGate& gate, ContactControllerState& state,
+                   const CommandedMotion& commanded, const ContactSpace& space, double F_p_N,
+                   const MotionGate& gate, double period_s, ContactControllerState& state,
                    Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
   TaskVector pull(const Gains& gains, const PaddedTaskVector& error) const noexcept;

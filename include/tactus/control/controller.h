@@ -65,7 +65,7 @@ struct PreparedCycle {
   TaskGains task_gains;  ///< and these gains
   JointLimitAvoidanceGains limit_gains;
   TaskKinematics kinematics;
-  Motion motion;  ///< of task and joint limits, without contact
+  Motion motion;  ///< of task, joint limits and clearance, without contact
   PaddedTaskVector w, w_d_dot;
   Vector3 rotation_vector_d;  ///< of the reference; only for tasks with a rotation, rad
   double progress = 1.0;      ///< of the reference, by how far the tool lags
@@ -157,11 +157,17 @@ class Controller {
   void leaveContact(const Gains& gains, const TaskKinematics& kinematics, double period_s,
                     ControllerState& state, JointVector& velocity) const noexcept;
   JointVector retreatVelocity(const Gains& gains, const TaskKinematics& kinematics,
-                              double speed_m_per_s, const ControllerState& state) const noexcept;
+                              double speed_m_per_s, double period_s,
+                              const ControllerState& state) const noexcept;
+  void lookAround(const ControllerState& state, PreparedCycle& prepared) const noexcept;
+  double keepClear(const TaskKinematics& kinematics, double period_s, const ControllerState& state,
+                   Motion& motion) const noexcept;
   FaultDetail notFinite(const Motion& motion) const noexcept;
-  void limit(const Motion& motion, double period_s, ControllerState& state,
+  void limit(const PreparedCycle& prepared, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
-  void cut(const Motion& motion, double period_s, ControllerState& state,
+  bool admits(const PreparedCycle& prepared, double period_s, const ControllerState& state,
+              const JointVector& velocity) const noexcept;
+  void cut(const PreparedCycle& prepared, double period_s, ControllerState& state,
            ControllerOutput& output) const noexcept;
   void passTime(double duration_s, ControllerState& state) const noexcept;
 

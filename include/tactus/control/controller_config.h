@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "tactus/control/clearance_config.h"
 #include "tactus/control/cover_load.h"
 #include "tactus/control/gains.h"
 #include "tactus/control/link_observer.h"
@@ -89,6 +90,7 @@ struct ControllerConfig {
   std::optional<GearedLinks> geared_links{};  ///< only covers ask; absent: links are measured
   double drive_lag_s = 0.005;  ///< nominal first-order lag of position; only null_limit asks
   std::optional<ForceControlConfig> force_control{};  ///< absent also for `variant: none`
+  std::optional<ClearanceConfig> clearance{};
   Gains gains{};  ///< no structure: what the first cycle is given, and all where nobody tunes
 };
 

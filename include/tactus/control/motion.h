@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tactus/control/body_distances.h"
 #include "tactus/math/serial_chain.h"
 #include "tactus/math/weighted_pseudoinverse.h"
 
@@ -11,6 +12,15 @@ struct TaskKinematics {
   WeightedPseudoinverse pseudoinverse;
   PaddedTaskVector error;  ///< w_d - w, m or rad; of rotations the vector of R_d R^T
   PaddedTaskVector y_eff;  ///< solve(w_dot_d,eff), (2)
+  NearBodies near;         ///< only with a clearance
+};
+
+/// Where earlier commands have led to.
+struct CommandedMotion {
+  const JointVector& q;         ///< desired, at the start of this cycle
+  const JointVector& velocity;  ///< the previous command
+  bool is_followed;             ///< this cycle's command moves the arm; false: it stops, or rests
+  double return_share = 1.0;    ///< of the pull, see return_speed.h
 };
 
 /// The motion equation (1) as it comes together: q_dot = W^-1/2 (Q y + v_scaled), with everything

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "tactus/control/clearance.h"
 #include "tactus/control/controller_config.h"
 #include "tactus/control/joint_limit_rows.h"
 #include "tactus/control/speed_rows.h"
@@ -7,31 +10,28 @@
 namespace tactus {
 
 /// The one gate for all that a motion must not approach too fast: contacts, whose rows a law
-/// brings, and what is known without a sensor. See docs/gate.md.
+/// brings, and what is known without a sensor: the clearance and the joints' limits. See
+/// docs/gate.md.
 class MotionGate {
  public:
-  MotionGate(const ControllerConfig& config, const ScaledVector& inv_sqrt_weights)
-      : task_size_(config.task.size),
-        inv_sqrt_weights_(inv_sqrt_weights),
-        joint_limits_(config.limits) {}
+  MotionGate(const ControllerConfig& config, const ScaledVector& inv_sqrt_weights);
 
-  /// Adds what is known without a sensor. q: at the start of the cycle; joint_share: see
-  /// JointLimitRows.
-  void add(const JointVector& q, const TaskKinematics& kinematics, double joint_share,
-           SpeedRows& rows) const noexcept {
-    joint_limits_.add(q, kinematics, inv_sqrt_weights_, joint_share, rows);
-  }
+  /// Null without a clearance; with one there is something to keep in every cycle.
+  const Clearance* clearance() const noexcept { return clearance_ ? &*clearance_ : nullptr; }
+
+  /// Adds what is known without a sensor. joint_share: see JointLimitRows.
+  void add(const CommandedMotion& commanded, const TaskKinematics& kinematics, double joint_share,
+           double period_s, SpeedRows& rows) const noexcept;
 
   /// Keeps these rows and those of add(). Returns l, in that order.
-  RowVector keep(const JointVector& q, const TaskKinematics& kinematics, double joint_share,
-                 SpeedRows& rows, Motion& motion) const noexcept {
-    add(q, kinematics, joint_share, rows);
-    return keepSpeedRows(rows, task_size_, motion);
-  }
+  RowVector keep(const CommandedMotion& commanded, const TaskKinematics& kinematics,
+                 double joint_share, double period_s, SpeedRows& rows,
+                 Motion& motion) const noexcept;
 
  private:
   int task_size_;
   ScaledVector inv_sqrt_weights_;
+  std::optional<Clearance> clearance_;
   JointLimitRows joint_limits_;
 };
 

@@ -7,6 +7,7 @@
 #include "tactus/control/controller_config.h"
 #include "tactus/control/cover_load.h"
 #include "tactus/control/tactile_channels.h"
+#include "tactus/math/link_capsule.h"
 #include "tactus/sim/arm_dynamics.h"
 #include "tactus/sim/shape_config.h"
 
@@ -81,15 +82,6 @@ struct DriveEffectsConfig {
   bool reports_links = false;                ///< of an arm with gears; false: where its motors are
 };
 
-/// A part of a link that obstacles push on and nothing feels: all within radius_m of a segment,
-/// which may be a point.
-struct LinkCapsule {
-  AttachedFrame link;                    ///< joint -1: fixed to the base
-  Vector3 p_LinkFrom = Vector3::Zero();  ///< m
-  Vector3 p_LinkTo = Vector3::Zero();    ///< m
-  double radius_m = 0.0;
-};
-
 struct PlantConfig {
   double drive_lag_s = 0.005;  ///< first-order lag of position; 0: ideal drives
   DriveEffectsConfig drives;
@@ -98,7 +90,8 @@ struct PlantConfig {
   Vector3 gravity_Base = Vector3::Zero();      ///< m/s^2; only covers feel it
   std::vector<SimulatedModuleConfig> modules;  ///< in the order of those that the controller reads
   std::vector<ObstacleConfig> obstacles;
-  std::vector<LinkCapsule> capsules;   ///< absent: contact on the covers of modules alone
+  /// Parts of links that obstacles push on and nothing feels; none: contact on covers alone.
+  std::vector<LinkCapsule> capsules;
   std::optional<SerialChain> chain{};  ///< the arm's, where it is not what the controller believes
 };
 

@@ -1,0 +1,50 @@
+#include <algorithm>
+
+#include "tactus/control/contact_controller.h"
+
+/// The approach limit as rows, beside others.
+namespace tactus {
+
+void ContactController::addContactRows(const ForceGains& gains, const TaskKinematics& kinematics,
+                                       const ContactSpace& space, double F_p_N,
+                                       const ApproachLimitState& approach,
+                                       SpeedRows& rows) const noexcept {
+  double cosine = 1.0;
+  if (friction_cone_) {
+    friction_cone_->add(chain_, kinematics, approach.smoother.contact, inv_sqrt_weights_, rows);
+    cosine = friction_cone_->cosine();
+  } else {
+    rows.row[0].a_scaled = space.a_scaled;
+    rows.row[0].a_task = space.a_task;
+    rows.size = 1;
+  }
+  approach_limit_->limitRows(gains, F_p_N, cosine, approach, 0, rows);
+}
+
+double ContactController::limitRows(const ForceGains& gains, const TaskKinematics& kinematics,
+                                    const CommandedMotion& commanded, const ContactSpace& space,
+                                    double F_p_N, const MotionGate& gate, double period_s,
+                                    ContactControllerState& state, Motion& motion) const noexcept {
+  state.cut_by_rows_m_per_s = 0.0;
+  state.keeps_joints = false;
+  const double memory = state.approach.memory_N_per_m;
+  if (memory == 0.0 && !gate.clearance()) return 0.0;
+  SpeedRows rows;
+  if (memory > 0.0) addContactRows(gains, kinematics, space, F_p_N, state.approach, rows);
+  const int corners = rows.size;
+  const double in_contact =
+      std::max(state.approach.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
+  const auto retreat = [&] {
+    return dot(space.a_scaled, motion.v_scaled) + dot(space.a_task, motion.y, task_.size);
+  };
+  const double retreat_before = retreat();
+  const RowVector l =
+      gate.keep(commanded, kinematics, std::min(1.0, memory / in_contact), period_s, rows, motion);
+  const double sum = l.head(corners).sum();
+  state.keeps_joints = rows.size > corners;
+  state.cut_by_rows_m_per_s = state.keeps_joints ? std::max(0.0, retreat_before - retreat()) : 0.0;
+  state.approach.is_limiting = state.approach.is_limiting || sum > 0.0;
+  return -sum;
+}
+
+}  // namespace tactus

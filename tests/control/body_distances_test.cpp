@@ -1,0 +1,154 @@
+#include "tactus/control/body_distances.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "support/random_clearance.h"
+
+namespace tactus {
+namespace {
+
+struct BodiesCase {
+  explicit BodiesCase(test::Random& random)
+      : n(random.integer(2, kMaxJoints)),
+        chain(test::randomChain(random, n)),
+        config(test::randomBodies(random, n)),
+        distances(chain, config),
+        q(random.vector(n, -2.0, 2.0)) {
+    chain.computePose(q, pose);
+  }
+  double distanceAt(const JointVector& q_other, int index) const {
+    ChainPose other;
+    chain.computePose(q_other, other);
+    return distances.distance_m(other, index);
+  }
+
+  int n;
+  SerialChain chain;
+  ClearanceConfig config;
+  BodyDistances distances;
+  JointVector q;
+  ChainPose pose;
+};
+
+ScaledVector gradientOf(const NearBody& body) {
+  if (body.ends == 1) return body.gradient[0];
+  return (1.0 - body.share) * body.gradient[0] + body.share * body.gradient[1];
+}
+
+/// A wall has a body for each end of a capsule.
+TEST(BodyDistances, FindEachThatIsNearerThanItsReach) {
+  test::Random random(401);
+  int found = 0, cut = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const BodiesCase c(random);
+    const double reach_m = random.logUniform(0.01, 3.0);
+    NearBodies near;
+    c.distances.findNear(c.pose, reach_m, near);
+    std::vector<double> told(c.distances.size(), kNoLimit);
+    for (int k = 0; k < near.size; ++k) {
+      const NearBody& body = near.body[k];
+      told[body.index] = std::min(told[body.index], body.distance_m);
+      ASSERT_LE(body.distance_m, reach_m);
+    }
+    for (int index = 0; index < c.distances.size(); ++index) {
+      const double distance_m = c.distances.distance_m(c.pose, index);
+      if (told[index] < kNoLimit) {
+        ASSERT_NEAR(told[index], distance_m, 1e-12) << i;
+        ++found;
+      } else {
+        ASSERT_GE(distance_m, near.beyond_m - 1e-12) << i;
+        cut += distance_m < reach_m ? 1 : 0;
+        if (near.size < kMaxNearBodies) {
+          ASSERT_GT(distance_m, reach_m) << i;
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 5000);
+  EXPECT_GT(cut, 5000);
+}
+
+/// Where the nearest points jump, as of parallels, there is no gradient: such cases show in that
+/// the differences to both sides differ.
+TEST(BodyDistances, HaveTheGradientOfFiniteDifferences) {
+  test::Random random(402);
+  constexpr double kStep = 1e-6;
+  int compared = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const BodiesCase c(random);
+    NearBodies near;
+    c.distances.findNear(c.pose, 0.5, near);
+    const int pairs = static_cast<int>(c.config.pairs.size());
+    for (int k = 0; k < near.size; ++k) {
+      const NearBody& body = near.body[k];
+      const double distance_m = c.distances.distance_m(c.pose, body.index);
+      if (body.index >= pairs && body.distance_m > distance_m + 1e-9) continue;  // other end
+      if (body.distance_m < 0.0 && body.index < pairs) continue;  // across axes that may meet
+      const JointVector way = random.vector(c.n, -1.0, 1.0);
+      const double ahead_m = c.distanceAt(c.q + kStep * way, body.index);
+      const double behind_m = c.distanceAt(c.q - kStep * way, body.index);
+      const double forward = (ahead_m - distance_m) / kStep;
+      const double backward = (distance_m - behind_m) / kStep;
+      if (std::abs(forward - backward) > 1e-3) continue;
+      ++compared;
+      ASSERT_NEAR(0.5 * (forward + backward), gradientOf(body).head(c.n).dot(way), 1e-4) << i;
+    }
+  }
+  EXPECT_GT(compared, 10000);
+}
+
+/// height(end) + gradient^T dq is what the straight of the end's way loses, to second order.
+TEST(BodyDistances, BoundFromBelowWhatAMotionLeaves) {
+  test::Random random(403);
+  int compared = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const BodiesCase c(random);
+    NearBodies near;
+    c.distances.findNear(c.pose, 0.5, near);
+    const double size = random.logUniform(1e-5, 1e-3);
+    const JointVector way = random.vector(c.n, -size, size);
+    double bend_m = 0.0;  // coarse: 16 joints, none of whose points is 16 m away
+    for (int j = 0; j < c.n; ++j) bend_m += std::abs(way[j]);
+    bend_m *= 16.0 * bend_m;
+    for (int k = 0; k < near.size; ++k) {
+      const NearBody& body = near.body[k];
+      if (body.distance_m < 0.0) continue;
+      double least_m = kNoLimit;
+      for (int end = 0; end < body.ends; ++end)
+        least_m = std::min(least_m, body.height_m[end] + body.gradient[end].head(c.n).dot(way));
+      const double left_m = c.distanceAt(c.q + way, body.index);
+      const double sooner_m = c.distances.distance_m(c.pose, body.index);
+      if (body.distance_m > sooner_m + 1e-9) continue;  // of a wall the other end
+      ASSERT_GE(left_m, least_m - bend_m) << i;
+      ASSERT_GE(body.height_m[0], body.distance_m - 1e-12);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 5000);
+}
+
+TEST(BodyDistances, RefuseWhatDoesNotMove) {
+  test::Random random(404);
+  const SerialChain chain = test::randomChain(random, 3);
+  ClearanceConfig config;
+  config.capsules = {test::randomCapsule(random, -1), test::randomCapsule(random, -1),
+                     test::randomCapsule(random, 1), test::randomCapsule(random, 1)};
+  config.walls = {{Vector3::Zero(), Vector3::UnitX()}};
+  const auto refuses = [&](std::vector<CapsulePair> pairs, std::vector<WallPair> wall_pairs) {
+    config.pairs = std::move(pairs);
+    config.wall_pairs = std::move(wall_pairs);
+    EXPECT_THROW(BodyDistances(chain, config), std::invalid_argument);
+  };
+  refuses({{0, 1}}, {});
+  refuses({{2, 3}}, {});
+  refuses({}, {{0, 0}});
+  config.wall_pairs.clear();
+  config.capsules.resize(kMaxMovingCapsules + 4, config.capsules.back());
+  EXPECT_THROW(BodyDistances(chain, config), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace tactus

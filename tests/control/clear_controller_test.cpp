@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "support/controller_run.h"
+#include "support/random_clearance.h"
+#include "tactus/control/clearance.h"
+
+/// Whole controllers with a clearance: tasks that lead anywhere, pushes of up to 100 N, stops and
+/// retreats at any time. TACTUS_CLEARANCE_RUNS runs more of them.
+namespace tactus {
+namespace {
+
+ControllerConfig clearController(test::Random& random) {
+  const Variant variant = test::kAllVariants[random.index(std::size(test::kAllVariants))];
+  const int n = random.integer(2, kMaxJoints);
+  ControllerConfig config = test::fullController(random, n, variant);
+  config.limits.max_velocity = random.vector(n, 0.5, 3.0);
+  config.limits.max_acceleration.setConstant(random.logUniform(2.0, 300.0));
+  config.has_joint_limit_avoidance = random.chance(0.5);
+  for (Waypoint& waypoint : config.task.trajectory.waypoints) {
+    waypoint.displacement_m = random.vector<Vector3>(3, -1.0, 1.0);
+    waypoint.speed_m_per_s = random.logUniform(0.05, 2.0);
+  }
+  config.clearance = test::randomBodies(random, n);
+  test::leaveOutTouching(config.chain, config.q_start, *config.clearance);
+  return config;
+}
+
+/// Pushes that begin, grow and end.
+RobotInput pushed(test::Random& random, int cycle, const JointVector& q, TactileSample& sample) {
+  if (cycle % 4 == 0) {
+    const double swell = std::sin(0.02 * cycle) + random.uniform(-0.1, 0.1);
+    sample = test::touchAt(random.uniform(0.1, 0.3), std::clamp(150.0 * swell, 0.0, 99.0),
+                           0.7 + 0.001 * cycle, sample.sequence + 1);
+  }
+  return {q, sample};
+}
+
+void stopOrGoOn(test::Random& random, const Controller& controller, ControllerState& state) {
+  if (!random.chance(0.005)) return;
+  if (state.is_stopping) {
+    state.is_stopping = false;
+    controller.goOn(controller.initialGains(), state);
+  } else {
+    state.is_stopping = true;
+    if (random.chance(0.5)) {
+      state.retreat.velocity_at_fault = state.velocity_before;
+      controller.beginRetreat(controller.initialGains(), state);
+      state.retreat.is_under_way = true;
+    }
+  }
+}
+
+TEST(ClearController, KeepsItWhateverHappens) {
+  test::Random random(421);
+  const char* const wanted_runs = std::getenv("TACTUS_CLEARANCE_RUNS");
+  const int runs = wanted_runs ? std::atoi(wanted_runs) : 300;
+  int close = 0;
+  for (int run = 0; run < runs; ++run) {
+    const ControllerConfig config = clearController(random);
+    const Controller controller(config);
+    const BodyDistances distances(config.chain, *config.clearance);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    TactileSample sample;
+    double t_s = 0.0, least_m = kNoLimit;
+    for (int cycle = 0; cycle < 600; ++cycle) {
+      stopOrGoOn(random, controller, state);
+      controller.update(pushed(random, cycle, state.q_desired, sample), config.gains, t_s, 0.001,
+                        state, output);
+      if (!state.is_stopping) t_s += 0.001;
+      ChainPose pose;
+      config.chain.computePose(state.q_desired, pose);
+      least_m = std::min(least_m, test::nearest_m(distances, pose));
+      ASSERT_GE(least_m, config.clearance->safe_distance_m - 1e-12) << run << " cycle " << cycle;
+      ASSERT_EQ(output.fault, Fault::kNone);
+    }
+    close += least_m < config.clearance->safe_distance_m + 5e-3 ? 1 : 0;
+  }
+  EXPECT_GT(close, runs / 20);
+}
+
+TEST(ClearController, PreparesTheSameToTheBit) {
+  test::Random random(422);
+  for (int run = 0; run < 20; ++run) {
+    const ControllerConfig config = clearController(random);
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    ControllerState other = state;
+    ControllerOutput output, other_output;
+    PreparedCycle prepared;
+    TactileSample sample;
+    for (int cycle = 0; cycle < 300; ++cycle) {
+      const double t_s = 0.001 * cycle;
+      const RobotInput input = pushed(random, cycle, state.q_desired, sample);
+      controller.update(input, config.gains, t_s, 0.001, state, output);
+      controller.update(input, config.gains, t_s, 0.001, prepared, other, other_output);
+      controller.prepare(config.gains, t_s + 0.001, other, prepared);
+      test::expectSame(output, other_output);
+    }
+  }
+}
+
+constexpr double kAvoid_m = 0.06;
+
+/// What is lacking of all distances to kAvoid_m, squared, where a run ends that only holds its
+/// tool.
+double lackAtTheEnd(const ControllerConfig& config) {
+  const Controller controller(config);
+  const BodyDistances distances(config.chain, *config.clearance);
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  for (int cycle = 0; cycle < 2000; ++cycle)
+    controller.update({state.q_desired, {}}, config.gains, 0.0, 0.001, state, output);
+  EXPECT_LT(output.error.norm(), 1e-4);
+  ChainPose pose;
+  config.chain.computePose(state.q_desired, pose);
+  double lack = 0.0;
+  for (int i = 0; i < distances.size(); ++i) {
+    const double lack_m = std::max(0.0, kAvoid_m - distances.distance_m(pose, i));
+    lack += lack_m * lack_m;
+  }
+  return lack;
+}
+
+TEST(ClearController, AvoidsInTheNullSpace) {
+  test::Random random(423);
+  int helped = 0, all = 0;
+  for (int run = 0; run < 60; ++run) {
+    ControllerConfig config = test::randomController(random, 9, 3);
+    config.task.components = {0, 1, 2};
+    config.clearance = test::randomBodies(random, 9);
+    ClearanceConfig& clearance = *config.clearance;
+    clearance.safe_distance_m = 0.005;
+    clearance.influence_distance_m = 0.01;
+    clearance.avoid = {kAvoid_m, 5.0};
+    test::leaveOutTouching(config.chain, config.q_start, clearance);
+    const double with = lackAtTheEnd(config);
+    clearance.avoid.reset();
+    const double without = lackAtTheEnd(config);
+    EXPECT_LT(with, 1.001 * without + 1e-9);
+    if (without < 1e-4) continue;
+    ++all;
+    helped += with < 0.9 * without ? 1 : 0;
+  }
+  EXPECT_GT(all, 10);
+  EXPECT_GT(helped, 3 * all / 4);
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,142 @@
+#include "tactus/control/clearance.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "support/random_clearance.h"
+#include "support/random_limits.h"
+#include "tactus/control/command_limiter.h"
+#include "tactus/control/joint_limit_rows.h"
+
+/// Runs against everything that an arm must keep clear of: whatever is commanded, no distance
+/// becomes less than the safe one. TACTUS_CLEARANCE_RUNS runs more of them.
+namespace tactus {
+namespace {
+
+int clearanceRuns(int usual) {
+  const char* const runs = std::getenv("TACTUS_CLEARANCE_RUNS");
+  return runs ? std::atoi(runs) : usual;
+}
+
+/// An arm that starts clear and is commanded by limiter and clearance alone.
+struct GuardedArm {
+  explicit GuardedArm(test::Random& random)
+      : random(random),
+        n(random.integer(2, kMaxJoints)),
+        config(test::randomController(random, n, random.integer(1, std::min(n, 3)))),
+        period_s(random.chance(0.5) ? 0.001 : random.logUniform(2e-4, 0.02)) {
+    config.limits.lower = config.q_start - random.vector(n, 0.0, 2.0);
+    config.limits.upper = config.q_start + random.vector(n, 0.0, 2.0);
+    for (int i = 0; i < n; ++i) {
+      config.limits.max_velocity[i] = random.logUniform(0.1, 5.0);
+      config.limits.max_acceleration[i] = random.logUniform(1.0, 500.0);
+    }
+    config.clearance = test::randomBodies(random, n);
+    test::leaveOutTouching(config.chain, config.q_start, *config.clearance);
+    clearance.emplace(config);
+    q = config.q_start;
+    v = JointVector::Zero(n);
+  }
+
+  /// One cycle of what a controller does with `wanted`; with rows or without.
+  void step(JointVector wanted, bool has_rows) {
+    config.chain.computePose(q, kinematics.pose);
+    clearance->findNear(kinematics.pose, near);
+    if (has_rows) keepRows(wanted);
+    const JointVector before = v;
+    CommandLimiter(config.limits).apply(q, before, period_s, wanted);
+    clearance->holdBack(near, q, before, period_s, wanted);
+    const JointVector change = (wanted - before).cwiseAbs();
+    ASSERT_LE((change - period_s * config.limits.max_acceleration).maxCoeff(), 1e-12);
+    ASSERT_LE((wanted.cwiseAbs() - config.limits.max_velocity).maxCoeff(), 1e-12);
+    v = wanted;
+    q += period_s * v;
+    ASSERT_GE((q - config.limits.lower).minCoeff(), -1e-12);
+    ASSERT_LE((q - config.limits.upper).maxCoeff(), 1e-12);
+  }
+
+  void keepRows(JointVector& wanted) {
+    const ScaledVector ones = ScaledVector::Ones();
+    ScaledJacobian J;
+    const Vector3 p_Tip = framePosition(kinematics.pose, config.chain.tip());
+    computeTipJacobian(config.chain, kinematics.pose, p_Tip, config.task.components.data(),
+                       config.task.size, ones, J);
+    kinematics.pseudoinverse.factorise(J, n, config.task.size);
+    SpeedRows rows;
+    clearance->add(near, kinematics, ones, q, v, period_s, rows);
+    JointLimitRows(config.limits).add(q, kinematics, ones, 1.0, rows);
+    Motion motion;
+    motion.y.setZero();
+    motion.v_scaled = scaled(wanted, ones);
+    keepSpeedRows(rows, config.task.size, motion);
+    wanted = (motion.v_scaled + kinematics.pseudoinverse.expand(motion.y)).head(n);
+  }
+
+  double nearest() {
+    ChainPose pose;
+    config.chain.computePose(q, pose);
+    return test::nearest_m(clearance->distances(), pose);
+  }
+
+  test::Random& random;
+  int n;
+  ControllerConfig config;
+  double period_s;
+  std::optional<Clearance> clearance;
+  TaskKinematics kinematics;
+  NearBodies near;
+  JointVector q, v;
+};
+
+/// Pushes that change at once, of any size, and stops at any time.
+TEST(Clearance, IsKeptWhateverIsCommanded) {
+  test::Random random(411);
+  int close = 0;
+  const int runs = clearanceRuns(600);
+  for (int run = 0; run < runs; ++run) {
+    GuardedArm arm(random);
+    const double d_s = arm.config.clearance->safe_distance_m;
+    const bool has_rows = random.chance(0.7);
+    JointVector wanted = JointVector::Zero(arm.n);
+    double least_m = kNoLimit;
+    for (int cycle = 0; cycle < 400; ++cycle) {
+      if (random.chance(0.01)) {
+        const double size = random.logUniform(0.1, 20.0);
+        wanted = random.vector(arm.n, -size, size);
+      }
+      if (random.chance(0.005)) wanted.setZero();
+      arm.step(wanted, has_rows);
+      if (HasFatalFailure()) FAIL() << run;
+      least_m = std::min(least_m, arm.nearest());
+      ASSERT_GE(least_m, d_s - 1e-12) << "run " << run << " cycle " << cycle << " " << has_rows;
+    }
+    close += least_m < d_s + 5e-3 ? 1 : 0;
+  }
+  EXPECT_GT(close, runs / 8);
+}
+
+/// A command that leads along what is near, or away from it, is not held back for it.
+TEST(Clearance, LetsAnArmGoWhereItIsClear) {
+  test::Random random(412);
+  int clear = 0, all = 0;
+  for (int i = 0; i < 3000; ++i) {
+    GuardedArm arm(random);
+    arm.config.limits = test::noLimits(arm.n);
+    arm.clearance.emplace(arm.config);
+    arm.step(JointVector::Zero(arm.n), false);
+    if (arm.near.size == 0) continue;
+    JointVector away = JointVector::Zero(arm.n);
+    for (int k = 0; k < arm.near.size; ++k) away += arm.near.body[k].gradient[0].head(arm.n);
+    away *= 0.05;
+    JointVector passed = away;
+    arm.clearance->holdBack(arm.near, arm.q, arm.v, arm.period_s, passed);
+    ++all;
+    clear += passed == away ? 1 : 0;
+  }
+  EXPECT_GT(all, 500);
+  EXPECT_GT(clear, 9 * all / 10);
+}
+
+}  // namespace
+}  // namespace tactus
