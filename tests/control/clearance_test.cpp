@@ -21,18 +21,18 @@ int clearanceRuns(int usual) {
 
 /// An arm that starts clear and is commanded by limiter and clearance alone.
 struct GuardedArm {
-  explicit GuardedArm(test::Random& random)
-      : random(random),
-        n(random.integer(2, kMaxJoints)),
-        config(test::randomController(random, n, random.integer(1, std::min(n, 3)))),
-        period_s(random.chance(0.5) ? 0.001 : random.logUniform(2e-4, 0.02)) {
-    config.limits.lower = config.q_start - random.vector(n, 0.0, 2.0);
-    config.limits.upper = config.q_start + random.vector(n, 0.0, 2.0);
+  explicit GuardedArm(test::Random& from)
+      : random(from),
+        n(from.integer(2, kMaxJoints)),
+        config(test::randomController(from, n, from.integer(1, std::min(n, 3)))),
+        period_s(from.chance(0.5) ? 0.001 : from.logUniform(2e-4, 0.02)) {
+    config.limits.lower = config.q_start - from.vector(n, 0.0, 2.0);
+    config.limits.upper = config.q_start + from.vector(n, 0.0, 2.0);
     for (int i = 0; i < n; ++i) {
-      config.limits.max_velocity[i] = random.logUniform(0.1, 5.0);
-      config.limits.max_acceleration[i] = random.logUniform(1.0, 500.0);
+      config.limits.max_velocity[i] = from.logUniform(0.1, 5.0);
+      config.limits.max_acceleration[i] = from.logUniform(1.0, 500.0);
     }
-    config.clearance = test::randomBodies(random, n);
+    config.clearance = test::randomBodies(from, n);
     test::leaveOutTouching(config.chain, config.q_start, *config.clearance);
     clearance.emplace(config);
     q = config.q_start;
