@@ -13,7 +13,10 @@
 namespace tactus {
 namespace {
 
-/// One obstacle on one module, to see when they meet first and how fast.
+constexpr double kFree_s = 1.0;
+
+/// One obstacle on one module, to see when they meet and how fast. What comes back before it was
+/// free for long only bounces.
 struct FirstTouch {
   FirstTouch(const RunSetup& setup, std::size_t on_module, ObstacleConfig config)
       : module(on_module),
@@ -31,6 +34,7 @@ struct FirstTouch {
   double stiffness_N_per_m;
   Obstacle obstacle;
   double depth_m = 0.0;  ///< a cycle before
+  double free_s = 0.0;
   bool is_over = false;
 };
 
@@ -52,6 +56,8 @@ class TouchWatch {
                                          setup_.plant.modules[touch.module].cover_radius_m},
                                         t_s)
                                  .force_N;
+      touch.free_s = depth_m > 0.0 ? 0.0 : touch.free_s + setup_.period_s;
+      if (touch.free_s > kFree_s) touch.is_over = false;
       if (!touch.is_over && touch.depth_m > 0.0 && depth_m > touch.depth_m)
         note(touch, (depth_m - touch.depth_m) / setup_.period_s,
              output.sensed[touch.module].force_N, run.modules[touch.module]);

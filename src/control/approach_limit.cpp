@@ -99,6 +99,7 @@ void ApproachLimit::limitRows(const ForceGains& gains, double F_p_N, double cosi
     rows.row[i].v_max_m_per_s =
         cosine * ((gains.activation_force_N - F_ahead_N) / Tm - state.obstacle.v_m_per_s);
     rows.row[i].damping_N_s_per_m = Tm;
+    rows.row[i].presence = 1.0;
   }
 }
 

@@ -40,7 +40,9 @@ void Clearance::add(const NearBodies& near, const TaskKinematics& kinematics,
     if (body.share > 0.0) row.a_scaled += body.share * (body.gradient[1] - body.gradient[0]);
     row.a_scaled.array() *= inv_sqrt_weights.array();
     row.a_task = kinematics.pseudoinverse.project(row.a_scaled);
-    row.v_max_m_per_s = rate_per_s * (body.distance_m - least_m);
+    row.presence = std::min(1.0, (config_.influence_distance_m - body.distance_m) /
+                                     (config_.influence_distance_m - config_.safe_distance_m));
+    row.v_max_m_per_s = rate_per_s * (body.distance_m - least_m) / row.presence;
     row.damping_N_s_per_m = kWallStiffness_N_per_m / kGamma_per_s;
   }
 }

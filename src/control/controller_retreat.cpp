@@ -141,6 +141,7 @@ JointVector Controller::retreatVelocity(const Gains& gains, const TaskKinematics
   contact.a_scaled = inv_sqrt_weights_.cwiseProduct(state.retreat.row);
   contact.a_task = kinematics.pseudoinverse.project(contact.a_scaled);
   contact.v_max_m_per_s = -speed_m_per_s;
+  contact.presence = 1.0;
   contact.damping_N_s_per_m = gains.force.time_constant_s * state.retreat.stiffness_N_per_m;
   if (several_contacts_)
     several_contacts_->addRows(gains.force, kinematics, state.retreat.module, state.several, rows);

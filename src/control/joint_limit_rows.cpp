@@ -22,14 +22,17 @@ void JointLimitRows::add(const JointVector& q, const TaskKinematics& kinematics,
     const double to_upper = limits_.upper[i] - q[i];
     const double left = std::max(0.0, std::min(to_lower, to_upper));
     const double braking = std::sqrt(std::min(limits_.max_acceleration[i], 1e9) * left);
-    const double speed = std::min(kApproach_per_s * left, braking) / share;
-    if (!(left < kNear) || !(speed < limits_.max_velocity[i])) continue;
+    if (!(left < kNear)) continue;
+    const double presence = fades_ ? 1.0 - left / kNear : 1.0;
+    const double speed = std::min(kApproach_per_s * left, braking) / (share * presence);
+    if (!(speed < limits_.max_velocity[i])) continue;
     SpeedRow& row = rows.row[rows.size++];
     row.a_scaled.setZero();
     row.a_scaled[i] = to_lower < to_upper ? kScaledLength : -kScaledLength;
     row.a_task = kinematics.pseudoinverse.project(row.a_scaled);
     row.v_max_m_per_s = kScaledLength / inv_sqrt_weights[i] * speed;
     row.damping_N_s_per_m = kDamping_N_s_per_m;
+    row.presence = presence;
   }
 }
 

@@ -1,11 +1,19 @@
 #include "tactus/control/motion_gate.h"
 
 namespace tactus {
+namespace {
+
+/// One contact alone has the law that it had before there was a gate, to the bit.
+bool isOfWholeArm(const ControllerConfig& config) {
+  return config.clearance || config.tactile_modules.size() > 1;
+}
+
+}  // namespace
 
 MotionGate::MotionGate(const ControllerConfig& config, const ScaledVector& inv_sqrt_weights)
     : task_size_(config.task.size),
       inv_sqrt_weights_(inv_sqrt_weights),
-      joint_limits_(config.limits) {
+      joint_limits_(config.limits, isOfWholeArm(config)) {
   if (config.clearance) clearance_.emplace(config);
 }
 

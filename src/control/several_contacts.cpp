@@ -15,6 +15,13 @@ double contactForce_N(const ForceGains& gains, const ModuleContactState& state) 
   return std::max(0.0, state.approach.smoother.contact.force_N - gains.contact_threshold_N);
 }
 
+/// 1 in contact, then less and less.
+double presence(const ForceGains& gains, const ApproachLimitState& state) noexcept {
+  const double in_contact =
+      std::max(state.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
+  return std::min(1.0, state.memory_N_per_m / in_contact);
+}
+
 /// Of the first level.
 void holdRow(const ForceGains& gains, const ApproachLimitState& state, SpeedRow& row) noexcept {
   const double m = state.memory_N_per_m;
@@ -22,6 +29,7 @@ void holdRow(const ForceGains& gains, const ApproachLimitState& state, SpeedRow&
   row.v_max_m_per_s =
       (gains.contact_threshold_N - state.smoother.contact.force_N - m * state.way_ahead_m) / Tm;
   row.damping_N_s_per_m = Tm;
+  row.presence = presence(gains, state);
 }
 
 void tell(const ForceGains& gains, const ModuleContactState& state,
@@ -109,6 +117,7 @@ void SeveralContacts::addRow(const ForceGains& gains, const TaskKinematics& kine
     rows.row[rows.size++] = place.row;
   }
   module.limit.limitRows(gains, contactForce_N(gains, state), cosine, state.approach, first, rows);
+  for (int i = first; i < rows.size; ++i) rows.row[i].presence = presence(gains, state.approach);
 }
 
 void SeveralContacts::addRows(const ForceGains& gains, const TaskKinematics& kinematics,

@@ -24,16 +24,18 @@ RowMatrix responses(const SpeedRows& rows, const RowSpace& space, int task_size)
 }
 
 /// delta
-RowVector yielding(const SpeedRows& rows, const RowMatrix& K) {
+RowVector yielding(const SpeedRows& rows, const RowSpace& space, const RowMatrix& K) {
   RowVector delta(rows.size);
   for (int i = 0; i < rows.size; ++i) {
+    const SpeedRow& row = rows.row[i];
     double opposition = 0.0;
     for (int j = 0; j < rows.size; ++j) {
       const double against = std::min(0.0, K(i, j));
-      opposition += against * against / (K(i, i) * K(j, j));
+      opposition += row.presence * rows.row[j].presence * (against * against / (K(i, i) * K(j, j)));
     }
-    delta[i] = kYielding_N_s_m / rows.row[i].damping_N_s_per_m * std::min(1.0, opposition) +
-               kProximal * K(i, i);
+    const double most =
+        std::min(kYielding_N_s_m / row.damping_N_s_per_m, space.max_yielding * K(i, i));
+    delta[i] = most * std::min(1.0, opposition) + kProximal * K(i, i);
   }
   return delta;
 }
@@ -68,7 +70,7 @@ RowMultipliers findMultipliers(const SpeedRows& rows, const RowSpace& space, int
   RowMultipliers found{RowVector::Zero(rows.size)};
   if ((lacking.array() <= 0.0).all()) return found;
   RowMatrix K = responses(rows, space, task_size);
-  const RowVector delta = yielding(rows, K);
+  const RowVector delta = yielding(rows, space, K);
   K.diagonal() += delta;
   RowVector& l = found.l;
   for (int i = 0; i < kRepetitions && found.is_whole; ++i) {

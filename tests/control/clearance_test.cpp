@@ -65,7 +65,7 @@ struct GuardedArm {
     kinematics.pseudoinverse.factorise(J, n, config.task.size);
     SpeedRows rows;
     clearance->add(near, kinematics, ones, q, v, period_s, rows);
-    JointLimitRows(config.limits).add(q, kinematics, ones, 1.0, rows);
+    JointLimitRows(config.limits, true).add(q, kinematics, ones, 1.0, rows);
     Motion motion;
     motion.y.setZero();
     motion.v_scaled = scaled(wanted, ones);

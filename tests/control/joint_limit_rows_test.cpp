@@ -33,7 +33,7 @@ struct LimitedCase {
     for (int i = 0; i < m; ++i) motion.y[i] = random.uniform(-1.0, 1.0);
     share = random.chance(0.5) ? 1.0 : random.uniform(0.1, 1.0);
     rows.size = 0;
-    JointLimitRows(limits).add(q, kinematics, inv_sqrt, share, rows);
+    JointLimitRows(limits, false).add(q, kinematics, inv_sqrt, share, rows);
   }
 
   double left(int joint) const { return 1.0 - std::abs(q[joint]); }
@@ -96,7 +96,7 @@ TEST(JointLimitRows, OfAJointBeyondItsLimitLetItOnlyBack) {
   c.q.setZero();
   c.q[0] = 1.1;
   c.rows.size = 0;
-  JointLimitRows(c.limits).add(c.q, c.kinematics, c.inv_sqrt, 1.0, c.rows);
+  JointLimitRows(c.limits, false).add(c.q, c.kinematics, c.inv_sqrt, 1.0, c.rows);
   ASSERT_EQ(c.rows.size, 1);
   EXPECT_EQ(c.rows.row[0].v_max_m_per_s, 0.0);
   EXPECT_LT(c.rows.row[0].a_scaled[0], 0.0);

@@ -2,54 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include "support/expanded_pseudoinverse.h"
-#include "support/random_jacobian.h"
-#include "support/random_robot.h"
+#include "support/rows_case.h"
+#include "tactus/math/contact_space.h"
 
 namespace tactus {
 namespace {
 
-/// Rows and a motion of a random robot, and what both mean in joints.
-struct RowsCase {
-  RowsCase(test::Random& random, int count)
-      : n(random.integer(4, kMaxJoints)),
-        m(random.integer(1, std::min(n - 1, kMaxTaskSize))),
-        weights(test::randomWeights(random, n)),
-        inv_sqrt(test::inverseSquareRoot(weights)),
-        inverse(test::expandPseudoinverse(
-            test::randomJacobian(random, test::randomSpectrum(random, m, 0.1, 5.0), weights),
-            weights)) {
-    rows.size = count;
-    for (int i = 0; i < count; ++i) {
-      setRow(i, random.vector(n, -1.0, 1.0));
-      rows.row[i].v_max_m_per_s = random.uniform(-0.2, 0.5);
-      rows.row[i].damping_N_s_per_m = random.logUniform(10.0, 1e5);
-    }
-    motion.v_scaled = scaled(random.vector(n, -1.0, 1.0), ScaledVector::Ones());
-    motion.y.setZero();
-    for (int i = 0; i < m; ++i) motion.y[i] = random.uniform(-1.0, 1.0);
-  }
-
-  void setRow(int i, const JointVector& a) {
-    if (A.rows() == 0) A = Eigen::MatrixXd::Zero(rows.size, n);
-    A.row(i) = a;
-    rows.row[i].a_scaled = scaled(a, inv_sqrt);
-    rows.row[i].a_task = inverse.factors.project(rows.row[i].a_scaled);
-  }
-
-  Eigen::VectorXd joints(const Motion& of) const {
-    const ScaledVector v = of.v_scaled + inverse.factors.expand(of.y);
-    return v.cwiseProduct(inv_sqrt).head(n);
-  }
-
-  int n, m;
-  JointVector weights;
-  ScaledVector inv_sqrt;
-  test::ExpandedPseudoinverse inverse;
-  SpeedRows rows;
-  Eigen::MatrixXd A;
-  Motion motion;
-};
+using test::RowsCase;
 
 TEST(SpeedRows, AddMATransposedL) {
   test::Random random(311);
@@ -125,6 +84,76 @@ TEST(SpeedRows, LeaveAMotionAloneThatKeepsThem) {
   const Eigen::VectorXd before = c.joints(c.motion);
   EXPECT_TRUE(keepSpeedRows(c.rows, c.m, c.motion).isZero(0.0));
   EXPECT_EQ(before, c.joints(c.motion));
+}
+
+/// With one row and no null space they are the approach limit's u_t = min(0, v_res + v_max) / k_t.
+TEST(SpeedRows, OfOneContactAloneAreItsLaw) {
+  test::Random random(314);
+  int active = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const RowsCase c(random, 1);
+    const SpeedRow& row = c.rows.row[0];
+    const double k_j = dot(row.a_scaled, row.a_scaled);
+    const double k_t = dot(row.a_task, row.a_task, c.m);
+    const double v_res = dot(row.a_scaled, c.motion.v_scaled) + dot(row.a_task, c.motion.y, c.m);
+    const double u_t = std::min(0.0, v_res + row.v_max_m_per_s) * invertRegularised(k_t, k_j);
+    const RowMultipliers found = findMultipliers(c.rows, {1.0, 0.0, kNoLimit}, c.m, c.motion);
+    ASSERT_TRUE(found.is_whole);
+    ASSERT_NEAR(found.l[0], -u_t, 1e-12 * (1.0 + std::abs(u_t))) << i;
+    active += u_t < 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(active, 1000);
+}
+
+TEST(SpeedRows, InTheNullSpaceAloneLeaveTheTask) {
+  test::Random random(315);
+  for (int i = 0; i < 1000; ++i) {
+    RowsCase c(random, random.integer(1, 8));
+    const Eigen::VectorXd before = c.joints(c.motion);
+    const RowMultipliers found = findMultipliers(c.rows, kNullSpaceAlone, c.m, c.motion);
+    addRows(c.rows, found.l, kNullSpaceAlone, c.motion);
+    const Eigen::VectorXd change = c.joints(c.motion) - before;
+    ASSERT_LT((change - c.inverse.N * change).norm(), 1e-9 * (1.0 + change.norm())) << i;
+  }
+}
+
+/// Whatever the solver has no time for: the arm stops before it breaks a row that standing keeps.
+TEST(SpeedRows, AreKeptByASlowerMotionWhereTheSolverMustEndEarly) {
+  test::Random random(316);
+  int cut = 0;
+  for (int i = 0; i < 5000; ++i) {
+    RowsCase c(random, random.integer(2, kMaxRows));
+    const int steps = random.integer(0, 1);
+    const bool is_whole = findMultipliers(c.rows, kBothSpaces, c.m, c.motion, steps).is_whole;
+    keepSpeedRows(c.rows, c.m, c.motion, steps);
+    const Eigen::VectorXd speed = c.A * c.joints(c.motion);
+    ASSERT_TRUE(speed.allFinite());
+    if (is_whole) continue;
+    ++cut;
+    for (int row = 0; row < c.rows.size; ++row) {
+      const double v_max = c.rows.row[row].v_max_m_per_s;
+      if (v_max >= 0.0) {
+        ASSERT_GE(speed[row], -v_max - 1e-9) << i;
+      }
+    }
+  }
+  EXPECT_GT(cut, 1000);
+}
+
+/// What the bound of the solver's steps is for.
+TEST(SpeedRows, AreSolvedWithinTheirStepsHoweverTheyOpposeEachOther) {
+  test::Random random(317);
+  for (int i = 0; i < 3000; ++i) {
+    RowsCase c(random, random.integer(2, kMaxRows));
+    for (int row = 1; row < c.rows.size; ++row) {
+      if (!random.chance(0.3)) continue;
+      const JointVector other = c.A.row(random.index(row));
+      c.setRow(row, JointVector(random.sign() * other + 1e-3 * random.vector(c.n, -1.0, 1.0)));
+    }
+    const RowMultipliers found = findMultipliers(c.rows, kBothSpaces, c.m, c.motion);
+    ASSERT_TRUE(found.is_whole) << i;
+    ASSERT_TRUE(found.l.allFinite() && found.l.minCoeff() >= 0.0);
+  }
 }
 
 }  // namespace

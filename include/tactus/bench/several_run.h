@@ -10,8 +10,8 @@ namespace tactus {
 struct SeveralRun {
   struct Module {
     double peak_N = 0.0;
-    /// What no law could avoid, see naturalScale(): the largest of the first touches of all
-    /// obstacles on this module.
+    /// What no law could avoid, see naturalScale(): the largest of all touches of this
+    /// module, but for bounces.
     double scale_N = 0.0;
     double restlessness_N = 0.0;  ///< standard deviation over the last JudgedRun::kRest_s
     double mean_at_rest_N = 0.0;  ///< over them

@@ -9,13 +9,15 @@ namespace tactus {
 /// The joints' position limits as rows, for a motion that keeps others, too: what a contact asks
 /// for then takes another way, instead of being cut behind the law's back. Of joints that are less
 /// than 0.25 (m or rad) from a limit:
-///   |q_dot_j| <= min(gamma d_j, sqrt(a_j d_j)) towards it
-/// d_j: what is left to it; gamma = 5 / s; a_j: max_acceleration, of which half brakes that. Scaled
-/// so that W^-1/2 a of a row is 0.3 long, as a contact point's may be.
+///   |q_dot_j| <= min(gamma d_j, sqrt(a_j d_j)) / p_j towards it
+/// d_j: what is left to it; gamma = 5 / s; a_j: max_acceleration, of which half brakes that; p_j =
+/// 1, or, so that no row begins with a step, 1 - d_j / 0.25. Scaled so that W^-1/2 a of a row is
+/// 0.3 long, as a contact point's may be.
 // clang-format on
 class JointLimitRows {
  public:
-  explicit JointLimitRows(const JointLimits& limits) : limits_(limits) {}
+  /// fades: the latter.
+  JointLimitRows(const JointLimits& limits, bool fades) : limits_(limits), fades_(fades) {}
 
   /// Adds a row for each joint that its own limits let come faster than that. share: of the contact
   /// that is left, 1 in contact; the rows widen as it fades.
@@ -24,6 +26,7 @@ class JointLimitRows {
 
  private:
   JointLimits limits_;
+  bool fades_;
 };
 
 }  // namespace tactus

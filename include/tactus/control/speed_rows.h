@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "tactus/control/gains.h"
 #include "tactus/control/motion.h"
 #include "tactus/math/complementarity.h"
 
@@ -13,6 +14,7 @@ struct SpeedRow {
   PaddedTaskVector a_task;  ///< Q^T W^-1/2 a
   double v_max_m_per_s;
   double damping_N_s_per_m;  ///< D = dF/dv: force that costs one m/s too much, > 0
+  double presence;           ///< p: from 0 where a row begins to exist, so that it makes no step
 };
 
 /// So many of them, without memory of more.
@@ -24,11 +26,14 @@ struct SpeedRows {
 /// What a change of the motion costs: M = (task J#J + null_space N) W^-1.
 struct RowSpace {
   double task, null_space;
+  double max_yielding;  ///< of delta_i, as a share of K_ii
 };
 
-inline constexpr RowSpace kNullSpaceAlone{0.0, 1.0};
+/// Yielding in proportion to forces would be most of what a null space that hardly moves the
+/// contact can do; the other level has that.
+inline constexpr RowSpace kNullSpaceAlone{0.0, 1.0, 0.1};
 /// The null space, being cheap, does most, and stopping all is within reach.
-inline constexpr RowSpace kBothSpaces{1.0, 30.0};
+inline constexpr RowSpace kBothSpaces{1.0, 30.0, kNoLimit};
 
 // clang-format off: equations
 /// The least change of a motion q_1 that keeps all rows:
@@ -38,7 +43,8 @@ inline constexpr RowSpace kBothSpaces{1.0, 30.0};
 /// l_i with delta_i in proportion to 1 / D_i, which is an equilibrium of forces; rows without
 /// opponents are exact. From l = 0 four times
 ///   l <- LCP(K + diag(delta), d + delta l),
-///   delta_i = delta_0 / D_i min(1, sum_j o_ij) + 1e-6 K_ii,   o_ij = min(0, K_ij)^2 / (K_ii K_jj)
+///   delta_i = delta_0 / D_i min(1, sum_j o_ij) + 1e-6 K_ii
+///   o_ij = p_i p_j min(0, K_ij)^2 / (K_ii K_jj)
 /// with delta_0 = 1.5 N s m and K_ii at least max(1e-3 |W^-1/2 a_i|^2, 1e-4). Derived in
 /// docs/gate.md.
 // clang-format on
