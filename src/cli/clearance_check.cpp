@@ -9,28 +9,17 @@
 #include <vector>
 
 #include "tactus/cli/contact_report.h"
-#include "tactus/control/body_distances.h"
+#include "tactus/control/nearest_body.h"
 #include "tactus/scene/clearance_loader.h"
 #include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {
 
-struct NearestPair {
-  int index = 0;
-  double distance_m = kNoLimit;
-};
-
-NearestPair nearestAtStart(const ControllerConfig& config) {
-  const BodyDistances distances(config.chain, *config.clearance);
+NearestBody nearestAtStart(const ControllerConfig& config) {
   ChainPose pose;
   config.chain.computePose(config.q_start, pose);
-  NearestPair nearest;
-  for (int i = 0; i < distances.size(); ++i) {
-    const double distance_m = distances.distance_m(pose, i);
-    if (distance_m < nearest.distance_m) nearest = {i, distance_m};
-  }
-  return nearest;
+  return nearestBody(BodyDistances(config.chain, *config.clearance), pose);
 }
 
 void addOnce(std::vector<std::string>& names, const std::string& name) {
@@ -97,10 +86,10 @@ Scene withCapsules(const Scene& scene, const std::string& proposed) {
 std::string clearanceText(const Scene& scene) {
   if (!scene.controller.clearance) return "";
   const ClearanceConfig& config = *scene.controller.clearance;
-  const NearestPair nearest = nearestAtStart(scene.controller);
+  const NearestBody nearest = nearestAtStart(scene.controller);
   std::string text = textLine(
-      "clearance",
-      fmt::format("{:g} m of {} pairs of capsules and {} with walls; nearest at the start {}, "
+      "clear",
+      fmt::format("by {:g} m of {} pairs of capsules and {} with walls; nearest at the start {}, "
                   "{:.4g} m",
                   config.safe_distance_m, config.pairs.size(), config.wall_pairs.size(),
                   namesOfPair(config, scene.clearance, nearest.index), nearest.distance_m));
@@ -115,7 +104,7 @@ std::string clearanceText(const Scene& scene) {
 void addClearance(const Scene& scene, Json& json) {
   if (!scene.controller.clearance) return;
   const ClearanceConfig& config = *scene.controller.clearance;
-  const NearestPair nearest = nearestAtStart(scene.controller);
+  const NearestBody nearest = nearestAtStart(scene.controller);
   Json links = Json::array();
   for (const LinkPairs& link : pairsByLink(scene))
     links.push_back({{"link", link.link}, {"others", link.others}});

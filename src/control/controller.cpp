@@ -172,8 +172,8 @@ void Controller::limit(const PreparedCycle& prepared, double period_s, Controlle
 bool Controller::admits(const PreparedCycle& prepared, double period_s,
                         const ControllerState& state, const JointVector& velocity) const noexcept {
   return limiter_.admits(state.q_desired, state.velocity_before, period_s, velocity) &&
-         (!clearance_ ||
-          clearance_->canStopAfter(prepared.near, state.q_desired, velocity, period_s));
+         (!clearance_ || clearance_->canStopAfter(prepared.kinematics.pose, prepared.near,
+                                                  state.q_desired, velocity, period_s));
 }
 
 /// What the limits cut from the contact point's motion is told to the law, which must not ask for
@@ -185,8 +185,8 @@ void Controller::cut(const PreparedCycle& prepared, double period_s, ControllerS
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
   if (clearance_)
-    clearance_->holdBack(prepared.near, state.q_desired, state.velocity_before, period_s,
-                         output.velocity);
+    clearance_->holdBack(prepared.kinematics.pose, prepared.near, state.q_desired,
+                         state.velocity_before, period_s, output.velocity);
   if (contact_controller_ && mayMove(state) && !isEqual(wanted, output.velocity))
     state.contact.cut_m_per_s =
         std::max(0.0, retreat(motion.a, wanted) - retreat(motion.a, output.velocity));

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "tactus/control/body_distances.h"
+#include "tactus/control/nearest_body.h"
 #include "tactus/scene/capsule_loader.h"
 
 namespace tactus {
@@ -212,21 +212,13 @@ std::string apartText(double distance_m) {
 void checkClearAtStart(const Loading& l) {
   const ClearanceConfig& config = l.named.config;
   const SerialChain chain(l.robot.chain.joints, l.robot.chain.tip);
-  const BodyDistances distances(chain, config);
   ChainPose pose;
   chain.computePose(l.q_start, pose);
-  int nearest = -1;
-  double nearest_m = config.safe_distance_m;
-  for (int i = 0; i < distances.size(); ++i) {
-    const double distance_m = distances.distance_m(pose, i);
-    if (distance_m >= nearest_m) continue;
-    nearest = i;
-    nearest_m = distance_m;
-  }
-  if (nearest < 0) return;
+  const NearestBody nearest = nearestBody(BodyDistances(chain, config), pose);
+  if (nearest.distance_m >= config.safe_distance_m) return;
   l.fail("safe_distance_m",
-         fmt::format("{} {} at the start", namesOfPair(config, l.named.names, nearest),
-                     apartText(nearest_m)),
+         fmt::format("{} {} at the start", namesOfPair(config, l.named.names, nearest.index),
+                     apartText(nearest.distance_m)),
          fmt::format("at least {} m, or a pair of links under exclude", config.safe_distance_m));
 }
 

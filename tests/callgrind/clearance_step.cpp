@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
     clearance.findNear(prepared.kinematics.pose, near);
     clearance.add(near, prepared.kinematics, ScaledVector::Ones(), state.q_desired,
                   state.velocity_before, kPeriod_s, rows);
-    clearance.canStopAfter(near, state.q_desired, state.velocity_before, kPeriod_s);
+    clearance.canStopAfter(prepared.kinematics.pose, near, state.q_desired, state.velocity_before,
+                           kPeriod_s);
     CALLGRIND_TOGGLE_COLLECT;
     controller.update({state.q_desired, {}}, config.gains, cycle * kPeriod_s, kPeriod_s, state,
                       output);

@@ -95,7 +95,7 @@ TEST(ClearanceLoad, EndsAsOneLine) {
               "clearance.influence_distance_m: 0.1 m is not above safe_distance_m, expected more "
               "than 0.1");
   expectError("  avoid: {distance_m: 0.02}\n",
-              "scene.yaml:22:23: clearance.avoid.distance_m: 0.02 m is not above safe_distance_m");
+              "scene.yaml:23:23: clearance.avoid.distance_m: 0.02 m is not above safe_distance_m");
   expectError("  safe_distance_m: -1\n", "clearance.safe_distance_m: '-1' is out of range");
   expectError("  keep_out: [{}]\n", "clearance.keep_out[0]: ");
   expectBody("for: all", ": no shape, expected one of plane, sphere, post");
@@ -118,7 +118,7 @@ TEST(ClearanceLoad, RefusesAStartThatIsNotClear) {
     return test::loadError(clearFiles(section).sources());
   };
   const std::string close = errorOf("  safe_distance_m: 0.25\n  influence_distance_m: 1\n");
-  EXPECT_NE(close.find("scene.yaml:22:20: clearance.safe_distance_m: base and cover are 0."),
+  EXPECT_NE(close.find("scene.yaml:23:20: clearance.safe_distance_m: base and cover are 0."),
             std::string::npos)
       << close;
   EXPECT_NE(close.find("at the start, expected at least 0.25 m"), std::string::npos) << close;
