@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tactus/cli/arm_check.h"
+#include "tactus/cli/clearance_check.h"
 #include "tactus/cli/commands.h"
 #include "tactus/cli/contact_report.h"
 #include "tactus/cli/touch_check.h"
@@ -155,6 +156,7 @@ Json checkJson(const Scene& scene, const Findings& findings) {
                {"warnings", findings.warnings}};
   if (findings.stability) json["stability"] = stabilityJson(*findings.stability);
   addContact(findings.contact, json);
+  addClearance(scene, json);
   addHardware(scene, json);
   return json;
 }
@@ -205,6 +207,7 @@ std::string toText(const Scene& scene, const Findings& findings) {
                             start.p_BaseTool.x(), start.p_BaseTool.y(), start.p_BaseTool.z(),
                             start.smallest_singular_value));
   text += coversText(findings.covers);
+  text += clearanceText(scene);
   if (findings.stability) text += stabilityText(*findings.stability);
   text += contactText(findings.contact);
   for (const std::string& warning : findings.warnings) line("warning", warning);
@@ -220,7 +223,8 @@ std::string toText(const Scene& scene, const Findings& findings) {
 void runCheck(const CheckOptions& options) {
   const Scene scene = loadScene(options.scene, parseOverrides(options.settings));
   if (options.capsules) {
-    std::fputs(proposeCapsules(scene).c_str(), stdout);
+    const std::string proposed = proposeCapsules(scene);
+    std::fputs((proposed + touchingCapsules(scene, proposed)).c_str(), stdout);
     return;
   }
   const Findings findings = examine(scene);

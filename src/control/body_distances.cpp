@@ -1,6 +1,8 @@
 #include "tactus/control/body_distances.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -9,7 +11,6 @@
 namespace tactus {
 namespace {
 
-/// Both ends of a NearBody, or one.
 double lengthOf(const LinkCapsule& capsule) {
   return (capsule.p_LinkTo - capsule.p_LinkFrom).norm();
 }
@@ -31,19 +32,51 @@ Vector3 middleOf(const Segment& segment) noexcept {
   return segment.p_Start + 0.5 * segment.length_m * segment.direction;
 }
 
-/// The place for one more: of a full list that of the furthest, if it is further than that; else
-/// null.
-NearBody* placeFor(double distance_m, NearBodies& near) noexcept {
-  if (near.size < kMaxNearBodies) return &near.body[near.size++];
+/// A vector as two of its components and the third one, which takes fewer instructions.
+struct Coordinates {
+  Pair xy;
+  double z;
+};
+inline Coordinates operator+(Coordinates a, Coordinates b) { return {a.xy + b.xy, a.z + b.z}; }
+inline Coordinates operator*(double a, Coordinates b) { return {a * b.xy, a * b.z}; }
+
+inline void store(Coordinates v, Vector3& vector) {
+  storePair(v.xy, vector.data());
+  vector[2] = v.z;
+}
+
+/// R v, R by columns.
+inline Coordinates turned(const double* R, const Vector3& v) {
+  const auto column = [R](int i) { return Coordinates{pairAt(R + 3 * i), R[3 * i + 2]}; };
+  return v[0] * column(0) + v[1] * column(1) + v[2] * column(2);
+}
+
+inline Coordinates at(const JointPoints& points, int joint) {
+  return {Pair{points.x[joint], points.y[joint]}, points.z[joint]};
+}
+
+NearBody& furthestOf(NearBodies& near) noexcept {
   NearBody* furthest = near.body.data();
   for (NearBody& body : near.body)
     if (body.distance_m > furthest->distance_m) furthest = &body;
-  if (furthest->distance_m <= distance_m) {
-    near.beyond_m = std::min(near.beyond_m, distance_m);
-    return nullptr;
+  return *furthest;
+}
+
+/// The place for one more at this distance; null if it is out of reach, or if the list is full of
+/// nearer ones.
+NearBody* placeFor(double distance_m, double reach_m, NearBodies& near) noexcept {
+  NearBody* place = nullptr;
+  double left_out_m = distance_m;
+  if (distance_m <= reach_m) {
+    if (near.size < kMaxNearBodies) return &near.body[near.size++];
+    NearBody& furthest = furthestOf(near);
+    if (furthest.distance_m > distance_m) {
+      place = &furthest;
+      left_out_m = furthest.distance_m;
+    }
   }
-  near.beyond_m = std::min(near.beyond_m, furthest->distance_m);
-  return furthest;
+  near.beyond_m = std::min(near.beyond_m, left_out_m);
+  return place;
 }
 
 }  // namespace
@@ -56,12 +89,13 @@ BodyDistances::BodyDistances(const SerialChain& chain, const ClearanceConfig& co
       const LinkCapsule& capsule = config.capsules[i];
       if ((capsule.link.joint >= 0) != moves) continue;
       places[i] = static_cast<int>(capsules_.size());
-      capsules_.push_back({capsule.link.joint, axisInJoint(capsule), capsule.radius_m});
-      if (!moves) p_FixedMiddle_.push_back(middleOf(capsules_.back().axis));
+      const Segment axis = axisInJoint(capsule);
+      capsules_.push_back({capsule.link.joint, axis, middleOf(axis), capsule.radius_m});
     }
     if (moves) moving_ = static_cast<int>(capsules_.size());
   }
-  if (moving_ > kMaxMovingCapsules) throw std::invalid_argument("too many capsules that move");
+  if (moving_ > kMaxMovingCapsules || static_cast<int>(capsules_.size()) > kMaxCapsules)
+    throw std::invalid_argument("too many capsules");
   for (const CapsulePair& pair : config.pairs) {
     int a = places[pair.capsule];
     int b = places[pair.other];
@@ -87,12 +121,12 @@ Segment BodyDistances::place(const Capsule& capsule, const ChainPose& pose) noex
 double BodyDistances::distance_m(const ChainPose& pose, int index) const noexcept {
   const auto pairs = static_cast<int>(pairs_.size());
   if (index < pairs) {
-    const Pair& pair = pairs_[index];
+    const CapsulesApart& pair = pairs_[index];
     const Segment other = place(capsules_[pair.other], pose);
     return closestPoints(place(capsules_[pair.capsule], pose), straightOf(other)).distance_m -
            pair.radii_m;
   }
-  const Wall& wall = walls_[index - pairs];
+  const CapsuleAtWall& wall = walls_[index - pairs];
   const Capsule& capsule = capsules_[wall.capsule];
   return closestPoints(place(capsule, pose), wall.half_space).distance_m - capsule.radius_m;
 }
@@ -101,109 +135,136 @@ void BodyDistances::findNear(const ChainPose& pose, double reach_m,
                              NearBodies& near) const noexcept {
   Placed placed;
   for (int i = 0; i < moving_; ++i) {
-    placed.axis[i] = place(capsules_[i], pose);
-    placed.p_Middle[i] = middleOf(placed.axis[i]);
+    const Capsule& capsule = capsules_[i];
+    const double* const R = pose.R_BaseJoint[capsule.joint].data();
+    const Coordinates direction = turned(R, capsule.axis.direction);
+    const Coordinates start = turned(R, capsule.axis.p_Start) + at(pose.p_BaseJoint, capsule.joint);
+    placed.axis[i].length_m = capsule.axis.length_m;
+    store(direction, placed.axis[i].direction);
+    store(start, placed.axis[i].p_Start);
+    store(start + 0.5 * capsule.axis.length_m * direction, placed.p_Middle[i]);
   }
+  for (int i = moving_; i < static_cast<int>(capsules_.size()); ++i)
+    placed.p_Middle[i] = capsules_[i].p_Middle;
   near.size = 0;
   near.beyond_m = kNoLimit;
-  findNearPairs(pose, reach_m, placed, near);
-  findNearWalls(pose, reach_m, placed, near);
+  double beyond_m = kNoLimit;
+  int index = 0;
+  for (const CapsulesApart& pair : pairs_) {
+    const Vector3& p = placed.p_Middle[pair.capsule];
+    const Vector3& p_Other = placed.p_Middle[pair.other];
+    const double x = p[0] - p_Other[0], y = p[1] - p_Other[1], z = p[2] - p_Other[2];
+    const double at_least_m = std::sqrt(x * x + y * y + z * z) - pair.bounds_m;
+    if (at_least_m <= reach_m) {
+      tellOfPair(pose, reach_m, placed, index, near);
+    } else {
+      beyond_m = std::min(beyond_m, at_least_m);
+    }
+    ++index;
+  }
+  near.beyond_m = std::min(near.beyond_m, beyond_m);
+  for (int i = 0; i < static_cast<int>(walls_.size()); ++i)
+    tellOfWall(pose, reach_m, placed, i, near);
 }
 
-void BodyDistances::findNearPairs(const ChainPose& pose, double reach_m, const Placed& placed,
-                                  NearBodies& near) const noexcept {
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const Pair& pair = pairs_[i];
-    const bool is_fixed = pair.other >= moving_;
-    const Vector3& p_Other =
-        is_fixed ? p_FixedMiddle_[pair.other - moving_] : placed.p_Middle[pair.other];
-    const double at_least_m = (placed.p_Middle[pair.capsule] - p_Other).norm() - pair.bounds_m;
-    if (at_least_m > reach_m) {
-      near.beyond_m = std::min(near.beyond_m, at_least_m);
-      continue;
-    }
-    const Segment& axis = placed.axis[pair.capsule];
-    const Segment& other = is_fixed ? capsules_[pair.other].axis : placed.axis[pair.other];
-    const ClosestPoints closest = closestPoints(axis, straightOf(other));
-    const double distance_m = closest.distance_m - pair.radii_m;
-    NearBody* const body = distance_m > reach_m ? nullptr : placeFor(distance_m, near);
-    if (!body) {
-      near.beyond_m = std::min(near.beyond_m, distance_m);
-      continue;
-    }
-    const double rise = axis.length_m * closest.normal.dot(axis.direction);
-    const double highest = std::max(0.0, other.length_m * closest.normal.dot(other.direction));
-    const double first = closest.normal.dot(axis.p_Start - other.p_Start) - highest - pair.radii_m;
-    body->index = static_cast<int>(i);
+void BodyDistances::tellOfPair(const ChainPose& pose, double reach_m, const Placed& placed,
+                               int index, NearBodies& near) const noexcept {
+  const CapsulesApart& pair = pairs_[index];
+  const Segment& axis = placed.axis[pair.capsule];
+  const Segment& other =
+      pair.other < moving_ ? placed.axis[pair.other] : capsules_[pair.other].axis;
+  const ClosestPoints closest = closestPoints(axis, straightOf(other));
+  const double distance_m = closest.distance_m - pair.radii_m;
+  NearBody* const body = placeFor(distance_m, reach_m, near);
+  if (!body) return;
+  body->index = index;
+  body->distance_m = distance_m;
+  body->normal = closest.normal;
+  computeGradient(pose, capsules_[pair.capsule].joint, capsules_[pair.other].joint,
+                  closest.p_Segment, *body);
+}
+
+void BodyDistances::tellOfWall(const ChainPose& pose, double reach_m, const Placed& placed,
+                               int index, NearBodies& near) const noexcept {
+  const CapsuleAtWall& wall = walls_[index];
+  const Capsule& capsule = capsules_[wall.capsule];
+  const Segment& axis = placed.axis[wall.capsule];
+  const Vector3& normal = wall.half_space.normal;
+  const double first = normal.dot(axis.p_Start - wall.half_space.p_Surface) - capsule.radius_m;
+  const int ends = axis.length_m > 0.0 ? 2 : 1;
+  for (int end = 0; end < ends; ++end) {
+    const double way_m = end == 0 ? 0.0 : axis.length_m;
+    const double distance_m = first + way_m * normal.dot(axis.direction);
+    NearBody* const body = placeFor(distance_m, reach_m, near);
+    if (!body) continue;
+    body->index = static_cast<int>(pairs_.size()) + index;
     body->distance_m = distance_m;
-    body->ends = axis.length_m > 0.0 ? 2 : 1;
-    body->share = body->ends == 2 ? closest.position_m / axis.length_m : 0.0;
-    body->height_m = {first, first + rise};
-    computeGradients(pose, capsules_[pair.capsule].joint, capsules_[pair.other].joint, axis,
-                     closest.normal, *body);
+    body->normal = normal;
+    computeGradient(pose, capsule.joint, -1, axis.p_Start + way_m * axis.direction, *body);
   }
 }
 
-void BodyDistances::findNearWalls(const ChainPose& pose, double reach_m, const Placed& placed,
-                                  NearBodies& near) const noexcept {
-  for (std::size_t i = 0; i < walls_.size(); ++i) {
-    const Wall& wall = walls_[i];
-    const Capsule& capsule = capsules_[wall.capsule];
-    const Segment& axis = placed.axis[wall.capsule];
-    const Vector3& normal = wall.half_space.normal;
-    const double first = normal.dot(axis.p_Start - wall.half_space.p_Surface) - capsule.radius_m;
-    const int ends = axis.length_m > 0.0 ? 2 : 1;
-    for (int end = 0; end < ends; ++end) {
-      const double way_m = end == 0 ? 0.0 : axis.length_m;
-      const double distance_m = first + way_m * normal.dot(axis.direction);
-      NearBody* const body = distance_m > reach_m ? nullptr : placeFor(distance_m, near);
-      if (!body) {
-        near.beyond_m = std::min(near.beyond_m, distance_m);
-        continue;
-      }
-      body->index = static_cast<int>(pairs_.size() + i);
-      body->distance_m = distance_m;
-      body->ends = 1;
-      body->share = 0.0;
-      body->height_m = {distance_m, distance_m};
-      computeGradients(pose, capsule.joint, -1,
-                       {axis.p_Start + way_m * axis.direction, axis.direction, 0.0}, normal, *body);
-    }
-  }
-}
-
-/// z^T (r x n) of a revolute joint's axis z, r from the joint to the end; two joints at a time. The
-/// joints before both capsules move neither against the other.
-void BodyDistances::computeGradients(const ChainPose& pose, int joint, int other_joint,
-                                     const Segment& axis, const Vector3& normal,
-                                     NearBody& near) const noexcept {
-  ScaledVector& first = near.gradient[0];
-  ScaledVector& second = near.gradient[1];
-  first.setZero();
-  const double n_x = normal[0], n_y = normal[1], n_z = normal[2];
-  const Vector3& p = axis.p_Start;
-  const Vector3 turn = axis.length_m * axis.direction.cross(normal);
-  const double t_x = turn[0], t_y = turn[1], t_z = turn[2];
-  if (near.ends == 2) second.setZero();
-  for (int i = (other_joint + 1) / 2 * 2; i <= joint; i += 2) {
-    const auto z_x = alignedPairAt(pose.axis_Base.x + i), z_y = alignedPairAt(pose.axis_Base.y + i),
-               z_z = alignedPairAt(pose.axis_Base.z + i);
-    const auto r_x = p[0] - alignedPairAt(pose.p_BaseJoint.x + i),
-               r_y = p[1] - alignedPairAt(pose.p_BaseJoint.y + i),
-               r_z = p[2] - alignedPairAt(pose.p_BaseJoint.z + i);
-    const auto rise = z_x * (r_y * n_z - r_z * n_y) + z_y * (r_z * n_x - r_x * n_z) +
-                      z_z * (r_x * n_y - r_y * n_x);
-    storePair(rise, &first[i]);
-    if (near.ends == 2) storePair(rise + (z_x * t_x + z_y * t_y + z_z * t_z), &second[i]);
+/// z^T (r x n) of a revolute joint's axis z, r from the joint to the point; two joints at a time.
+/// The joints before both capsules move neither against the other.
+void BodyDistances::computeGradient(const ChainPose& pose, int joint, int other_joint,
+                                    const Vector3& p_Base, NearBody& near) const noexcept {
+  double* const gradient = near.gradient.data();
+  for (int i = 0; i < kMaxJoints; i += 2) storePair(Pair{0.0, 0.0}, gradient + i);
+  const double n_x = near.normal[0], n_y = near.normal[1], n_z = near.normal[2];
+  const double p_x = p_Base[0], p_y = p_Base[1], p_z = p_Base[2];
+  const int begin = (other_joint + 1) / 2 * 2;
+  for (int i = begin; i <= joint; i += 2) {
+    const Pair r_x = p_x - alignedPairAt(pose.p_BaseJoint.x + i);
+    const Pair r_y = p_y - alignedPairAt(pose.p_BaseJoint.y + i);
+    const Pair r_z = p_z - alignedPairAt(pose.p_BaseJoint.z + i);
+    storePair(alignedPairAt(pose.axis_Base.x + i) * (r_y * n_z - r_z * n_y) +
+                  alignedPairAt(pose.axis_Base.y + i) * (r_z * n_x - r_x * n_z) +
+                  alignedPairAt(pose.axis_Base.z + i) * (r_x * n_y - r_y * n_x),
+              gradient + i);
   }
   for (const int i : chain_.prismaticJoints()) {
     if (i > joint) break;
-    first[i] = second[i] = pose.axis_Base[i].dot(normal);
+    if (i > other_joint) gradient[i] = pose.axis_Base[i].dot(near.normal);
   }
-  for (ScaledVector* gradient : {&first, &second}) {
-    if (other_joint >= 0) gradient->head(other_joint + 1).setZero();
-    if (joint + 1 < kMaxJoints) (*gradient)[joint + 1] = 0.0;
+  // What the first and the last pair had too many.
+  if (begin == other_joint) gradient[begin] = 0.0;
+  if (joint + 1 < kMaxJoints) gradient[joint + 1] = 0.0;
+}
+
+/// A point p of the capsule moves by turn x p + shift against the other.
+double BodyDistances::leftAfter_m(const ChainPose& pose, const NearBody& near,
+                                  const ScaledVector& step) const noexcept {
+  const auto pairs = static_cast<int>(pairs_.size());
+  const bool is_wall = near.index >= pairs;
+  const int place_of = is_wall ? walls_[near.index - pairs].capsule : pairs_[near.index].capsule;
+  const Capsule& capsule = capsules_[place_of];
+  const Segment axis = place(capsule, pose);
+  double level_m = capsule.radius_m;
+  int other_joint = -1;
+  if (is_wall) {
+    level_m += near.normal.dot(walls_[near.index - pairs].half_space.p_Surface);
+  } else {
+    const Capsule& other = capsules_[pairs_[near.index].other];
+    const Segment other_axis = place(other, pose);
+    const double rise = other_axis.length_m * near.normal.dot(other_axis.direction);
+    level_m += other.radius_m + near.normal.dot(other_axis.p_Start) + std::max(0.0, rise);
+    other_joint = other.joint;
   }
+  Vector3 turn = Vector3::Zero();
+  Vector3 shift = Vector3::Zero();
+  for (int i = other_joint + 1; i <= capsule.joint; ++i) {
+    const Vector3 moved = step[i] * pose.axis_Base[i];
+    if (chain_.type(i) == JointType::kPrismatic) {
+      shift += moved;
+    } else {
+      turn += moved;
+      shift += pose.p_BaseJoint[i].cross(moved);
+    }
+  }
+  const Vector3 p_End = axis.p_Start + axis.length_m * axis.direction;
+  return std::min(near.normal.dot(axis.p_Start + turn.cross(axis.p_Start) + shift),
+                  near.normal.dot(p_End + turn.cross(p_End) + shift)) -
+         level_m;
 }
 
 }  // namespace tactus

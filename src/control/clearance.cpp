@@ -36,9 +36,7 @@ void Clearance::add(const NearBodies& near, const TaskKinematics& kinematics,
     const NearBody& body = near.body[i];
     if (!(body.distance_m < config_.influence_distance_m)) continue;
     SpeedRow& row = rows.row[rows.size++];
-    row.a_scaled = body.gradient[0];
-    if (body.share > 0.0) row.a_scaled += body.share * (body.gradient[1] - body.gradient[0]);
-    row.a_scaled.array() *= inv_sqrt_weights.array();
+    row.a_scaled = body.gradient.cwiseProduct(inv_sqrt_weights);
     row.a_task = kinematics.pseudoinverse.project(row.a_scaled);
     row.presence = std::min(1.0, (config_.influence_distance_m - body.distance_m) /
                                      (config_.influence_distance_m - config_.safe_distance_m));
@@ -47,30 +45,33 @@ void Clearance::add(const NearBodies& near, const TaskKinematics& kinematics,
   }
 }
 
-bool Clearance::canStopAfter(const NearBodies& near, const JointVector& q,
+bool Clearance::canStopAfter(const ChainPose& pose, const NearBodies& near, const JointVector& q,
                              const JointVector& velocity, double period_s) const noexcept {
   const StoppingWay way = ways_.of(q, velocity, period_s);
-  for (int i = 0; i < q.size(); ++i) {
-    const double q_end = q[i] + way.time_s * velocity[i];
-    if (q_end < limits_.lower[i] || q_end > limits_.upper[i]) return false;
+  ScaledVector step = ScaledVector::Zero();
+  const auto joints = static_cast<int>(q.size());
+  for (int i = 0; i < joints; ++i) {
+    step.data()[i] = way.time_s * velocity.data()[i];
+    const double q_end = q.data()[i] + step.data()[i];
+    if (q_end < limits_.lower.data()[i] || q_end > limits_.upper.data()[i]) return false;
   }
   const double d_s = config_.safe_distance_m;
-  if (near.beyond_m - way.time_s * way.speed_m_per_s < std::min(d_s, near.beyond_m)) return false;
+  const double furthest_m = way.time_s * way.speed_m_per_s;
+  if (near.beyond_m - furthest_m < std::min(d_s, near.beyond_m)) return false;
   const double bend_m = 0.5 * way.acceleration_m_per_s2 * way.time_s * way.time_s;
-  const ScaledVector step = scaled(velocity, ScaledVector::Constant(way.time_s));
   for (int i = 0; i < near.size; ++i) {
     const NearBody& body = near.body[i];
-    const double least_m = std::min(d_s, body.distance_m) + bend_m;
-    for (int end = 0; end < body.ends; ++end)
-      if (body.height_m[end] + dot(body.gradient[end], step) < least_m) return false;
+    if (body.distance_m - furthest_m >= d_s) continue;
+    const double left_m = distances_.leftAfter_m(pose, body, step) - bend_m;
+    if (left_m < std::min(d_s, body.distance_m)) return false;
   }
   return true;
 }
 
-void Clearance::holdBack(const NearBodies& near, const JointVector& q,
+void Clearance::holdBack(const ChainPose& pose, const NearBodies& near, const JointVector& q,
                          const JointVector& velocity_before, double period_s,
                          JointVector& velocity) const noexcept {
-  if (canStopAfter(near, q, velocity, period_s)) return;
+  if (canStopAfter(pose, near, q, velocity, period_s)) return;
   const double ramp_s = ways_.ramp_s(velocity_before);
   const double left = ramp_s > period_s ? 1.0 - period_s / ramp_s : 0.0;
   const JointVector ramp = left * velocity_before;
@@ -79,7 +80,7 @@ void Clearance::holdBack(const NearBodies& near, const JointVector& q,
   double step = 0.5;
   for (int i = 0; i < kHalvings; ++i, step *= 0.5) {
     const JointVector tried = ramp + (share + step) * change;
-    if (canStopAfter(near, q, tried, period_s)) share += step;
+    if (canStopAfter(pose, near, q, tried, period_s)) share += step;
   }
   velocity = ramp + share * change;
 }

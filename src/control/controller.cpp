@@ -141,7 +141,7 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   if (config_.force_control) answerContact(gains, kinematics, period_s, state, output, motion);
   const bool keeps_rows =
       config_.force_control && config_.force_control->variant == Variant::kNullLimit;
-  if (gate_.clearance() && !keeps_rows)
+  if (gate_.clearance() && !keeps_rows && mayMove(state))
     state.contact.cut_by_rows_m_per_s = keepClear(kinematics, period_s, state, motion);
 
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
@@ -190,8 +190,9 @@ void Controller::limit(const PreparedCycle& prepared, double period_s, Controlle
 bool Controller::admits(const PreparedCycle& prepared, double period_s,
                         const ControllerState& state, const JointVector& velocity) const noexcept {
   return limiter_.admits(state.q_desired, state.velocity_before, period_s, velocity) &&
-         (!gate_.clearance() || gate_.clearance()->canStopAfter(
-                                    prepared.kinematics.near, state.q_desired, velocity, period_s));
+         (!gate_.clearance() ||
+          gate_.clearance()->canStopAfter(prepared.kinematics.pose, prepared.kinematics.near,
+                                          state.q_desired, velocity, period_s));
 }
 
 /// What the limits cut from the contact point's motion is told to the law, which must not ask for
@@ -203,8 +204,8 @@ void Controller::cut(const PreparedCycle& prepared, double period_s, ControllerS
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
   if (gate_.clearance())
-    gate_.clearance()->holdBack(prepared.kinematics.near, state.q_desired, state.velocity_before,
-                                period_s, output.velocity);
+    gate_.clearance()->holdBack(prepared.kinematics.pose, prepared.kinematics.near, state.q_desired,
+                                state.velocity_before, period_s, output.velocity);
   if (contact_controller_ && mayMove(state) && !isEqual(wanted, output.velocity))
     state.contact.cut_m_per_s =
         std::max(0.0, retreat(motion.a, wanted) - retreat(motion.a, output.velocity));

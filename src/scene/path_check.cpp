@@ -29,7 +29,9 @@ std::string slowestJoint(const Scene& scene, const JointVector& velocity) {
   const double share =
       (velocity.cwiseAbs().array() / scene.controller.limits.max_velocity.array()).maxCoeff(&joint);
   constexpr double kFull = 0.999;
-  if (share < kFull) return "limits of position or acceleration, or a singular pose, hold it back";
+  if (share < kFull)
+    return fmt::format("limits of position or acceleration, {}or a singular pose, hold it back",
+                       scene.controller.clearance ? "the clearance " : "");
   return fmt::format("joint {} is at its largest speed of {:g}", scene.joint_names[joint],
                      scene.controller.limits.max_velocity[joint]);
 }

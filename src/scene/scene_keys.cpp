@@ -1,3 +1,4 @@
+#include "tactus/scene/clearance_keys.h"
 #include "tactus/scene/key_builders.h"
 #include "tactus/scene/key_defaults.h"
 #include "tactus/scene/scene_config.h"
@@ -214,6 +215,7 @@ Table<SceneConfig> sceneTable() {
       redundancySection(),
       controllerSection(),
       stiffnessSection(),
+      clearanceSection(),
       simulationSection(),
       group<Config>("real_time", "what this scene asks of the machine that runs it on hardware",
                     {boolean("required", "false: run even where real time is not granted",

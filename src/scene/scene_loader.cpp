@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "tactus/scene/capsule_loader.h"
+#include "tactus/scene/clearance_loader.h"
 #include "tactus/scene/cover_keys.h"
 #include "tactus/scene/drive_effects_loader.h"
 #include "tactus/scene/dynamics_loader.h"
@@ -194,6 +195,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
   const JointVector q_start = readStart(root, config, robot);
   checkScene(root, config, robot, q_start);
   const NamedCapsules capsules = loadCapsules(robot, config.controller.has_value());
+  std::optional<NamedClearance> clearance = loadClearance(root, config, robot, q_start);
   const std::optional<HardwareConfig> hardware = chooseHardware(config, robot);
   if (hardware && use == SceneUse::kHardware) {
     checkHardware(root, robot.root, config.period_s, robot.config, *hardware);
@@ -219,6 +221,10 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
               .capsule_links = capsules.links,
               .troubles = loadTroubles(root, config.simulation.troubles, hardware),
               .tree = std::make_shared<const YamlNode>(root)};
+  if (clearance) {
+    scene.controller.clearance = std::move(clearance->config);
+    scene.clearance = std::move(clearance->names);
+  }
   return scene;
 }
 

@@ -13,6 +13,7 @@ std::vector<std::string> stageNames(const ControllerConfig& config) {
       names.push_back("approach_limit");
     }
   }
+  if (config.clearance) names.push_back("clearance");
   names.insert(names.end(), {"limits", "telemetry"});
   return names;
 }

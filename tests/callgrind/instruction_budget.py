@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Counts the instructions of one control step in contact and fails above the budget.
+"""Counts the instructions of one control step, or a part of it, and fails above the budget.
 
 usage: instruction_budget.py PROGRAM BUDGET [ARGUMENT]     PROGRAM prints how many steps it had
 collected"""
@@ -21,7 +21,7 @@ def instructions_a_step(command):
 def main():
     budget = float(sys.argv[2])
     count, steps = instructions_a_step(sys.argv[1:2] + sys.argv[3:])
-    print(f"{count:.0f} instructions a control step (mean of {steps} in contact), budget {budget:.0f}")
+    print(f"{count:.0f} instructions a control step (mean of {steps}), budget {budget:.0f}")
     # A count far too small would mean that nothing was measured.
     return 0 if 500 < count <= budget and steps > 1000 else 1
 

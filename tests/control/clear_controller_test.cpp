@@ -72,7 +72,7 @@ TEST(ClearController, KeepsItWhateverHappens) {
       if (!state.is_stopping) t_s += 0.001;
       ChainPose pose;
       config.chain.computePose(state.q_desired, pose);
-      least_m = std::min(least_m, test::nearest_m(distances, pose));
+      least_m = std::min(least_m, nearestBody(distances, pose).distance_m);
       ASSERT_GE(least_m, config.clearance->safe_distance_m - 1e-12) << run << " cycle " << cycle;
       ASSERT_EQ(output.fault, Fault::kNone);
     }

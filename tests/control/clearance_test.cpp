@@ -46,7 +46,7 @@ struct GuardedArm {
     if (has_rows) keepRows(wanted);
     const JointVector before = v;
     CommandLimiter(config.limits).apply(q, before, period_s, wanted);
-    clearance->holdBack(near, q, before, period_s, wanted);
+    clearance->holdBack(kinematics.pose, near, q, before, period_s, wanted);
     const JointVector change = (wanted - before).cwiseAbs();
     ASSERT_LE((change - period_s * config.limits.max_acceleration).maxCoeff(), 1e-12);
     ASSERT_LE((wanted.cwiseAbs() - config.limits.max_velocity).maxCoeff(), 1e-12);
@@ -76,7 +76,7 @@ struct GuardedArm {
   double nearest() {
     ChainPose pose;
     config.chain.computePose(q, pose);
-    return test::nearest_m(clearance->distances(), pose);
+    return nearestBody(clearance->distances(), pose).distance_m;
   }
 
   test::Random& random;
@@ -127,10 +127,10 @@ TEST(Clearance, LetsAnArmGoWhereItIsClear) {
     arm.step(JointVector::Zero(arm.n), false);
     if (arm.near.size == 0) continue;
     JointVector away = JointVector::Zero(arm.n);
-    for (int k = 0; k < arm.near.size; ++k) away += arm.near.body[k].gradient[0].head(arm.n);
+    for (int k = 0; k < arm.near.size; ++k) away += arm.near.body[k].gradient.head(arm.n);
     away *= 0.05;
     JointVector passed = away;
-    arm.clearance->holdBack(arm.near, arm.q, arm.v, arm.period_s, passed);
+    arm.clearance->holdBack(arm.kinematics.pose, arm.near, arm.q, arm.v, arm.period_s, passed);
     ++all;
     clear += passed == away ? 1 : 0;
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "support/random_robot.h"
-#include "tactus/control/body_distances.h"
+#include "tactus/control/nearest_body.h"
 
 /// What a random arm must keep clear of: itself, walls, balls and bars around it.
 namespace tactus::test {
@@ -67,13 +67,6 @@ inline void leaveOutTouching(const SerialChain& chain, const JointVector& q,
     if (i >= pairs) clear.wall_pairs.push_back(config.wall_pairs[i - pairs]);
   }
   config = clear;
-}
-
-inline double nearest_m(const BodyDistances& distances, const ChainPose& pose) {
-  double nearest_m = kNoLimit;
-  for (int i = 0; i < distances.size(); ++i)
-    nearest_m = std::min(nearest_m, distances.distance_m(pose, i));
-  return nearest_m;
 }
 
 }  // namespace tactus::test

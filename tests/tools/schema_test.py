@@ -70,6 +70,13 @@ stiffness:
   stiffest_N_per_m: 7000
   estimate: {min_force_change_N: 0.2, filter_time_constant_s: 0.03, min_N_per_m: 10,
              max_N_per_m: 1e6}
+clearance:
+  safe_distance_m: 0.02
+  influence_distance_m: 0.1
+  avoid: {distance_m: 0.15, gain_per_s: 2}
+  self_collision: true
+  exclude: [{link: link4, other: link5}]
+  keep_out: [{plane: {point_m: [9, 0, 0], normal: [-1, 0, 0]}, for: all}]
 simulation:
   duration_s: 13
   arm: quasi_static
@@ -100,10 +107,10 @@ log: {max_bytes: 1e9, keep: 4, min_free_bytes: 1e8}
 
 
 SHAPES = (
-    {"sphere": {"center_m": [0.7, 0, 1], "radius_m": 0.1}},
-    {"plane": {"point_m": [0.9, 0, 0], "normal": [-1, 0, 0]}},
+    {"sphere": {"center_m": [0.7, 0, 3], "radius_m": 0.1}},
+    {"plane": {"point_m": [9, 0, 0], "normal": [-1, 0, 0]}},
     {"line": {"point_m": [0.7, 0, 0], "direction": [0, 0, 1]}},
-    {"post": {"foot_m": [0.7, 0, 0], "axis": [0, 0, 1], "height_m": 1, "radius_m": 0.01}},
+    {"post": {"foot_m": [2, 0, 0], "axis": [0, 0, 1], "height_m": 1, "radius_m": 0.01}},
 )
 
 
@@ -184,6 +191,8 @@ class Case(unittest.TestCase):
         for shape in SHAPES:
             shaped.append(copy.deepcopy(scene))
             shaped[-1]["simulation"]["obstacles"] = [shape | {"stiffness_N_per_m": 60}]
+            if "line" not in shape:
+                shaped[-1]["clearance"]["keep_out"] = [shape]
         revolute_first = copy.deepcopy(robot)
         revolute_first["drives"]["joints"].append(revolute_first["drives"]["joints"].pop(0))
         listed = copy.deepcopy(robot)

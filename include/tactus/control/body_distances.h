@@ -10,17 +10,14 @@ namespace tactus {
 
 inline constexpr int kMaxNearBodies = 12;      ///< that one configuration tells of
 inline constexpr int kMaxMovingCapsules = 72;  ///< of an arm
+inline constexpr int kMaxCapsules = 136;       ///< with those that are fixed
 
-/// A capsule that is near to another one or to a wall. Its height above that is measured along the
-/// normal between them, which is taken as fixed to the other: so the lower end is a lower bound of
-/// the distance, as long as neither turns much.
+/// A capsule that is near to another one, or an end of a capsule near to a wall.
 struct NearBody {
-  int index = 0;            ///< of BodyDistances
-  double distance_m = 0.0;  ///< < 0: they overlap
-  double share = 0.0;       ///< where it is nearest: 0 its first end, 1 its second
-  int ends = 1;             ///< that differ: 1 of a ball, and of a wall, which has a body an end
-  std::array<double, 2> height_m{};      ///< of each end
-  std::array<ScaledVector, 2> gradient;  ///< dheight/dq, m/m or m/rad, not scaled
+  int index;              ///< of BodyDistances
+  double distance_m;      ///< < 0: they overlap
+  Vector3 normal;         ///< from the other to it, base frame
+  ScaledVector gradient;  ///< of the distance, m/m or m/rad, not scaled
 };
 
 /// The nearest ones, in no order.
@@ -33,8 +30,8 @@ struct NearBodies {
 /// Distances of the pairs of a ClearanceConfig, then of its wall pairs, in their order.
 class BodyDistances {
  public:
-  /// Throws std::invalid_argument for more moving capsules than kMaxMovingCapsules, and for pairs
-  /// of which nothing moves.
+  /// Throws std::invalid_argument for more capsules than there may be, and for pairs of which
+  /// nothing moves.
   BodyDistances(const SerialChain& chain, const ClearanceConfig& config);
 
   int size() const noexcept { return static_cast<int>(pairs_.size() + walls_.size()); }
@@ -43,41 +40,46 @@ class BodyDistances {
   /// What is nearer than reach_m.
   void findNear(const ChainPose& pose, double reach_m, NearBodies& near) const noexcept;
 
+  /// To first order in a step of the joints from this pose, at least what is left of a distance:
+  /// that along the normal, taken as fixed to the other, of the end that is lower then.
+  double leftAfter_m(const ChainPose& pose, const NearBody& near,
+                     const ScaledVector& step) const noexcept;
+
  private:
   struct Capsule {
     int joint;  ///< -1: its axis is in the base frame
     Segment axis;
+    Vector3 p_Middle;  ///< of the axis
     double radius_m;
   };
-  struct Pair {
+  struct CapsulesApart {
     int capsule, other;  ///< the first one moves with a later joint
     double bounds_m;     ///< sum of the radii of balls around both
     double radii_m;
   };
-  struct Wall {
+  struct CapsuleAtWall {
     int capsule;
     HalfSpace half_space;
   };
-  /// Of all capsules in one pose.
+  /// All capsules in one pose, as far as they move.
   struct Placed {
+    std::array<Vector3, kMaxCapsules> p_Middle;
     std::array<Segment, kMaxMovingCapsules> axis;
-    std::array<Vector3, kMaxMovingCapsules> p_Middle;
   };
 
   static Segment place(const Capsule& capsule, const ChainPose& pose) noexcept;
-  void findNearPairs(const ChainPose& pose, double reach_m, const Placed& placed,
-                     NearBodies& near) const noexcept;
-  void findNearWalls(const ChainPose& pose, double reach_m, const Placed& placed,
-                     NearBodies& near) const noexcept;
-  void computeGradients(const ChainPose& pose, int joint, int other_joint, const Segment& axis,
-                        const Vector3& normal, NearBody& near) const noexcept;
+  void tellOfPair(const ChainPose& pose, double reach_m, const Placed& placed, int index,
+                  NearBodies& near) const noexcept;
+  void tellOfWall(const ChainPose& pose, double reach_m, const Placed& placed, int index,
+                  NearBodies& near) const noexcept;
+  void computeGradient(const ChainPose& pose, int joint, int other_joint, const Vector3& p_Base,
+                       NearBody& near) const noexcept;
 
   SerialChain chain_;
   std::vector<Capsule> capsules_;  ///< those that move first
   int moving_ = 0;
-  std::vector<Vector3> p_FixedMiddle_;
-  std::vector<Pair> pairs_;
-  std::vector<Wall> walls_;
+  std::vector<CapsulesApart> pairs_;
+  std::vector<CapsuleAtWall> walls_;
 };
 
 }  // namespace tactus

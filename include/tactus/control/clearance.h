@@ -17,10 +17,11 @@ namespace tactus {
 ///   d_min = d_s + min(1 mm, (d_i - d_s) / 10) + 1/2 acceleration time^2
 /// But rows are of first order, the nearest alone, may exclude each other, and the limiter may not
 /// be able to follow them. So a command passes only if the arm could still stop after it, all
-/// joints together: with the normal between both held, for each end of a capsule
-///   height + time gradient^T q_dot - 1/2 acceleration time^2 >= min(d_s, d)
-/// (a lower bound of d all the way), the same with `speed` for what is beyond the near ones, and
-/// q + time q_dot within the joints' limits. Else it passes as far as that holds of
+/// joints together: d, as it is left after time q_dot with the normal held (see leftAfter_m), shall
+///   d_left - 1/2 acceleration time^2 >= min(d_s, d)
+/// which is a lower bound of d all the way; of what is beyond the near ones
+///   d - speed time >= min(d_s, d)
+/// and q + time q_dot be within the joints' limits. Else it passes as far as that holds of
 ///   q_dot_ramp + s (q_dot - q_dot_ramp),   0 <= s <= 1
 /// where q_dot_ramp goes on with that stop from the velocity before, which is known to be clear.
 /// Cycles that are missed are not part of that.
@@ -42,13 +43,14 @@ class Clearance {
            const ScaledVector& inv_sqrt_weights, const JointVector& q,
            const JointVector& velocity_before, double period_s, SpeedRows& rows) const noexcept;
 
-  /// Whether the arm could still stop after a cycle with this velocity.
-  bool canStopAfter(const NearBodies& near, const JointVector& q, const JointVector& velocity,
-                    double period_s) const noexcept;
+  /// Whether the arm could still stop after a cycle with this velocity, at q with this pose.
+  bool canStopAfter(const ChainPose& pose, const NearBodies& near, const JointVector& q,
+                    const JointVector& velocity, double period_s) const noexcept;
 
   /// Of a velocity that is finite and within the limits of the limiter what may pass.
-  void holdBack(const NearBodies& near, const JointVector& q, const JointVector& velocity_before,
-                double period_s, JointVector& velocity) const noexcept;
+  void holdBack(const ChainPose& pose, const NearBodies& near, const JointVector& q,
+                const JointVector& velocity_before, double period_s,
+                JointVector& velocity) const noexcept;
 
  private:
   ClearanceConfig config_;

@@ -33,11 +33,18 @@ class StoppingWays {
   double ramp_s(const JointVector& velocity) const noexcept;
 
  private:
+  using PerJoint = std::array<double, kMaxJoints>;
+  PerJoint levers_m(const JointVector& q, const JointVector& velocity,
+                    double time_s) const noexcept;
+
   SerialChain chain_;
   JointVector q_measured_;  ///< where the lengths were
-  JointVector inv_acceleration_;
-  std::array<double, kMaxJoints> to_next_m_{};  ///< from each joint to the next one
-  std::array<double, kMaxJoints> own_m_{};      ///< from it to the furthest end of its own capsules
+  PerJoint inv_acceleration_{};
+  PerJoint turns_{};        ///< 1 of a revolute joint, else 0
+  PerJoint to_next_m_{};    ///< from each joint to the next one
+  PerJoint own_m_{};        ///< from it to the furthest end of its own capsules
+  bool lengthens_ = false;  ///< by a prismatic joint behind a revolute one
+  PerJoint lever_m_;        ///< r_j, if it does not
 };
 
 }  // namespace tactus

@@ -60,6 +60,11 @@ inline constexpr std::array kArmWords = {
     Word<SimulatedArm>{"flexible_gears", SimulatedArm::kFlexibleGears},
 };
 
+inline constexpr std::array kKeptLinksWords = {
+    Word<KeptLinks>{"all", KeptLinks::kAll},
+    Word<KeptLinks>{"tool", KeptLinks::kTool},
+};
+
 /// The word of a value; empty if it has none.
 template <class Words, class T>
 std::string wordOf(const Words& words, const T& value) {

@@ -39,6 +39,12 @@ struct ArmDescription {
   JointVector max_effort;                       ///< N or Nm; infinite where the URDF has none
 };
 
+/// Of what ClearanceConfig has: links as the URDF spells them, and keys of bodies.
+struct ClearanceNames {
+  std::vector<std::string> capsules, walls;
+  std::vector<CapsulePair> touching;  ///< left out, as they always touch
+};
+
 /// One run: a robot, a task, a controller and, for simulation, a world.
 struct Scene {
   std::string name;  ///< file name without .yaml
@@ -62,6 +68,7 @@ struct Scene {
   std::optional<HardwareConfig> hardware{};
   LogConfig log{};
   std::vector<std::string> capsule_links{};  ///< of plant.capsules, as the URDF spells them
+  ClearanceNames clearance{};                ///< empty without controller.clearance
   std::vector<Trouble> troubles{};           ///< of the plant on the buses; simulation has none
   /// The scene with all it extends, for errors that are found later; null if it was not read.
   std::shared_ptr<const YamlNode> tree{};

@@ -66,6 +66,31 @@ struct SimulationSection {
   std::vector<TroubleSection> troubles;
 };
 
+/// Which links keep clear of a body.
+enum class KeptLinks : std::uint8_t { kAll, kTool };
+
+/// Exactly one of the shapes is given.
+struct KeepOutSection {
+  std::optional<PlaneConfig> plane;
+  std::optional<SphereConfig> sphere;
+  std::optional<PostConfig> post;
+  KeptLinks links = KeptLinks::kAll;
+};
+
+/// Names in the URDF.
+struct ExcludedPair {
+  std::string link, other;
+};
+
+struct ClearanceSection {
+  double safe_distance_m = ClearanceConfig{}.safe_distance_m;
+  double influence_distance_m = ClearanceConfig{}.influence_distance_m;
+  std::optional<ClearanceAvoidance> avoid;
+  bool self_collision = true;
+  std::vector<ExcludedPair> exclude;
+  std::vector<KeepOutSection> keep_out;
+};
+
 /// The position of the tool; with a rotation only if a scene says so.
 inline TaskConfig positionTask() {
   TaskConfig task;
@@ -88,6 +113,7 @@ struct SceneConfig {
   bool has_joint_limit_avoidance = false;
   std::optional<ForceControlConfig> controller;  ///< without what `stiffness` says
   std::optional<StiffnessSection> stiffness;
+  std::optional<ClearanceSection> clearance;
   SimulationSection simulation;
   bool requires_real_time = RealTimeConfig{}.required;
   LogConfig log;
