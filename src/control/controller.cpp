@@ -47,6 +47,8 @@ Controller::Controller(const ControllerConfig& config)
       trajectory_(config.task.trajectory, tipPose(config.chain, config.q_start)),
       inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
       has_rotation_(config.task.hasRotation()),
+      is_acceleration_level_(config.force_control &&
+                             config.force_control->level == ControlLevel::kAcceleration),
       limiter_(config.limits),
       limit_rows_(config.limits) {
   if (config.has_joint_limit_avoidance)
@@ -130,11 +132,14 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   state.progress = prepared.progress;
   output.contact = {};
   sense(input, period_s, state, output);
+  FreeAcceleration free;
+  if (is_acceleration_level_)
+    free = freeAcceleration(gains, output.path_time_s, period_s, prepared, state);
   if (contact_controller_)
     contact_controller_->update(
         gains, kinematics, state.modules.front().contact,
-        {state.q_desired, state.velocity_before, mayMove(state), state.return_share}, period_s,
-        state.contact, output.contact, motion);
+        {state.q_desired, state.velocity_before, mayMove(state), state.return_share, &free},
+        period_s, state.contact, output.contact, motion);
 
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();

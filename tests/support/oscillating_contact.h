@@ -39,7 +39,10 @@ struct LoopCase {
 inline void PrintTo(const LoopCase& c, std::ostream* stream) { *stream << c.name; }
 
 inline void setForceControl(const LoopCase& c, ControllerConfig& config) {
-  config.force_control = {.variant = c.variant, .order = c.loop.order};
+  config.force_control = {
+      .variant = c.variant,
+      .level = c.loop.is_acceleration ? ControlLevel::kAcceleration : ControlLevel::kVelocity,
+      .order = c.loop.order};
   ForceGains& gains = config.gains.force;
   gains = {};
   gains.time_constant_s = c.loop.time_constant_s;

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "tactus/control/acceleration_law.h"
 #include "tactus/control/approach_limit.h"
 #include "tactus/control/contact_point.h"
 #include "tactus/control/contact_transition.h"
@@ -49,6 +50,7 @@ struct CommandedMotion {
   const JointVector& velocity;  ///< the previous command
   bool is_followed;             ///< this cycle's command moves the arm; false: it stops, or rests
   double return_share = 1.0;    ///< of the pull, see return_speed.h
+  const FreeAcceleration* free = nullptr;  ///< acceleration level only
 };
 
 /// The answer to contact: contact space, stiffness estimate, contact transition and law, added to
@@ -91,8 +93,17 @@ class ContactController {
   /// The approach limit beside the joints' limits, with friction that of all corners of the cone.
   /// Returns what stands for u_t.
   double limitRows(const ForceGains& gains, const TaskKinematics& kinematics,
-                   const JointVector& q_desired, const ContactSpace& space, double F_p_N,
-                   ContactControllerState& state, Motion& motion) const noexcept;
+                   const CommandedMotion& commanded, const ContactSpace& space, double F_p_N,
+                   double period_s, ContactControllerState& state, Motion& motion) const noexcept;
+  /// Acceleration level: the least speed of the contact point in this cycle, on the way from its
+  /// last one to v_least with k_v.
+  double eased(const ForceGains& gains, const ContactSpace& space, const CommandedMotion& commanded,
+               double period_s, double v_least) const noexcept;
+  /// The law of either level.
+  ControlLawOutput answer(const ForceGains& gains, const TaskKinematics& kinematics,
+                          const Contact& contact, const CommandedMotion& commanded,
+                          const ControlLawInput& input, double period_s, ControlLawState& state,
+                          Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
   TaskVector pull(const Gains& gains, const PaddedTaskVector& error) const noexcept;
 
@@ -105,6 +116,7 @@ class ContactController {
   bool has_estimator_;
   ScaledVector inv_sqrt_weights_;
   ControlLaw law_;
+  std::optional<AccelerationLaw> acceleration_law_;
   std::optional<ApproachLimit> approach_limit_;
   std::optional<FrictionCone> friction_cone_;  ///< with the approach limit alone
   std::optional<JointLimitRows> limit_rows_;   ///< likewise

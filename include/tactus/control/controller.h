@@ -136,6 +136,9 @@ class Controller {
   void computeTaskMotion(const TaskGains& gains, const ControllerState& state,
                          PreparedCycle& prepared) const noexcept;
   JointLimitCost limitCost(const Gains& gains, ControllerState& state) const noexcept;
+  FreeAcceleration freeAcceleration(const Gains& gains, double path_time_s, double period_s,
+                                    const PreparedCycle& prepared,
+                                    ControllerState& state) const noexcept;
   void avoidJointLimits(const Gains& gains, const TaskKinematics& kinematics,
                         ControllerState& state, Motion& motion) const noexcept;
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
@@ -163,6 +166,7 @@ class Controller {
   Trajectory trajectory_;
   ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
   bool has_rotation_;
+  bool is_acceleration_level_;
   CommandLimiter limiter_;
   JointLimitRows limit_rows_;              ///< of a retreat
   std::vector<CoverCompensation> covers_;  ///< one a module, or none
