@@ -36,9 +36,11 @@ double nullSpeed(const ForceGains& gains, const ControlLawInput& input, const Ta
   const double P = 2.0 * gains.damping / (gains.time_constant_s * input.stiffness_N_per_m);
   const double floor = P * std::min(0.0, input.F_p_N) - input.x_dot_ff_m_per_s;
   const double gamma = x_dot_eff < 0.0 ? input.x_dot_ff_m_per_s / x_dot_eff : 0.0;
-  const double faded = std::min(step.share, 1.0 - input.integral_decay) * (floor - s_n);
-  const double pushed = step.per_N * input.F_p_N - step.damped_m_per_s - gamma * x_change + faded;
-  return s_n + std::max(step.share * (floor - s_n), pushed);
+  const double to_floor = step.share * (floor - s_n);
+  const double fading = std::min(step.share, 1.0 - input.integral_decay);
+  const double pushed = step.per_N * input.F_p_N - step.damped_m_per_s - gamma * x_change +
+                        fading * std::min(0.0, floor - s_n);
+  return s_n + std::max(to_floor, pushed + std::max(0.0, to_floor));
 }
 
 /// s_t likewise.

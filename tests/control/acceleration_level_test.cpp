@@ -51,7 +51,7 @@ TEST(AccelerationLevel, KeepsItsTaskWhileTheNullSpaceGivesWay) {
       moved = std::max(moved, (state.q_desired - controller.config().q_start).norm());
     }
   }
-  EXPECT_GT(moved, 0.1);
+  EXPECT_GT(moved, 0.05);
 }
 
 /// Without contact it is the motion of the velocity level, whatever k_v is.

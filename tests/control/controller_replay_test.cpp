@@ -20,10 +20,8 @@ void expectSameAgain(const ControllerConfig& config, test::Random& random) {
 
 TEST(ControllerReplay, RecordedInputsGiveEveryOutputAgainToTheBit) {
   test::Random random(181);
-  for (const Variant variant : test::kAllVariants)
-    expectSameAgain(test::fullController(random, 7, variant), random);
-  for (const Variant variant : test::kAccelerationVariants)
-    expectSameAgain(test::fullController(random, 7, variant, ControlLevel::kAcceleration), random);
+  for (const auto& [variant, level] : test::allLaws())
+    expectSameAgain(test::fullController(random, 7, variant, level), random);
 }
 
 TEST(ControllerReplay, ACopyOfTheStateGoesOnLikeTheOriginal) {

@@ -146,16 +146,7 @@ TEST_P(NoAllocation, WhileAFaultBringsTheArmToRest) {
   EXPECT_EQ(output.fault, Fault::kTactileInvalid);
 }
 
-std::vector<std::pair<Variant, ControlLevel>> lawsOfBothLevels() {
-  std::vector<std::pair<Variant, ControlLevel>> laws;
-  for (const Variant variant : test::kAllVariants)
-    laws.emplace_back(variant, ControlLevel::kVelocity);
-  for (const Variant variant : test::kAccelerationVariants)
-    laws.emplace_back(variant, ControlLevel::kAcceleration);
-  return laws;
-}
-
-INSTANTIATE_TEST_SUITE_P(Laws, NoAllocation, testing::ValuesIn(lawsOfBothLevels()));
+INSTANTIATE_TEST_SUITE_P(Laws, NoAllocation, testing::ValuesIn(test::allLaws()));
 
 TEST(NoAllocationInPose, WhereTheTaskInverseIsDamped) {
   // A stretched planar arm: exactly singular along x.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
 #include <vector>
 
 #include "support/random_limits.h"
@@ -122,5 +123,14 @@ inline constexpr Variant kAllVariants[] = {
 /// Those that there are at the acceleration level.
 inline constexpr Variant kAccelerationVariants[] = {Variant::kNullSpace, Variant::kNullTask,
                                                     Variant::kNullLimit};
+
+/// All of both levels.
+inline std::vector<std::pair<Variant, ControlLevel>> allLaws() {
+  std::vector<std::pair<Variant, ControlLevel>> laws;
+  for (const Variant variant : kAllVariants) laws.emplace_back(variant, ControlLevel::kVelocity);
+  for (const Variant variant : kAccelerationVariants)
+    laws.emplace_back(variant, ControlLevel::kAcceleration);
+  return laws;
+}
 
 }  // namespace tactus::test

@@ -106,11 +106,12 @@ BEYOND_FIGURES = [
 LEVEL_FIGURES = [
     PaperFigure(
         12, "Scenario 1, soft band: contact force at both levels",
-        "XXX",
+        "The band is far softer than assumed: at the acceleration level the force peaks lower, and "
+        "creeps to 5 N.",
         *FORCE, [MULTI, LEVEL_1], label_peak=True),
     PaperFigure(
         13, "Scenario 3, profile alone: contact force at both levels",
-        "XXX",
+        "With the estimate peak and rest are those of the velocity level.",
         *FORCE, [ESTIMATED_3, LEVEL_3], label_peak=True),
     PaperFigure(
         14, "Scenario 3: jerk at both levels",
