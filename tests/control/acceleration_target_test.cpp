@@ -29,7 +29,7 @@ ControllerConfig accelerationRail(Variant variant) {
   return config;
 }
 
-/// Runs from kPressed_N at rest until check(t_s, F_N) returns false.
+/// Runs from kPressed_N at rest until check(t_s, F_N, u_t before) returns false.
 template <typename Check>
 void runAccelerationLoop(const ControllerConfig& config, double stiffness_N_per_m, Check check) {
   const test::RailWorld world{stiffness_N_per_m, -kPressed_N / stiffness_N_per_m};
@@ -40,7 +40,7 @@ void runAccelerationLoop(const ControllerConfig& config, double stiffness_N_per_
   ControllerOutput output;
   for (int cycle = 0; cycle * kStep_s < 2.0; ++cycle) {
     const double t_s = cycle * kStep_s;
-    if (!check(t_s, world.force_N(state.q_desired))) return;
+    if (!check(t_s, world.force_N(state.q_desired), output.contact.u_t)) return;
     controller.update(world.input(state), controller.initialGains(), t_s, kStep_s, state, output);
     ASSERT_EQ(output.fault, Fault::kNone);
   }
@@ -49,7 +49,7 @@ void runAccelerationLoop(const ControllerConfig& config, double stiffness_N_per_
 /// The damping is the target's whatever the stiffness: F'' = -2 d / T F' - c_e / (c T^2) F.
 void expectTarget(const ControllerConfig& config, double ratio) {
   int cycles = 0;
-  runAccelerationLoop(config, ratio * kTaken_N_per_m, [&](double t_s, double F_N) {
+  runAccelerationLoop(config, ratio * kTaken_N_per_m, [&](double t_s, double F_N, double) {
     const double expected =
         decayed(2.0 * kTargetDamping / kTarget_s, ratio / (kTarget_s * kTarget_s), kPressed_N, t_s);
     if (expected < kNearby_N) return false;
@@ -82,20 +82,21 @@ TEST_P(AccelerationTarget, IsTheSameWhileTheTaskMovesTowardsTheObstacle) {
 
 INSTANTIATE_TEST_SUITE_P(StiffnessRatios, AccelerationTarget, testing::Values(0.25, 1.0, 2.0, 9.0));
 
-TEST(AccelerationTargetOfTwoSpaces, IsTheSumOfBoth) {
+TEST(AccelerationTargetOfTwoSpaces, IsTheSumOfBothWhileBothGiveWay) {
   const ControllerConfig config = accelerationRail(Variant::kNullTask);
   const double act_N = config.gains.force.activation_force_N;
   // F'' = -4 d / T F' - 2 / T^2 F + F_act / T^2: about F_act / 2.
   int cycles = 0;
-  runAccelerationLoop(config, kTaken_N_per_m, [&](double t_s, double F_N) {
+  runAccelerationLoop(config, kTaken_N_per_m, [&](double t_s, double F_N, double u_t_before) {
+    // k_v eases the end of the tool's share.
+    if (++cycles > 1000 && u_t_before > -5e-3) return false;
     const double expected =
         0.5 * act_N + decayed(4.0 * kTargetDamping / kTarget_s, 2.0 / (kTarget_s * kTarget_s),
                               kPressed_N - 0.5 * act_N, t_s);
     EXPECT_NEAR(F_N, expected, kNearby_N) << t_s;
-    ++cycles;
-    return F_N > act_N && !testing::Test::HasFailure();
+    return !testing::Test::HasFailure();
   });
-  EXPECT_GT(cycles, 500);
+  EXPECT_GT(cycles, 5000);
 }
 
 /// The null space is used up: it has joints that do not give way.
@@ -104,7 +105,7 @@ TEST(AccelerationTargetOfTwoSpaces, ComesToRestAtTheActivationForce) {
   config.gains.force.max_null_speed_m_per_s = 1e-12;
   config.gains.task.drift_gain_per_s = 5.0;
   double last_N = 0.0;
-  runAccelerationLoop(config, kTaken_N_per_m, [&](double, double F_N) {
+  runAccelerationLoop(config, kTaken_N_per_m, [&](double, double F_N, double) {
     last_N = F_N;
     return true;
   });
