@@ -68,7 +68,7 @@ class LiftedLoop {
           &tool_, &lagged_, &model_delays_[0], &model_delays_[1], &model_delays_[2], &sensed_})
       *form = Form::Unit(size, i++);
     // What is not there, or there twice, must not appear as an eigenvalue 1.
-    if (loop.order == 1) integral_.setZero();
+    if (loop.order == 1 && !loop.is_acceleration) integral_.setZero();
     if (!isToolApart()) tool_.setZero();
     if (loop.geared) followLinks();
     if (loop.law == LoopLaw::kApproachLimit) return;
@@ -91,6 +91,7 @@ class LiftedLoop {
 
  private:
   void control() {
+    if (loop_.is_acceleration) return accelerate();
     const double T_s = loop_.time_constant_s;
     const double P_per_s = (loop_.order == 2 ? 2.0 * loop_.damping : 1.0) / T_s;
     const bool predicts = loop_.law == LoopLaw::kApproachLimit;
@@ -101,6 +102,26 @@ class LiftedLoop {
     velocity_ = (loop_.law == LoopLaw::kTwoSpaces ? 2.0 : 1.0) * answer + pull;
     if (loop_.order == 2) integral_ += loop_.period_s / (T_s * T_s) * sample_;
     if (isToolApart()) tool_ += loop_.period_s * (answer + pull);
+  }
+
+  /// integral_ and tool_ are the speeds that null space and tool give the contact; where the tool
+  /// is not apart, integral_ is that of each space, or of the contact.
+  void accelerate() {
+    const double T_s = loop_.time_constant_s;
+    if (loop_.law == LoopLaw::kApproachLimit) {
+      followModel();
+      const Form least = (sample_ + sensed_ - commanded_) / T_s;
+      integral_ += lagShare(loop_.period_s, loop_.answer_lag_s) * (least - integral_);
+      velocity_ = integral_;
+      return;
+    }
+    const double spaces = loop_.law == LoopLaw::kTwoSpaces && !isToolApart() ? 2.0 : 1.0;
+    velocity_ = spaces * integral_ + tool_;
+    const Form push = loop_.period_s / (T_s * T_s) * sample_ -
+                      lagShare(loop_.period_s, 0.5 * T_s / loop_.damping) * velocity_;
+    integral_ += push;
+    if (isToolApart()) tool_ += push - loop_.period_s * loop_.drift_gain_per_s * tool_;
+    velocity_ = spaces * integral_ + tool_;
   }
 
   void followModel() {

@@ -49,7 +49,7 @@ double touchDelay_s(const TouchedSpring& touched, double speed_m_per_s) {
     return 0.5 * std::max(0.0, period_s - filter_period_s);
   };
   return filterTime_s(touched, speed_m_per_s) + wait_s(loop.sample_period_s) +
-         wait_s(loop.period_s) + loop.drive_lag_s;
+         wait_s(loop.period_s) + loop.drive_lag_s + loop.answer_lag_s;
 }
 
 double touchPeak_N(const TouchedSpring& touched, double speed_m_per_s) {

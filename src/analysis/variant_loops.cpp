@@ -8,7 +8,9 @@ namespace {
 ContactLoop loopOf(const ControllerConfig& config, const PlantConfig& plant, double period_s) {
   const ForceGains& force = config.gains.force;
   const SimulatedModuleConfig& module = plant.modules.front();
-  return {.order = config.force_control->order,
+  const bool is_acceleration = config.force_control->level == ControlLevel::kAcceleration;
+  return {.is_acceleration = is_acceleration,
+          .order = config.force_control->order,
           .time_constant_s = force.time_constant_s,
           .damping = force.damping,
           .period_s = period_s,
@@ -16,7 +18,8 @@ ContactLoop loopOf(const ControllerConfig& config, const PlantConfig& plant, dou
           .filter_cutoff_hz = module.filter_cutoff_hz,
           .filter_rate_hz = module.filter_rate_hz,
           .sample_period_s = module.channels.sample_period_s,
-          .filters_at_samples = !module.filtered};
+          .filters_at_samples = !module.filtered,
+          .answer_lag_s = is_acceleration ? 1.0 / force.velocity_gain_per_s : 0.0};
 }
 
 Vector3 acrossLink(const ControllerConfig& config) {

@@ -4,6 +4,7 @@
 
 #include "tactus/control/return_speed.h"
 #include "tactus/math/filter.h"
+#include "tactus/math/velocity_product.h"
 
 namespace tactus {
 namespace {
@@ -51,8 +52,8 @@ void tell(double F_p_N, const ControlLawInput& input, const ContactSpace& space,
 struct ContactController::Contact {
   explicit Contact(const ScaledVector& a_of_motion) : a(a_of_motion) {}
 
-  Vector3 p_Base;
-  const ScaledVector& a;  ///< J_p^T F^, in the motion
+  Vector3 p_Base, F_Base;  ///< the point, m, and F^
+  const ScaledVector& a;   ///< J_p^T F^, in the motion
   ContactSpace space;
 };
 
@@ -68,6 +69,8 @@ ContactController::ContactController(const ControllerConfig& config,
       has_estimator_(config.force_control->has_estimator),
       inv_sqrt_weights_(inv_sqrt_weights),
       law_(*config.force_control, config.chain, inv_sqrt_weights) {
+  if (config.force_control->level == ControlLevel::kAcceleration)
+    acceleration_law_.emplace(*config.force_control);
   if (config.force_control->variant != Variant::kNullLimit) return;
   approach_limit_.emplace(config, config.tactile_modules.front());
   if (config.force_control->friction_coefficient <= 0.0) return;
@@ -108,15 +111,18 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   }
   input.is_followed = commanded.is_followed;
   input.cut_m_per_s = state.cut_m_per_s + state.cut_by_rows_m_per_s;
-  ControlLawOutput u;
-  law_.update(gains.force, input, contact.space, period_s, state.law, u);
+  ControlLawOutput u =
+      answer(gains.force, kinematics, contact, commanded, input, period_s, state.law, motion);
   const bool has_rows = approach_limit_ && (friction_cone_ || gate.clearance());
   if (approach_limit_ && !has_rows) {
     const ContactSpace& space = contact.space;
     const double v_res = dot(space.a_task, motion.y, task_.size) +
                          dot(space.a_scaled, motion.v_scaled) - space.k_n * u.u_n;
-    u.u_t = approach_limit_->excess(gains.force, F_p_N, v_res, state.approach) *
-            invertRegularised(space.k_t, space.k_j);
+    double excess = approach_limit_->excess(gains.force, F_p_N, v_res, state.approach);
+    if (acceleration_law_ && excess < 0.0)
+      excess =
+          std::min(0.0, v_res - eased(gains.force, space, commanded, period_s, v_res - excess));
+    u.u_t = excess * invertRegularised(space.k_t, space.k_j);
   }
 
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
@@ -136,6 +142,26 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   }
 
   tell(F_p_N, input, contact.space, u, report);
+}
+
+ControlLawOutput ContactController::answer(const ForceGains& gains,
+                                           const TaskKinematics& kinematics, const Contact& contact,
+                                           const CommandedMotion& commanded,
+                                           const ControlLawInput& input, double period_s,
+                                           ControlLawState& state, Motion& motion) const noexcept {
+  ControlLawOutput u;
+  if (!acceleration_law_) {
+    law_.update(gains, input, contact.space, period_s, state, u);
+  } else if (commanded.is_followed) {
+    const VelocityProduct curvature =
+        velocityProduct(chain_, kinematics.pose, link_.joint, contact.p_Base, commanded.velocity);
+    acceleration_law_->update(gains, input, contact.F_Base.dot(curvature.linear), *commanded.free,
+                              kinematics, contact.space, period_s, state, motion, u);
+    u.u_n *= law_.speedShare(gains, u.u_n * contact.space.a_scaled, state.null_speed);
+  } else {
+    state.It_m_per_s = 0.0;
+  }
+  return u;
 }
 
 void ContactController::estimate(const ForceGains& gains, const Contact& contact,
@@ -162,6 +188,13 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
   }
   input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
   report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
+}
+
+double ContactController::eased(const ForceGains& gains, const ContactSpace& space,
+                                const CommandedMotion& commanded, double period_s,
+                                double v_least) const noexcept {
+  const double v_before = dot(space.a_scaled, commanded.free->v_before);
+  return v_before + velocityShare(gains, period_s) * (v_least - v_before);
 }
 
 const ContactPointState& ContactController::follow(const Gains& gains,
@@ -197,8 +230,9 @@ ContactController::Contact ContactController::locate(const TaskKinematics& kinem
   const Vector3 p_JointContact = X_JointModule.p_AB + point.position_m * X_JointModule.R_AB.col(0);
   const Vector3 F_Joint = X_JointModule.R_AB.lazyProduct(point.direction);
   contact.p_Base = pointInBase(kinematics.pose, link_.joint, p_JointContact);
-  const Vector3 F_Base = vectorInBase(kinematics.pose, link_.joint, F_Joint);
-  applyPointJacobianTranspose(chain_, kinematics.pose, link_.joint, contact.p_Base, F_Base, a);
+  contact.F_Base = vectorInBase(kinematics.pose, link_.joint, F_Joint);
+  applyPointJacobianTranspose(chain_, kinematics.pose, link_.joint, contact.p_Base, contact.F_Base,
+                              a);
   computeContactSpace(kinematics.pseudoinverse, a, inv_sqrt_weights_, kinematics.y_eff,
                       contact.space);
   return contact;

@@ -31,6 +31,10 @@ double ContactController::limitRows(const ForceGains& gains, const TaskKinematic
   if (memory == 0.0 && !gate.clearance()) return 0.0;
   SpeedRows rows;
   if (memory > 0.0) addContactRows(gains, kinematics, space, F_p_N, state.approach, rows);
+  if (acceleration_law_ && memory > 0.0) {
+    double& v_max = rows.row[0].v_max_m_per_s;
+    v_max = -eased(gains, space, commanded, period_s, -v_max);
+  }
   const int corners = rows.size;
   const double in_contact =
       std::max(state.approach.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);

@@ -47,6 +47,8 @@ Controller::Controller(const ControllerConfig& config)
       trajectory_(config.task.trajectory, tipPose(config.chain, config.q_start)),
       inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
       has_rotation_(config.task.hasRotation()),
+      is_acceleration_level_(config.force_control &&
+                             config.force_control->level == ControlLevel::kAcceleration),
       limiter_(config.limits),
       gate_(config, inv_sqrt_weights_) {
   if (config.has_joint_limit_avoidance)
@@ -138,7 +140,11 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   state.progress = prepared.progress;
   output.contact = {};
   sense(input, period_s, state, output);
-  if (config_.force_control) answerContact(gains, kinematics, period_s, state, output, motion);
+  FreeAcceleration free;
+  if (is_acceleration_level_)
+    free = freeAcceleration(gains, output.path_time_s, period_s, prepared, state);
+  if (config_.force_control)
+    answerContact(gains, kinematics, free, period_s, state, output, motion);
   const bool keeps_rows =
       config_.force_control && config_.force_control->variant == Variant::kNullLimit;
   if (gate_.clearance() && !keeps_rows && mayMove(state))
@@ -156,10 +162,11 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
 }
 
 void Controller::answerContact(const Gains& gains, const TaskKinematics& kinematics,
-                               double period_s, ControllerState& state, ControllerOutput& output,
+                               const FreeAcceleration& free, double period_s,
+                               ControllerState& state, ControllerOutput& output,
                                Motion& motion) const noexcept {
   const CommandedMotion commanded{state.q_desired, state.velocity_before, mayMove(state),
-                                  state.return_share};
+                                  state.return_share, &free};
   if (several_contacts_) {
     several_contacts_->update(gains, kinematics, state.modules, commanded, gate_, period_s,
                               state.several, output.contact, motion);

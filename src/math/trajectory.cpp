@@ -33,6 +33,16 @@ PathPoint timeLaw(double t, double duration, double T, double rate) {
   return {1.0 - rate * s, rate * speed};
 }
 
+/// d^2/dt^2 of timeLaw().
+double timeLawAcceleration(double t, double duration, double T, double rate) {
+  const double into_ramp = t < T ? t : duration - t;
+  if (into_ramp >= T || t >= duration) return 0.0;
+  const double phase = std::numbers::pi * into_ramp / T;
+  double sine, cosine;
+  sinCos(&phase, 1, &sine, &cosine);
+  return (t < T ? rate : -rate) * 0.5 * std::numbers::pi / T * sine;
+}
+
 }  // namespace
 
 Trajectory::Trajectory(const TrajectoryConfig& config, const Pose& X_BaseTool_start)
@@ -71,13 +81,25 @@ double Trajectory::end_s() const noexcept {
   return segments_.empty() ? 0.0 : segments_.back().start_s + segments_.back().duration_s;
 }
 
-ToolReference Trajectory::evaluate(double t_s) const noexcept {
+const Trajectory::Segment* Trajectory::segmentAt(double t_s) const noexcept {
   const auto next =
       std::upper_bound(segments_.begin(), segments_.end(), t_s,
                        [](double t, const Segment& segment) { return t < segment.start_s; });
-  if (next == segments_.begin())
-    return {X_start_.p_AB, Vector3::Zero(), X_start_.R_AB, Vector3::Zero()};
-  const Segment& segment = *std::prev(next);
+  return next == segments_.begin() ? nullptr : &*std::prev(next);
+}
+
+ToolAcceleration Trajectory::evaluateAcceleration(double t_s) const noexcept {
+  const Segment* const segment = segmentAt(t_s);
+  if (!segment) return {Vector3::Zero(), Vector3::Zero()};
+  const double s_dd = timeLawAcceleration(t_s - segment->start_s, segment->duration_s,
+                                          segment->ramp_s, segment->cruise_rate_per_s);
+  return {s_dd * segment->displacement, s_dd * segment->rotation_vector};
+}
+
+ToolReference Trajectory::evaluate(double t_s) const noexcept {
+  const Segment* const at = segmentAt(t_s);
+  if (!at) return {X_start_.p_AB, Vector3::Zero(), X_start_.R_AB, Vector3::Zero()};
+  const Segment& segment = *at;
   const double t = t_s - segment.start_s;
   // A time that is no number must not look like one after the end.
   const PathPoint path = t >= segment.duration_s ? PathPoint{1.0, 0.0}

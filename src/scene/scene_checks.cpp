@@ -151,9 +151,30 @@ void checkModules(const Checked& c) {
   }
 }
 
+/// What acceleration_law.h has no law for.
+void checkLevel(const Checked& c) {
+  const ForceControlConfig& control = *c.scene.controller;
+  if (control.level != ControlLevel::kAcceleration) return;
+  const std::string at_level = " with the level acceleration";
+  const Variant variant = control.variant;
+  if (variant != Variant::kNullSpace && variant != Variant::kNullTask &&
+      variant != Variant::kNullLimit) {
+    c.fail("controller.level", "acceleration has no variant " + wordOf(kVariantWords, variant),
+           "velocity, or the variant null_space, null_task or null_limit");
+  }
+  if (control.order != 2)
+    c.fail("controller.order", fmt::format("{}{}", control.order, at_level), "2");
+  if (control.friction_coefficient > 0.0) {
+    c.fail("controller.friction_coefficient",
+           fmt::format("{:g}{}", control.friction_coefficient, at_level),
+           "0, or the level velocity");
+  }
+}
+
 void checkController(const Checked& c) {
   if (!c.scene.controller) return;
   checkModules(c);
+  checkLevel(c);
   const Variant variant = c.scene.controller->variant;
   const std::string name = wordOf(kVariantWords, variant);
   if (needsActivationForce(variant) && !findGiven(c.root, "controller.activation_force_N")) {

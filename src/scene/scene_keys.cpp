@@ -75,6 +75,13 @@ Row<ForceControlConfig> variantRow() {
              &ForceControlConfig::variant, kVariantWords));
 }
 
+Row<ForceControlConfig> levelRow() {
+  return choice("level",
+                "what the answer to contact is computed as: velocity, as in the paper; or "
+                "acceleration, smoother, for null_space, null_task and null_limit of second order",
+                &ForceControlConfig::level, kLevelWords);
+}
+
 Row<ForceControlConfig> orderRow() {
   return integer("order", within(1, 2),
                  "of the motion that a force is answered with, the target dynamics (4)",
@@ -129,6 +136,11 @@ Table<ForceGains> responseLimitKeys() {
                         "null_limit only: softer contact is approached no faster "
                         "than this, for what may be behind it",
                         &Config::min_approach_stiffness_N_per_m)),
+      withSymbol("k_v", number("velocity_gain_per_s", "1/s", above(0, 1e4),
+                               "acceleration level only: how fast velocities go to those of the "
+                               "velocity level where no target dynamics decides; smaller is "
+                               "smoother, and peaks higher",
+                               &Config::velocity_gain_per_s)),
       section("transition", "how feedforward and integral fade when contact is lost",
               &Config::transition, transitionKeys()),
   };
@@ -138,7 +150,7 @@ Row<SceneConfig> controllerSection() {
   const Table<ForceGains> gains = join(responseKeys(), responseLimitKeys());
   return optional(group<SceneConfig>(
       "controller", "force control; absent: no tactile module is even read",
-      join(inside(&SceneConfig::controller, {variantRow(), orderRow(), frictionRow()}),
+      join(inside(&SceneConfig::controller, {variantRow(), levelRow(), orderRow(), frictionRow()}),
            inside(&SceneConfig::gains, inside(&Gains::force, gains))),
       [](SceneConfig& scene) { scene.controller.emplace(); }));
 }

@@ -7,7 +7,9 @@ std::vector<std::string> stageNames(const ControllerConfig& config) {
   if (config.has_joint_limit_avoidance) names.push_back("joint_limit_avoidance");
   if (!config.tactile_modules.empty()) names.push_back("tactile_module");
   if (config.force_control) {
-    names.insert(names.end(), {"contact_space", "contact_transition", "control_law"});
+    names.insert(names.end(), {"contact_space", "contact_transition"});
+    const bool is_acceleration = config.force_control->level == ControlLevel::kAcceleration;
+    names.push_back(is_acceleration ? "acceleration_law" : "control_law");
     if (config.force_control->has_estimator) names.push_back("stiffness_estimator");
     if (config.force_control->variant == Variant::kNullLimit) {
       names.push_back("approach_limit");

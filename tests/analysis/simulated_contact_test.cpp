@@ -83,6 +83,10 @@ bool calmsDownOnRail(const LoopCase& c, double stiffness_ratio) {
   config.q_start << contact_m, tool_m - contact_m;
   ControllerState state = controller.initialState(config.q_start);
   state.contact.law = {rest.V_m_per_s, rest.It_m_per_s, {}};
+  // At the acceleration level the command is the memory: the contact rests while the tool moves.
+  const double pushed_m_per_s = c.loop.drift_gain_per_s > 0.0 ? 0.0 : rest.It_m_per_s;
+  if (c.loop.is_acceleration && c.variant != Variant::kNullLimit)
+    state.velocity_before[1] = 2.0 * (rest.speed_m_per_s - pushed_m_per_s);
   SimulatedRobot robot(config, test::plantAt(0.5, kRadius_m, stiffness_ratio * kC_N_per_m, c.loop),
                        c.loop.period_s);
   return test::calmsDown(controller, robot, state, c.loop.period_s, 20.0 * c.loop.time_constant_s);
@@ -134,6 +138,29 @@ INSTANTIATE_TEST_SUITE_P(
                     LoopCase{"beta_20_fed_forward", {.law = kTwo}, kNullTask, true}),
     kName);
 
+ContactLoop accelerationLoop(ContactLoop loop = {}) {
+  loop.is_acceleration = true;
+  return loop;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AccelerationLevel, SimulatedContact,
+    testing::Values(LoopCase{"one", accelerationLoop()},
+                    LoopCase{"one_ideal_drives", accelerationLoop({.drive_lag_s = 0.0})},
+                    LoopCase{"one_T_50_ms", accelerationLoop({.time_constant_s = 0.05})},
+                    LoopCase{"one_d_1", accelerationLoop({.damping = 1.0})},
+                    LoopCase{"one_odd_cycle", accelerationLoop({.period_s = 0.003})},
+                    LoopCase{"one_slow_samples", accelerationLoop({.sample_period_s = 0.02})},
+                    LoopCase{"two", accelerationLoop({.law = kTwo}), kNullTask},
+                    LoopCase{"two_slow_drives",
+                             accelerationLoop({.law = kTwo, .drive_lag_s = 0.01}), kNullTask},
+                    LoopCase{"two_d_1", accelerationLoop({.law = kTwo, .damping = 1.0}), kNullTask},
+                    LoopCase{"two_beta_5", accelerationLoop({.law = kTwo, .drift_gain_per_s = 5.0}),
+                             kNullTask},
+                    LoopCase{"two_beta_20",
+                             accelerationLoop({.law = kTwo, .drift_gain_per_s = 20.0}), kNullTask}),
+    kName);
+
 /// With a right model, unless it is given.
 ContactLoop limitLoop(ContactLoop loop = {}) {
   loop.law = LoopLaw::kApproachLimit;
@@ -161,6 +188,21 @@ INSTANTIATE_TEST_SUITE_P(
         LoopCase{"drives_slower_than_thought", limitLoop({.drive_lag_s = 0.02}), kNullLimit},
         LoopCase{"filter_slower_than_thought", limitLoop({.filter_cutoff_hz = 5.0}), kNullLimit},
         LoopCase{"filter_faster_than_thought", limitLoop({.filter_cutoff_hz = 30.0}), kNullLimit}),
+    kName);
+
+ContactLoop easedLimitLoop(double k_v_per_s, ContactLoop loop = {}) {
+  loop.answer_lag_s = 1.0 / k_v_per_s;
+  return limitLoop(accelerationLoop(loop));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    EasedApproachLimit, SimulatedContact,
+    testing::Values(
+        LoopCase{"k_v_200", easedLimitLoop(200.0), kNullLimit},
+        LoopCase{"k_v_50", easedLimitLoop(50.0), kNullLimit},
+        LoopCase{"T_50_ms", easedLimitLoop(200.0, {.time_constant_s = 0.05}), kNullLimit},
+        LoopCase{"odd_cycle", easedLimitLoop(200.0, {.period_s = 0.003}), kNullLimit},
+        LoopCase{"slow_drives", easedLimitLoop(200.0, {.drive_lag_s = 0.02}), kNullLimit}),
     kName);
 
 INSTANTIATE_TEST_SUITE_P(Rates, SimulatedContact,

@@ -153,9 +153,9 @@ TEST(ControllerFaults, ModuleThatNeverSpeaks) {
 }
 
 TEST(ControllerFaults, CommandThatIsNoNumber) {
-  for (const Variant variant : test::kAllVariants) {
+  for (const auto& [variant, level] : test::allLaws()) {
     test::Random random(196);
-    const Controller controller(test::fullController(random, 8, variant));
+    const Controller controller(test::fullController(random, 8, variant, level));
     ControllerState state = controller.initialState();
     test::RandomTouches touches(random);
     ControllerOutput output;

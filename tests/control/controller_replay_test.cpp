@@ -6,21 +6,22 @@
 namespace tactus {
 namespace {
 
+void expectSameAgain(const ControllerConfig& config, test::Random& random) {
+  const std::vector<test::RecordedCycle> run = test::record(Controller(config), random, 1500);
+  const Controller replayed(config);
+  ControllerState state = replayed.initialState();
+  ControllerOutput output;
+  for (const test::RecordedCycle& cycle : run) {
+    replayed.update(cycle.input, replayed.initialGains(), cycle.t_s, cycle.period_s, state, output);
+    test::expectSame(output, cycle.output);
+    ASSERT_FALSE(testing::Test::HasFailure()) << "at " << cycle.t_s;
+  }
+}
+
 TEST(ControllerReplay, RecordedInputsGiveEveryOutputAgainToTheBit) {
   test::Random random(181);
-  for (const Variant variant : test::kAllVariants) {
-    const ControllerConfig config = test::fullController(random, 7, variant);
-    const std::vector<test::RecordedCycle> run = test::record(Controller(config), random, 1500);
-    const Controller replayed(config);
-    ControllerState state = replayed.initialState();
-    ControllerOutput output;
-    for (const test::RecordedCycle& cycle : run) {
-      replayed.update(cycle.input, replayed.initialGains(), cycle.t_s, cycle.period_s, state,
-                      output);
-      test::expectSame(output, cycle.output);
-      ASSERT_FALSE(HasFailure()) << "at " << cycle.t_s;
-    }
-  }
+  for (const auto& [variant, level] : test::allLaws())
+    expectSameAgain(test::fullController(random, 7, variant, level), random);
 }
 
 TEST(ControllerReplay, ACopyOfTheStateGoesOnLikeTheOriginal) {

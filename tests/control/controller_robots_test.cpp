@@ -14,8 +14,8 @@ class RobotOfSize : public testing::TestWithParam<int> {};
 
 TEST_P(RobotOfSize, RunsEveryVariantWithinItsLimits) {
   test::Random random(200 + GetParam());
-  for (const Variant variant : test::kAllVariants) {
-    const ControllerConfig config = test::fullController(random, GetParam(), variant);
+  for (const auto& [variant, level] : test::allLaws()) {
+    const ControllerConfig config = test::fullController(random, GetParam(), variant, level);
     const Controller controller(config);
     const auto run = test::record(controller, random, 2000);
     JointVector before = JointVector::Zero(GetParam());

@@ -39,8 +39,8 @@ void forgetDerived(ControllerState& state) {
 
 TEST(Gains, ThatChangeLeaveNothingOfTheOldOnesBehind) {
   test::Random random(401);
-  for (const Variant variant : test::kAllVariants) {
-    const Controller controller(test::fullController(random, 7, variant));
+  for (const auto& [variant, level] : test::allLaws()) {
+    const Controller controller(test::fullController(random, 7, variant, level));
     test::RandomTouches touches(random);
     ControllerState state = controller.initialState();
     Gains gains;
@@ -111,8 +111,8 @@ TEST(Gains, ThatChangeDoSoInTheSameCycle) {
 
 TEST(Gains, ThatChangedAreNotServedFromAPreparedCycle) {
   test::Random random(403);
-  for (const Variant variant : test::kAllVariants) {
-    const Controller controller(test::fullController(random, 8, variant));
+  for (const auto& [variant, level] : test::allLaws()) {
+    const Controller controller(test::fullController(random, 8, variant, level));
     test::RandomTouches touches(random);
     ControllerState plain = controller.initialState(), ahead = plain;
     PreparedCycle prepared;

@@ -102,6 +102,30 @@ TEST(Trajectory, AccelerationHasNoJumps) {
   }
 }
 
+TEST(Trajectory, TellsHowItsVelocitiesChange) {
+  test::Random random(105);
+  constexpr double kStep_s = 1e-6;
+  double largest = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const Trajectory trajectory(randomPath(random), startPose(random));
+    for (int k = 0; k < 100; ++k) {
+      const double t_s = random.uniform(-0.1, trajectory.end_s() + 0.1);
+      const ToolReference before = trajectory.evaluate(t_s - kStep_s);
+      const ToolReference after = trajectory.evaluate(t_s + kStep_s);
+      const ToolAcceleration a = trajectory.evaluateAcceleration(t_s);
+      const double bound = 1e-7 + 1e-3 * a.a_BaseTool.norm() + 1e-3 * a.alpha_BaseTool.norm();
+      ASSERT_LT(((after.v_BaseTool - before.v_BaseTool) / (2.0 * kStep_s) - a.a_BaseTool).norm(),
+                1e-3 + bound);
+      ASSERT_LT(
+          ((after.omega_BaseTool - before.omega_BaseTool) / (2.0 * kStep_s) - a.alpha_BaseTool)
+              .norm(),
+          1e-3 + bound);
+      largest = std::max(largest, a.a_BaseTool.norm());
+    }
+  }
+  EXPECT_GT(largest, 1.0);
+}
+
 TEST(Trajectory, RestsAtEveryCornerAndDuringPauses) {
   Waypoint there = straight({0.3, 0.0, 0.0}, 0.1, 0.2);
   there.pause_s = 0.7;

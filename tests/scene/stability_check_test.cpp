@@ -88,6 +88,23 @@ TEST(StabilityCheck, LooksAtTheLoopsOfTheVariant) {
   EXPECT_EQ(loops("null_limit"), 2u);
 }
 
+TEST(StabilityCheck, TakesTheLoopsOfTheAccelerationLevel) {
+  const StabilityReport report = check(assumed().load({{"controller.level", "acceleration"}}));
+  ASSERT_EQ(report.loops.size(), 3u);
+  ContactLoop expected;
+  expected.is_acceleration = true;
+  expected.drive_lag_s = 0.01;
+  expected.sample_period_s = 0.005;
+  EXPECT_EQ(report.loops.at(2).margins.phase_margin_rad,
+            computeMargins(expected, 1.0).phase_margin_rad);
+  expected.law = LoopLaw::kTwoSpaces;
+  EXPECT_EQ(report.loops.at(0).margins.largest_stiffness_ratio,
+            computeMargins(expected, 1.0).largest_stiffness_ratio);
+  expected.drift_gain_per_s = 5.0;
+  EXPECT_EQ(report.loops.at(1).margins.largest_stiffness_ratio,
+            computeMargins(expected, 1.0).largest_stiffness_ratio);
+}
+
 TEST(StabilityCheck, TakesTheApproachLimitWithTheModelThatItHas) {
   const StabilityReport report = check(
       assumed().load({{"controller.variant", "null_limit"}, {"simulation.drive_lag_s", "0.02"}}));

@@ -81,10 +81,15 @@ TEST_F(AllocationGuardDeathTest, LetsTheHeapBeUsedBeforeAndAfter) {
   EXPECT_EQ(text.size(), 1000u);
 }
 
-class NoAllocation : public testing::TestWithParam<Variant> {};
+class NoAllocation : public testing::TestWithParam<std::pair<Variant, ControlLevel>> {
+ protected:
+  Variant variant() const { return GetParam().first; }
+  ControlLevel level() const { return GetParam().second; }
+};
 
 TEST_P(NoAllocation, InTheCycleOfTheReferenceRobotInContact) {
-  const ControllerConfig config = test::crops9Controller(GetParam(), true);
+  ControllerConfig config = test::crops9Controller(variant(), true);
+  config.force_control->level = level();
   PlantConfig plant = test::crops9Plant(test::scenario2());
   plant.modules[0].quantised = true;
   plant.modules[0].noise_N = 0.02;
@@ -101,7 +106,7 @@ TEST_P(NoAllocation, InTheCycleOfTheReferenceRobotInContact) {
 TEST_P(NoAllocation, InSingularPosesOfAnyRobot) {
   test::Random random(331);
   for (int count : {2, 6, 7, 16}) {
-    ControllerConfig config = test::fullController(random, count, GetParam());
+    ControllerConfig config = test::fullController(random, count, variant(), level());
     config.task.components = {0, 1, 2, 3, 4, 5};
     config.task.size = std::min(count, 6);
     config.gains.task.max_return_speed_m_per_s = config.gains.task.max_return_speed_rad_per_s = 0.1;
@@ -124,7 +129,7 @@ TEST_P(NoAllocation, InSingularPosesOfAnyRobot) {
 
 TEST_P(NoAllocation, WhileAFaultBringsTheArmToRest) {
   test::Random random(332);
-  const Controller controller(test::fullController(random, 9, GetParam()));
+  const Controller controller(test::fullController(random, 9, variant(), level()));
   ControllerState state = controller.initialState();
   ControllerOutput output;
   test::RandomTouches touches(random);
@@ -141,7 +146,7 @@ TEST_P(NoAllocation, WhileAFaultBringsTheArmToRest) {
   EXPECT_EQ(output.fault, Fault::kTactileInvalid);
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, NoAllocation, testing::ValuesIn(test::kAllVariants));
+INSTANTIATE_TEST_SUITE_P(Laws, NoAllocation, testing::ValuesIn(test::allLaws()));
 
 TEST(NoAllocationInPose, WhereTheTaskInverseIsDamped) {
   // A stretched planar arm: exactly singular along x.

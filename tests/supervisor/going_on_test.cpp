@@ -17,11 +17,14 @@ using test::VirtualRobotCell;
 
 constexpr double kMaxSurplus = 0.25;  ///< m/s or rad/s above a hold without trouble
 
-const char* const kVariants[] = {"null_space", "joint_space", "task_space",
-                                 "null_task",  "null_joint",  "null_limit"};
+/// With "/a" at the acceleration level.
+const char* const kVariants[] = {"null_space", "joint_space", "task_space",  "null_task",
+                                 "null_joint", "null_limit",  "null_task/a", "null_limit/a"};
 
 Scene sceneOf(const std::string& variant) {
-  std::vector<Override> overrides = {{"controller.variant", variant}};
+  const std::size_t slash = variant.find('/');
+  std::vector<Override> overrides = {{"controller.variant", variant.substr(0, slash)}};
+  if (slash != std::string::npos) overrides.push_back({"controller.level", "acceleration"});
   Scene scene = test::shippedScene("scenario1_multi_space", overrides);
   scene.hardware->gpio.emplace();
   scene.hardware->gpio->enable.emplace();

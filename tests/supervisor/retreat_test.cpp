@@ -193,8 +193,9 @@ TEST(Retreat, LeavesTheModuleThatIsPressedMost) {
 /// As in a log that nobody wrote: modes in any order, readings of any kind.
 TEST(Retreat, NoOrderOfModesTakesTheArmBeyondItsLimits) {
   Random random(7000);
-  for (const Variant variant : test::kAllVariants) {
-    const ControllerConfig config = test::fullController(random, random.integer(3, 9), variant);
+  for (const auto& [variant, level] : test::allLaws()) {
+    const ControllerConfig config =
+        test::fullController(random, random.integer(3, 9), variant, level);
     const Controller controller(config);
     ControllerState state = controller.initialState();
     ControllerOutput output;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
 #include <vector>
 
 #include "support/random_limits.h"
@@ -75,7 +76,8 @@ class RandomTouches {
 };
 
 /// A controller with every stage, on a random robot.
-inline ControllerConfig fullController(Random& random, int count, Variant variant) {
+inline ControllerConfig fullController(Random& random, int count, Variant variant,
+                                       ControlLevel level = ControlLevel::kVelocity) {
   const int task_size = random.integer(1, std::min({count, 6, std::max(1, count - 1)}));
   ControllerConfig config = randomController(random, count, task_size);
   config.weights = randomWeights(random, count);
@@ -86,8 +88,9 @@ inline ControllerConfig fullController(Random& random, int count, Variant varian
   config.has_joint_limit_avoidance = true;
   config.force_control.emplace();
   config.force_control->variant = variant;
+  config.force_control->level = level;
   config.force_control->has_estimator = true;
-  if (variant == Variant::kNullLimit && random.chance(0.5))
+  if (level == ControlLevel::kVelocity && variant == Variant::kNullLimit && random.chance(0.5))
     config.force_control->friction_coefficient = 0.5;
   Waypoint there;
   there.displacement_m = random.vector<Vector3>(3, -0.2, 0.2);
@@ -116,5 +119,18 @@ inline std::vector<RecordedCycle> record(const Controller& controller, Random& r
 inline constexpr Variant kAllVariants[] = {
     Variant::kNone,     Variant::kNullSpace, Variant::kJointSpace, Variant::kTaskSpace,
     Variant::kNullTask, Variant::kNullJoint, Variant::kNullLimit};
+
+/// Those that there are at the acceleration level.
+inline constexpr Variant kAccelerationVariants[] = {Variant::kNullSpace, Variant::kNullTask,
+                                                    Variant::kNullLimit};
+
+/// All of both levels.
+inline std::vector<std::pair<Variant, ControlLevel>> allLaws() {
+  std::vector<std::pair<Variant, ControlLevel>> laws;
+  for (const Variant variant : kAllVariants) laws.emplace_back(variant, ControlLevel::kVelocity);
+  for (const Variant variant : kAccelerationVariants)
+    laws.emplace_back(variant, ControlLevel::kAcceleration);
+  return laws;
+}
 
 }  // namespace tactus::test

@@ -39,11 +39,15 @@ struct LoopCase {
 inline void PrintTo(const LoopCase& c, std::ostream* stream) { *stream << c.name; }
 
 inline void setForceControl(const LoopCase& c, ControllerConfig& config) {
-  config.force_control = {.variant = c.variant, .order = c.loop.order};
+  config.force_control = {
+      .variant = c.variant,
+      .level = c.loop.is_acceleration ? ControlLevel::kAcceleration : ControlLevel::kVelocity,
+      .order = c.loop.is_acceleration ? 2 : c.loop.order};
   ForceGains& gains = config.gains.force;
   gains = {};
   gains.time_constant_s = c.loop.time_constant_s;
   gains.damping = c.loop.damping;
+  if (c.loop.answer_lag_s > 0.0) gains.velocity_gain_per_s = 1.0 / c.loop.answer_lag_s;
   gains.contact_threshold_N = 0.0;
   gains.max_null_speed_m_per_s = 1e6;
   gains.assumed_stiffness_N_per_m = kC_N_per_m;

@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 sys.dont_write_bytecode = True
 
-from tactus_report import bench_page, comparison, figures, page, runs, series_figure  # noqa: E402
+from tactus_report import bench_page, comparison, figures, levels, page, runs, series_figure  # noqa: E402
 
 FAKE_TACTUS = ROOT / "tests/tools/fake_tactus"
 
@@ -151,6 +151,38 @@ class WholePage(Report):
 
 FAULT = {"name": "following_error", "time_s": 3.214, "joint": "j<5>", "bus": "can1",
          "value": 0.0613, "limit": 0.05, "unit": "rad", "description": "a & b"}
+
+
+class Levels(Report):
+    def test_stand_beside_each_other_with_their_jerk(self):
+        def jerky(lines):
+            rows = [line.split(",") for line in lines]
+            rows[1000][4] = "0.30005"  # one cycle of 5 ms: +2, -4 and +2 rad/s^3
+            return [",".join(row) for row in rows]
+        write_run(self.runs, "scenario3_estimated", table_text(jerky))
+        write_run(self.runs, "scenario3_acceleration")
+        self.assertEqual(self.report().returncode, 0)
+        table = self.page().split("<h2>Acceleration level</h2>")[1].split("</table>")[0]
+        cells = re.findall(r"<t[hd][^>]*>([^<]*)</t[hd]>", table.split("<tbody>")[1])
+        self.assertEqual(cells[0::7], ["scenario3_estimated", "scenario3_acceleration"])
+        self.assertEqual(cells[4::7], ["4", "0"])
+        for figure in ("Figure 13. ", "Figure 14. "):
+            self.assertIn(figure, self.page())
+
+    def test_no_run_of_the_acceleration_level_no_section(self):
+        write_run(self.runs, "scenario3_estimated")
+        self.assertEqual(self.report().returncode, 0)
+        self.assertNotIn("Acceleration level", self.page())
+
+    def test_margins_are_those_of_the_least_stable_loop(self):
+        check = self.scratch / "tactus"
+        loops = [{"largest_stiffness_ratio": ratio, "phase_margin_deg": degrees}
+                 for ratio, degrees in ((3.0, 41.25), (2.5, 60.0))]
+        text = json.dumps({"stability": {"loops": loops}})
+        check.write_text(f"#!/bin/sh\necho '{text}'\n", encoding="utf-8")
+        check.chmod(0o755)
+        self.assertEqual(levels.margins("scenario3_estimated", check), ["2.50", "41.2"])
+        self.assertEqual(levels.margins("scenario3_estimated", FAKE_TACTUS), ["", ""])
 
 
 class Faults(Report):
@@ -466,6 +498,7 @@ class Comparison(unittest.TestCase):
     def test_every_scene_that_figures_and_table_name_exists(self):
         scenes = {key.split(":")[0] for row in comparison.read_data()["rows"]
                   for key in row["ours"]}
+        scenes |= {scene for pair in levels.PAIRS for scene in pair}
         for scene in scenes | page.PAPER_SCENES:
             self.assertTrue((ROOT / f"config/scenes/{scene}.yaml").is_file(), scene)
 

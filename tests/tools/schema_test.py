@@ -53,6 +53,7 @@ redundancy:
   joint_limit_avoidance: {gain: 1, gradient_at_limit: 3.52, active_fraction: 0.5}
 controller:
   variant: null_task
+  level: velocity
   order: 2
   friction_coefficient: 0
   time_constant_s: 0.1
@@ -63,6 +64,7 @@ controller:
   max_null_speed_rad_per_s: 5
   pull_gain_per_s: 500
   min_approach_stiffness_N_per_m: 300
+  velocity_gain_per_s: 200
   transition: {max_time_constant_s: 1, distance_m: 0.05, engage_force_N: 0, release_force_N: 0.3,
                search_speed_m_per_s: 0.01}
 stiffness:

@@ -4,15 +4,16 @@ import html
 import pathlib
 import re
 
-from . import comparison, paper_figures, run_figures, runs
+from . import comparison, levels, paper_figures, run_figures, runs
 from .figures import as_figure, scatter_figure
 
 CSS = pathlib.Path(__file__).with_name("page.css")
 PAPER_SCENES = {scene for figure in paper_figures.FIGURES for scene, *_ in figure.curves}
-OWN_SCENES = {scene for figure in paper_figures.BEYOND_FIGURES for scene, *_ in figure.curves}
+OWN_SCENES = {scene for figure in paper_figures.BEYOND_FIGURES + paper_figures.LEVEL_FIGURES
+              for scene, *_ in figure.curves}
 
 
-def build_page(loaded):
+def build_page(loaded, tactus):
     by_scene = runs.by_scene(loaded)
     of_paper = {scene: run for scene, run in by_scene.items() if scene in PAPER_SCENES}
     further = {scene: run for scene, run in by_scene.items() if scene not in PAPER_SCENES}
@@ -25,6 +26,7 @@ def build_page(loaded):
             *comparison_with_paper(by_scene),
             *paper_section(of_paper),
             *beyond_the_paper(by_scene),
+            *levels_section(by_scene, tactus),
             *overlays(groups),
             "<h2>Error against run time</h2>",
             error_figure(loaded)]
@@ -73,7 +75,8 @@ def paper_section(of_paper):
 
 def beyond_the_paper(by_scene):
     """The figures that have a subject."""
-    own = {scene: run for scene, run in by_scene.items() if scene in OWN_SCENES - PAPER_SCENES}
+    limits = {scene for figure in paper_figures.BEYOND_FIGURES for scene, *_ in figure.curves}
+    own = {scene: run for scene, run in by_scene.items() if scene in limits - PAPER_SCENES}
     figures = [figure for figure in paper_figures.BEYOND_FIGURES if figure.shows_any_of(own)]
     if not figures:
         return []
@@ -81,6 +84,20 @@ def beyond_the_paper(by_scene):
             "<p>The approach-speed limit (variant null_limit) beside the paper&#8217;s multi-space "
             "law.</p>",
             *(paper_figures.render(figure, by_scene) for figure in figures)]
+
+
+def levels_section(by_scene, tactus):
+    """The acceleration level beside the velocity level; nothing without a run of it."""
+    if not levels.shown(by_scene):
+        return []
+    own = {scene: by_scene[scene] for scene in levels.shown(by_scene)}
+    return ["<h2>Acceleration level</h2>",
+            "<p>The same law as resolved acceleration (level acceleration). Jerk is the second "
+            "difference of the command, of all joints; margins are those of the least stable "
+            "loop.</p>",
+            table(levels.HEADS, levels.rows(by_scene, tactus), "runs"),
+            *(paper_figures.render(figure, own) for figure in paper_figures.LEVEL_FIGURES
+              if figure.shows_any_of(own))]
 
 
 def overlays(groups):

@@ -38,7 +38,12 @@ LIMIT_2 = ("scenario2_tactus", "approach limit", BLUE, DASHED)
 LIMIT_3 = ("scenario3_tactus", "approach limit", BLUE, DASHED)
 LIMIT_FAST_3 = ("scenario3_tactus_fast", "limit, fast", RED, DOTTED)
 
+LEVEL_1 = ("scenario1_acceleration", "acceleration", BLUE, DASHED)
+LEVEL_2 = ("scenario2_acceleration", "acceleration", BLUE, DASHED)
+LEVEL_3 = ("scenario3_acceleration", "acceleration", BLUE, DASHED)
+
 FORCE = ("force_N", "sensor force in N", "N")
+JERK = ("joint_jerk", "norm of the joints' jerk", "")
 STIFFNESS = ("stiffness_N_per_m", "stiffness in N/m", "N/m")
 
 FIGURES = [
@@ -96,6 +101,23 @@ BEYOND_FIGURES = [
         11, "Scenario 3, profile alone: contact force with the approach-speed limit",
         "Neither the stiff profile nor 2.4 times the speed leads beyond 5 N.",
         *FORCE, [ESTIMATED_3, FAST_3, LIMIT_3, LIMIT_FAST_3], label_peak=True),
+]
+
+LEVEL_FIGURES = [
+    PaperFigure(
+        12, "Scenario 1, soft band: contact force at both levels",
+        "The band is far softer than assumed: at the acceleration level the force peaks lower, and "
+        "creeps to 5 N.",
+        *FORCE, [MULTI, LEVEL_1], label_peak=True),
+    PaperFigure(
+        13, "Scenario 3, profile alone: contact force at both levels",
+        "With the estimate peak and rest are those of the velocity level.",
+        *FORCE, [ESTIMATED_3, LEVEL_3], label_peak=True),
+    PaperFigure(
+        14, "Scenario 3: jerk at both levels",
+        "A sample of the sensor is a step of velocity at the velocity level and of acceleration at "
+        "the other.",
+        *JERK, [ESTIMATED_3, LEVEL_3], label_peak=True),
 ]
 
 

@@ -30,6 +30,7 @@ class Run:
     time_s: np.ndarray
     force_N: np.ndarray  # F_sen
     stiffness_N_per_m: np.ndarray  # c
+    joint_jerk: np.ndarray  # norm of the second difference of the command; mixed likewise
     joint_speed_squared: np.ndarray  # of the command; m/s and rad/s mixed, as in the paper
     tool_error_m: np.ndarray  # |w_d - w| of the real arm
 
@@ -93,8 +94,14 @@ def load_run(folder, name, tactus):
     velocities = [values for name, values in column.items() if name.startswith("dq_")]
     errors = [column[f"tool_error_{axis}_m"] for axis in "xyz"]
     return Run(name, summary["scene"], summary, column["t_s"], column["force_sensor_N"],
-               column["stiffness_N_per_m"], np.sum(np.square(velocities), axis=0),
+               column["stiffness_N_per_m"], jerk(column["t_s"], velocities), np.sum(np.square(velocities), axis=0),
                np.sqrt(np.sum(np.square(errors), axis=0)))
+
+
+def jerk(time_s, velocities):
+    """As long as the time: the first and the last cycle have none. Cycles are evenly spaced."""
+    inner = np.diff(velocities, 2, axis=1) / (time_s[1] - time_s[0]) ** 2
+    return np.pad(np.sqrt(np.sum(np.square(inner), axis=0)), 1)
 
 
 def read_summary(path):

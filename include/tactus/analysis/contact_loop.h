@@ -20,6 +20,7 @@ enum class LoopLaw {
 /// velocity, the drives integrate it and lag behind, the spring answers, the filter steps.
 struct ContactLoop {
   LoopLaw law = LoopLaw::kOneSpace;
+  bool is_acceleration = false;   ///< the second level of control, of all three laws
   int order = 2;                  ///< of the target dynamics (4): 1 or 2
   double time_constant_s = 0.1;   ///< T
   double damping = 0.5;           ///< d, second order only
@@ -31,6 +32,8 @@ struct ContactLoop {
   double filter_rate_hz = 1000.0;   ///< its period is a multiple or a whole part of the cycle's
   double sample_period_s = 0.004;   ///< a multiple of the filter's period
   bool filters_at_samples = false;  ///< the filter runs once a sample, behind the sampler
+
+  double answer_lag_s = 0.0;  ///< 1/k_v: of feedforward and approach limit, acceleration level
 
   // What the approach-speed limit takes drives and filter for.
   double model_drive_lag_s = 0.005;
@@ -52,6 +55,10 @@ struct ContactLoop {
 /// it. In the one-space loop the law is then that of the task space. Where the feedforward of (5)
 /// takes this motion out of the contact, as it does while the pull is towards the obstacle, beta is
 /// 0 here.
+///
+/// At the acceleration level
+///   v += n (dt f_held / T^2 - D v) - beta z_dot dt,   D = 1 - exp(-2 d dt / T)
+/// where the pull on the tool goes to its speed z_dot; the approach limit is reached with a lag.
 ///
 /// The approach-speed limit predicts with c what the sample does not show yet, from x_f, what its
 /// model of drives and filter made of x by the time of the sample: f_held + x_f - x takes the place

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "tactus/control/acceleration_law.h"
 #include "tactus/control/approach_limit.h"
 #include "tactus/control/contact_point.h"
 #include "tactus/control/contact_transition.h"
@@ -89,6 +90,15 @@ class ContactController {
                    const CommandedMotion& commanded, const ContactSpace& space, double F_p_N,
                    const MotionGate& gate, double period_s, ContactControllerState& state,
                    Motion& motion) const noexcept;
+  /// Acceleration level: the least speed of the contact point in this cycle, on the way from its
+  /// last one to v_least with k_v.
+  double eased(const ForceGains& gains, const ContactSpace& space, const CommandedMotion& commanded,
+               double period_s, double v_least) const noexcept;
+  /// The law of either level.
+  ControlLawOutput answer(const ForceGains& gains, const TaskKinematics& kinematics,
+                          const Contact& contact, const CommandedMotion& commanded,
+                          const ControlLawInput& input, double period_s, ControlLawState& state,
+                          Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
   TaskVector pull(const Gains& gains, const PaddedTaskVector& error) const noexcept;
 
@@ -101,6 +111,7 @@ class ContactController {
   bool has_estimator_;
   ScaledVector inv_sqrt_weights_;
   ControlLaw law_;
+  std::optional<AccelerationLaw> acceleration_law_;
   std::optional<ApproachLimit> approach_limit_;
   std::optional<FrictionCone> friction_cone_;  ///< with the approach limit alone
 };

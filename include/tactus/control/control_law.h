@@ -17,8 +17,10 @@ struct NullSpeedLimits {
 };
 
 struct ControlLawState {
-  double V_m_per_s = 0.0;   ///< integral of (5), stored as int F_p / (T^2 c) dt
-  double It_m_per_s = 0.0;  ///< windowed integral of (7), stored likewise; 0 without a second space
+  double V_m_per_s = 0.0;  ///< integral of (5), stored as int F_p / (T^2 c) dt
+  /// Windowed integral of (7), stored likewise; 0 without a second space. At the acceleration level
+  /// s_t of acceleration_law.h, within that window.
+  double It_m_per_s = 0.0;
   NullSpeedLimits null_speed;
 };
 

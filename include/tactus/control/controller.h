@@ -138,6 +138,9 @@ class Controller {
   void computeTaskMotion(const TaskGains& gains, const ControllerState& state,
                          PreparedCycle& prepared) const noexcept;
   JointLimitCost limitCost(const Gains& gains, ControllerState& state) const noexcept;
+  FreeAcceleration freeAcceleration(const Gains& gains, double path_time_s, double period_s,
+                                    const PreparedCycle& prepared,
+                                    ControllerState& state) const noexcept;
   void avoidJointLimits(const Gains& gains, const TaskKinematics& kinematics,
                         ControllerState& state, Motion& motion) const noexcept;
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
@@ -145,9 +148,9 @@ class Controller {
              TactileReading& reading) const noexcept;
   void sense(const RobotInput& input, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
-  void answerContact(const Gains& gains, const TaskKinematics& kinematics, double period_s,
-                     ControllerState& state, ControllerOutput& output,
-                     Motion& motion) const noexcept;
+  void answerContact(const Gains& gains, const TaskKinematics& kinematics,
+                     const FreeAcceleration& free, double period_s, ControllerState& state,
+                     ControllerOutput& output, Motion& motion) const noexcept;
   double leastStiffness_N_per_m(const Gains& gains, int module,
                                 const ControllerState& state) const noexcept;
   double untold_s(int module, const ControllerState& state) const noexcept;
@@ -175,6 +178,7 @@ class Controller {
   Trajectory trajectory_;
   ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
   bool has_rotation_;
+  bool is_acceleration_level_;
   CommandLimiter limiter_;
   MotionGate gate_;
   std::vector<CoverCompensation> covers_;  ///< one a module, or none

@@ -71,8 +71,15 @@ enum class Variant {
   kNullLimit,  ///< not the paper's: null space, and the approach-speed limit of approach_limit.h
 };
 
+/// What the law answers a contact with.
+enum class ControlLevel {
+  kVelocity,      ///< the paper's: control_law.h
+  kAcceleration,  ///< acceleration_law.h; null space, null_task and null_limit only
+};
+
 struct ForceControlConfig {
   Variant variant = Variant::kNullSpace;
+  ControlLevel level = ControlLevel::kVelocity;
   int order = 2;                      ///< of the target dynamics (4): 1 or 2
   bool has_estimator = false;         ///< of the stiffness; else it is as assumed
   double friction_coefficient = 0.0;  ///< mu_max that contacts may have; null_limit only

@@ -56,6 +56,7 @@ struct ForceGains {
   double max_null_speed_rad_per_s = 5.0;  ///< and for revolute joints
   double pull_gain_per_s = 500.0;         ///< beta of the pull, joint space only
   double min_approach_stiffness_N_per_m = 300.0;  ///< c_floor, null_limit only
+  double velocity_gain_per_s = 200.0;             ///< k_v, acceleration level only
   double assumed_stiffness_N_per_m = 7000.0;      ///< c_0
   ContactTransitionGains transition;
   StiffnessEstimatorGains estimator;
@@ -69,7 +70,7 @@ struct Gains {
 
 static_assert(std::is_trivially_copyable_v<Gains> && std::is_standard_layout_v<Gains>);
 static_assert(
-    sizeof(Gains) == 8 * (4 + 3 + 9 + 5 + 4),
+    sizeof(Gains) == 8 * (4 + 3 + 10 + 5 + 4),
     "no padding, for gains are compared as bytes; a new one gets a row in scene_keys.cpp");
 
 /// Of any of the above, to the bit.

@@ -15,12 +15,15 @@ struct TaskKinematics {
   NearBodies near;         ///< only with a clearance
 };
 
+struct FreeAcceleration;
+
 /// Where earlier commands have led to.
 struct CommandedMotion {
   const JointVector& q;         ///< desired, at the start of this cycle
   const JointVector& velocity;  ///< the previous command
   bool is_followed;             ///< this cycle's command moves the arm; false: it stops, or rests
   double return_share = 1.0;    ///< of the pull, see return_speed.h
+  const FreeAcceleration* free = nullptr;  ///< acceleration level only
 };
 
 /// The motion equation (1) as it comes together: q_dot = W^-1/2 (Q y + v_scaled), with everything

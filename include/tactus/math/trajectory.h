@@ -14,6 +14,12 @@ struct ToolReference {
   Vector3 omega_BaseTool;  ///< rad/s
 };
 
+/// How that speeds up, base frame.
+struct ToolAcceleration {
+  Vector3 a_BaseTool;      ///< m/s^2
+  Vector3 alpha_BaseTool;  ///< rad/s^2
+};
+
 /// A straight rest-to-rest motion to a pose given relative to the pose at the start of the run:
 /// position along a line, orientation about a fixed axis, both on the same time law.
 struct Waypoint {
@@ -39,6 +45,9 @@ class Trajectory {
   /// last motion. Speed is continuously differentiable everywhere.
   ToolReference evaluate(double t_s) const noexcept;
 
+  /// d/dt of the velocities of evaluate(): zero but in the ramps, and bounded everywhere.
+  ToolAcceleration evaluateAcceleration(double t_s) const noexcept;
+
   double end_s() const noexcept;
 
  private:
@@ -50,6 +59,9 @@ class Trajectory {
     Vector3 rotation_vector;  ///< base frame
     bool turns = false;       ///< else R_start all the way, and rotation_vector is zero
   };
+
+  /// That has begun last; null: none yet.
+  const Segment* segmentAt(double t_s) const noexcept;
 
   Pose X_start_;
   std::vector<Segment> segments_;

@@ -26,6 +26,11 @@ inline constexpr std::array kVariantWords = {
     Word<Variant>{"null_limit", Variant::kNullLimit},
 };
 
+inline constexpr std::array kLevelWords = {
+    Word<ControlLevel>{"velocity", ControlLevel::kVelocity},
+    Word<ControlLevel>{"acceleration", ControlLevel::kAcceleration},
+};
+
 /// Of TaskConfig::components.
 inline constexpr std::array kComponentWords = {
     Word<int>{"x", 0},  Word<int>{"y", 1},  Word<int>{"z", 2},

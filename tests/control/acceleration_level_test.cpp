@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include "support/controller_run.h"
+
+/// Controllers at the acceleration level on random robots.
+namespace tactus {
+namespace {
+
+constexpr double kCycle_s = 0.001;
+
+ControllerConfig accelerationController(test::Random& random, int count, int task_size,
+                                        Variant variant) {
+  ControllerConfig config = test::randomController(random, count, task_size);
+  config.weights = test::randomWeights(random, count);
+  config.force_control.emplace();
+  config.force_control->variant = variant;
+  config.force_control->level = ControlLevel::kAcceleration;
+  config.gains.task.drift_gain_per_s = 5.0;
+  return config;
+}
+
+TEST(AccelerationLevel, HasNoLawForOtherVariants) {
+  test::Random random(501);
+  for (const Variant variant : {Variant::kJointSpace, Variant::kTaskSpace, Variant::kNullJoint})
+    EXPECT_THROW(Controller(accelerationController(random, 7, 3, variant)), std::invalid_argument);
+  ControllerConfig first = accelerationController(random, 7, 3, Variant::kNullSpace);
+  first.force_control->order = 1;
+  EXPECT_THROW(Controller{first}, std::invalid_argument);
+}
+
+/// The tool stays where it is, however the null space moves.
+TEST(AccelerationLevel, KeepsItsTaskWhileTheNullSpaceGivesWay) {
+  test::Random random(502);
+  double moved = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    const int count = random.integer(4, 12);
+    const int task_size = random.integer(1, std::min(count - 2, 6));
+    const Controller controller(
+        accelerationController(random, count, task_size, Variant::kNullSpace));
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    test::RandomTouches touches(random);
+    bool is_regular = true;
+    for (int cycle = 0; cycle < 1000; ++cycle) {
+      controller.update(touches.next(state.q_desired), controller.initialGains(), 0.0, kCycle_s,
+                        state, output);
+      // Where a cycle turns the arm by more than that, one step of Euler's is far off.
+      is_regular = is_regular && output.velocity.cwiseAbs().maxCoeff() < 2.0;
+      if (!is_regular) break;
+      ASSERT_LT(output.error.norm(), 1e-3) << i << " " << cycle;
+      moved = std::max(moved, (state.q_desired - controller.config().q_start).norm());
+    }
+  }
+  EXPECT_GT(moved, 0.05);
+}
+
+/// Without contact it is the motion of the velocity level, whatever k_v is.
+TEST(AccelerationLevel, MovesFreelyAsTheVelocityLevelDoes) {
+  test::Random random(503);
+  for (int i = 0; i < 10; ++i) {
+    ControllerConfig config = accelerationController(random, 7, 3, Variant::kNullTask);
+    config.weights.setOnes();
+    config.task.components = {0, 1, 2};
+    Waypoint there;
+    there.displacement_m = random.vector<Vector3>(3, -0.05, 0.05);
+    config.task.trajectory = {0.1, {there}};
+    config.gains.force.velocity_gain_per_s = random.logUniform(20.0, 1000.0);
+    const Controller smooth(config);
+    config.force_control->level = ControlLevel::kVelocity;
+    const Controller direct(config);
+    ControllerState smooth_state = smooth.initialState(), direct_state = direct.initialState();
+    ControllerOutput expected, output;
+    double fastest = 0.0;
+    for (int cycle = 0; cycle < 2000; ++cycle) {
+      const RobotInput untouched{direct_state.q_desired,
+                                 {test::touchAt(0.2, 0.0, 0.0, cycle / 4 + 1)}};
+      direct.update(untouched, direct.initialGains(), cycle * kCycle_s, kCycle_s, direct_state,
+                    expected);
+      smooth.update(untouched, smooth.initialGains(), cycle * kCycle_s, kCycle_s, smooth_state,
+                    output);
+      ASSERT_LT((output.velocity - expected.velocity).norm(), 2e-3) << i << " " << cycle;
+      fastest = std::max(fastest, expected.velocity.norm());
+    }
+    EXPECT_GT(fastest, 0.02);
+  }
+}
+
+TEST(AccelerationLevel, StaysWithinAllLimits) {
+  test::Random random(504);
+  for (int i = 0; i < 60; ++i) {
+    const int count = random.integer(3, 16);
+    const Variant variant = test::kAccelerationVariants[i % 3];
+    ControllerConfig config =
+        test::fullController(random, count, variant, ControlLevel::kAcceleration);
+    config.limits = test::randomLimits(random, count);
+    config.q_start = config.q_start.cwiseMax(config.limits.lower).cwiseMin(config.limits.upper);
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    test::RandomTouches touches(random);
+    for (int cycle = 0; cycle < 500; ++cycle) {
+      const JointVector before = state.velocity_before;
+      controller.update(touches.next(state.q_desired), controller.initialGains(), cycle * kCycle_s,
+                        kCycle_s, state, output);
+      const JointVector change =
+          config.limits.max_acceleration.cwiseMin(1e12) * kCycle_s * (1.0 + 1e-9);
+      ASSERT_TRUE(output.velocity.allFinite());
+      for (int k = 0; k < count; ++k) {
+        ASSERT_LE(std::abs(output.velocity[k]), config.limits.max_velocity[k]);
+        ASSERT_LE(std::abs(output.velocity[k] - before[k]), change[k]);
+        ASSERT_GE(state.q_desired[k], config.limits.lower[k]);
+        ASSERT_LE(state.q_desired[k], config.limits.upper[k]);
+      }
+    }
+  }
+}
+
+RobotInput touchedBy(double force_N, const ControllerState& state) {
+  const std::uint32_t next = state.modules[0].sequence + 1;
+  return {state.q_desired, {test::touchAt(0.2, force_N, 0.0, next)}};
+}
+
+/// What pushed before a hold, or in it, is gone after it: as if the arm had always stood there.
+TEST(AccelerationLevel, RemembersNothingOfAContactAfterAHold) {
+  test::Random random(505);
+  for (const Variant variant : test::kAccelerationVariants) {
+    const Controller controller(accelerationController(random, 7, 3, variant));
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    const auto run = [&](double force_N, int cycles) {
+      for (int i = 0; i < cycles; ++i)
+        controller.update(touchedBy(force_N, state), controller.initialGains(), 0.0, kCycle_s,
+                          state, output);
+    };
+    run(15.0, 300);
+    EXPECT_GT(output.velocity.cwiseAbs().maxCoeff(), 1e-3);
+    state.is_stopping = true;
+    run(15.0, 300);
+    run(0.0, 300);
+    EXPECT_TRUE(output.velocity.isZero(0.0));
+    state.is_stopping = false;
+    ControllerState fresh = controller.initialState(state.q_desired);
+    ControllerOutput expected;
+    for (int i = 0; i < 1000; ++i) {
+      controller.update(touchedBy(0.0, fresh), controller.initialGains(), 0.0, kCycle_s, fresh,
+                        expected);
+      run(0.0, 1);
+      ASSERT_LT((output.velocity - expected.velocity).norm(), 1e-12) << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tactus

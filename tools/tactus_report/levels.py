@@ -1,0 +1,42 @@
+"""The acceleration level beside the velocity level: force, jerk, and the margins of `tactus check`."""
+
+import json
+import pathlib
+import subprocess
+
+import numpy as np
+
+SCENES = pathlib.Path(__file__).resolve().parents[2] / "config/scenes"
+PAIRS = [("scenario1_multi_space", "scenario1_acceleration"),
+         ("scenario2_estimated", "scenario2_acceleration"),
+         ("scenario3_estimated", "scenario3_acceleration")]
+HEADS = ["Run", "Peak force, N", "Final force, N", "Joint jerk rms, rad/s³", "Joint jerk peak, rad/s³",
+         "Stable to c_e/c", "Phase margin, degrees"]
+
+
+def shown(by_scene):
+    """The scenes of pairs that have a run of the acceleration level."""
+    return [scene for pair in PAIRS if pair[1] in by_scene for scene in pair if scene in by_scene]
+
+
+def rows(by_scene, tactus):
+    return [[scene, *figures(by_scene[scene]), *margins(scene, tactus)] for scene in shown(by_scene)]
+
+
+def figures(run):
+    forces = [run.summary["peak_force_N"], run.summary["final_force_N"]]
+    jerks = [float(np.sqrt(np.mean(np.square(run.joint_jerk)))), float(run.joint_jerk.max())]
+    return (["" if force is None else f"{force:.2f}" for force in forces]
+            + [f"{jerk:.3g}" for jerk in jerks])
+
+
+def margins(scene, tactus):
+    """Those of the least stable loop; empty where the scene's file or the program is not there."""
+    try:
+        result = subprocess.run([tactus, "check", SCENES / f"{scene}.yaml", "--json"], check=True,
+                                capture_output=True, encoding="utf-8", errors="replace")
+        loops = json.loads(result.stdout)["stability"]["loops"]
+        return [f"{min(loop['largest_stiffness_ratio'] for loop in loops):.2f}",
+                f"{min(loop['phase_margin_deg'] for loop in loops):.1f}"]
+    except (OSError, subprocess.CalledProcessError, ValueError, LookupError, TypeError):
+        return ["", ""]
