@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "tactus/control/controller.h"
 #include "tactus/control/return_speed.h"
 
@@ -11,7 +13,12 @@ void Controller::restart(const Gains& gains, ControllerState& state) const noexc
                  state.way_out_before);
   }
   state.return_share = 0.0;
-  for (TactileReading& reading : state.modules) reading.cover.has_started = false;
+  state.speed_share = 1.0;
+  for (TactileReading& reading : state.modules) {
+    reading.cover.has_started = false;
+    reading.is_lost = false;
+    reading.unproven_s = 0.0;
+  }
   if (contact_controller_) state.contact = contact_controller_->initialState();
 }
 
@@ -22,8 +29,10 @@ void Controller::place(const JointVector& q, const Gains& gains,
   state.fault = Fault::kNone;
   state.retreat.velocity_at_fault = state.velocity_before;
   if (!joint_limit_avoidance_) return;
-  state.is_leaning = contact_controller_ &&
-                     state.modules.front().contact.force_N > gains.force.transition.release_force_N;
+  const auto isPushed = [&](const TactileReading& reading) {
+    return reading.contact.force_N > gains.force.transition.release_force_N;
+  };
+  state.is_leaning = contact_controller_ && std::ranges::any_of(state.modules, isPushed);
   state.way_out_added = -limitCost(gains, state).gradient;
   if (state.is_leaning) state.way_out_added -= state.way_out_before;
 }

@@ -61,6 +61,9 @@ class ControlCycle {
   Fault judgeDrives() noexcept;
   Fault judgeTactile() noexcept;
   Fault judgeModule(int module) noexcept;
+  bool isLeftOut(int module, Fault fault) const noexcept;
+  void withholdSamples(
+      const std::array<TactileSample, kMaxTactileModules>& samples_before) noexcept;
   Fault judgeController() noexcept;
   ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
   bool areConfigured() const noexcept;
@@ -110,6 +113,8 @@ class ControlCycle {
     double age_s = 0.0;
   };
   std::array<SampleAtStart, kMaxTactileModules> samples_at_start_;
+  /// Of modules that said of late that their cable is broken, and that the arm goes on without.
+  std::array<int, kMaxTactileModules> withheld_cycles_{};
   RobotInput input_;
   ControllerOutput output_;
   bool is_started_ = false;  ///< the controller has a state
