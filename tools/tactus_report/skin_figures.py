@@ -8,9 +8,11 @@ import matplotlib
 import numpy as np
 
 from . import kinematics, log_text
-from .figures import BLUE, COLOURS, GREEN, INK, RED, WIDTH_IN, Curve, Figure, STYLE, as_figure, as_svg, line_figure
+from .figures import (BLUE, COLOURS, GREEN, INK, RED, STYLE, WIDTH_IN, Curve, Figure, as_figure, as_svg,
+                      line_figure)
 
 MOST_MOMENTS = 4  # drawn of a run
+ONE_MOMENT_S = 0.25  # pushes that near in time are in one picture
 ARROW_M_PER_N = 0.02
 LONGEST_ARROW_M = 0.3
 VIEWS = (("from the side", 0, 2), ("from above", 0, 1))  # the axes that are seen
@@ -89,7 +91,11 @@ def moments(run):
         inside = np.flatnonzero((run.time_s >= contact["start_s"]) & (run.time_s <= contact["end_s"]))
         if inside.size:
             found.append((int(inside[force_N[inside].argmax()]), contact["tactile_module"]))
-    return sorted(found)[:MOST_MOMENTS]
+    apart = []
+    for cycle, link in sorted(found):
+        if not apart or run.time_s[cycle] - run.time_s[apart[-1][0]] > ONE_MOMENT_S:
+            apart.append((cycle, link))
+    return apart[:MOST_MOMENTS]
 
 
 def read_arm(log):
