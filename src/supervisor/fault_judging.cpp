@@ -102,13 +102,15 @@ bool ControlCycle::isLeftOut(int module, Fault fault) const noexcept {
 void ControlCycle::withholdSamples(
     const std::array<TactileSample, kMaxTactileModules>& samples_before) noexcept {
   for (int module = 0; module < modules(); ++module) {
-    int& withheld = withheld_cycles_[module];
+    Withheld& withheld = withheld_[module];
     const Fault fault = robot_.tactileModules()[module].fault();
     if (fault == Fault::kTactileCableBreak && isLeftOut(module, fault))
-      withheld = cyclesCovering(kModuleProof_s, period_s_);
-    if (withheld == 0) continue;
-    --withheld;
-    input_.tactile[module] = samples_before[module];
+      withheld.cycles = cyclesLasting(kModuleProof_s, period_s_);
+    if (withheld.cycles == 0) continue;
+    const bool is_new = input_.tactile[module].sequence != withheld.sequence;
+    withheld.sequence = input_.tactile[module].sequence;
+    if (withheld.cycles > 1 || is_new) --withheld.cycles;
+    if (withheld.cycles > 0) input_.tactile[module] = samples_before[module];
   }
 }
 

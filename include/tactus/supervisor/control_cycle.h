@@ -113,8 +113,13 @@ class ControlCycle {
     double age_s = 0.0;
   };
   std::array<SampleAtStart, kMaxTactileModules> samples_at_start_;
-  /// Of modules that said of late that their cable is broken, and that the arm goes on without.
-  std::array<int, kMaxTactileModules> withheld_cycles_{};
+  /// Samples of a module that said of late that its cable is broken, and that the arm goes on
+  /// without.
+  struct Withheld {
+    int cycles = 0;              ///< to go; the last one lasts until a new sample
+    std::uint32_t sequence = 0;  ///< of the newest one
+  };
+  std::array<Withheld, kMaxTactileModules> withheld_;
   RobotInput input_;
   ControllerOutput output_;
   bool is_started_ = false;  ///< the controller has a state
