@@ -111,8 +111,9 @@ std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& r
       report.loops, {}, [](const LoopReport& loop) { return loop.phaseMargin_deg(); });
   if (nearest.phaseMargin_deg() < kMinPhaseMargin_deg) {
     warnings.push_back(fmt::format(
-        "phase margin of {:.1f} degrees ({}): overshoots and rings, better {:g} or more",
-        nearest.phaseMargin_deg(), nearest.name, kMinPhaseMargin_deg));
+        "phase margin of {:.1f} degrees ({}{}): overshoots and rings, better {:g} or more",
+        nearest.phaseMargin_deg(), nearest.name, ofModule(scene, report.module),
+        kMinPhaseMargin_deg));
   }
   const double assumed_N_per_m = scene.controller.gains.force.assumed_stiffness_N_per_m;
   const double needed_N_per_m = report.stiffest_N_per_m / largest_ratio;

@@ -24,14 +24,14 @@ class Skin(unittest.TestCase):
     def check_replay(self, name):
         self.assertIn("equal to the bit", build.call("replay", results / name / "run.ulg"))
 
-    def last_row(self, name):
+    def last_row(self, name, mode=None):
+        """Of this mode, or of any."""
         csv = build.out / f"{name}.csv"
         build.call("export", results / name / "run.ulg", "-o", csv)
         with open(csv, encoding="utf-8") as lines:
             names = next(lines).strip().split(",")
-            for line in lines:
-                last = line
-        return dict(zip(names, last.strip().split(",")))
+            rows = [dict(zip(names, line.strip().split(","))) for line in lines]
+        return [row for row in rows if mode is None or row["mode_name"] == mode][-1]
 
     def check_rest(self, name, link):
         run = summary(results / name)
@@ -57,7 +57,7 @@ class Skin(unittest.TestCase):
         self.check_loop(run)
         self.assertEqual(run["outcome"], "completed")
         self.assertEqual([loss["tactile_module"] for loss in run["module_losses"]], ["link3"])
-        row = self.last_row("goes_on_slowly")
+        row = self.last_row("goes_on_slowly", "running")
         self.assertEqual(float(row["speed_share"]), SPEED_SHARE)
         self.assertEqual(row["modules_lost"], "1")
         slow_s = float(row["t_s"]) - run["module_losses"][0]["start_s"]

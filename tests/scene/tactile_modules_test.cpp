@@ -158,12 +158,13 @@ TEST(TactileModules, MayBeLostOnlyOfSeveral) {
   EXPECT_EQ(slow.controller.module_loss->speed_share, 0.5);
   SceneFiles one = filesOf(moduleEntry("cover"));
   one.robot += "module_lost: go_on_slowly\n";
-  test::expectError(errorOf(one),
-                    {"", "only one", ": module_lost: ", "the robot has 1 tactile module",
-                     "stop, or tactile_modules with two or more"});
+  test::expectError(errorOf(one), {"", "only one", "robot.yaml:17:14: module_lost: ",
+                                   "the robot has 1 tactile module",
+                                   "stop, or tactile_modules with two or more"});
   SceneFiles word = twoModules();
   word.robot += "module_lost: go_on\n";
-  test::expectError(errorOf(word), {"", "a word", ": module_lost: ", "go_on", "stop"});
+  test::expectError(errorOf(word),
+                    {"", "a word", "robot.yaml:27:14: module_lost: ", "go_on", "stop"});
 }
 
 TEST(TactileModules, WithOneIdOnABusAreRefused) {
