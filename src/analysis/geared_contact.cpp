@@ -70,10 +70,11 @@ JointVector wayOf(AnswerSpace space, const ControllerConfig& config, const Chain
 }  // namespace
 
 GearedContact gearedContact(const ControllerConfig& config, const ArmDynamicsConfig& arm,
-                            const JointVector& q, const Vector3& n_Base, AnswerSpace space) {
+                            const JointVector& q, const Vector3& n_Base, AnswerSpace space,
+                            int index) {
   ChainPose pose;
   config.chain.computePose(q, pose);
-  const TactileModuleConfig& module = config.tactile_modules.front();
+  const TactileModuleConfig& module = config.tactile_modules[index];
   const CoverEnds cover = coverEnds(pose, module);
   ScaledVector a;
   applyPointJacobianTranspose(config.chain, pose, module.link.joint,

@@ -36,7 +36,7 @@ class FollowedCover {
   void moveTo(const ChainPose& pose, const JointVector& q, double t_s, double period_s,
               PathContacts& contacts) {
     const CoverEnds ends = coverEnds(pose, module_);
-    if (has_moved_) measureSpeed(ends, q, t_s, period_s, contacts.fastest);
+    if (has_moved_) measureSpeed(ends, q, t_s, period_s, contacts.fastest[index_]);
     ends_ = ends;
     touch(t_s, period_s, contacts);
     has_moved_ = true;
@@ -112,6 +112,7 @@ PathContacts followPath(const ControllerConfig& config, const PlantConfig& plant
   const SerialChain& arm = plant.chain ? *plant.chain : config.chain;
   PathContacts contacts;
   contacts.touches.resize(plant.obstacles.size());
+  contacts.fastest.resize(config.tactile_modules.size());
   std::vector<FollowedCover> covers;
   for (std::size_t i = 0; i < config.tactile_modules.size(); ++i)
     covers.emplace_back(static_cast<int>(i), config.tactile_modules[i],

@@ -5,9 +5,10 @@
 namespace tactus {
 namespace {
 
-ContactLoop loopOf(const ControllerConfig& config, const PlantConfig& plant, double period_s) {
+ContactLoop loopOf(const ControllerConfig& config, const PlantConfig& plant, double period_s,
+                   int index) {
   const ForceGains& force = config.gains.force;
-  const SimulatedModuleConfig& module = plant.modules.front();
+  const SimulatedModuleConfig& module = plant.modules[index];
   const bool is_acceleration = config.force_control->level == ControlLevel::kAcceleration;
   return {.is_acceleration = is_acceleration,
           .order = config.force_control->order,
@@ -22,10 +23,10 @@ ContactLoop loopOf(const ControllerConfig& config, const PlantConfig& plant, dou
           .answer_lag_s = is_acceleration ? 1.0 / force.velocity_gain_per_s : 0.0};
 }
 
-Vector3 acrossLink(const ControllerConfig& config) {
+Vector3 acrossLink(const ControllerConfig& config, int module) {
   ChainPose pose;
   config.chain.computePose(config.q_start, pose);
-  const CoverEnds cover = coverEnds(pose, config.tactile_modules.front());
+  const CoverEnds cover = coverEnds(pose, config.tactile_modules[module]);
   const Vector3 across = (cover.p_BaseEnd - cover.p_BaseStart).cross(Vector3::UnitZ());
   return across.norm() > 1e-6 ? across.normalized() : Vector3::UnitX();
 }
@@ -33,9 +34,9 @@ Vector3 acrossLink(const ControllerConfig& config) {
 }  // namespace
 
 std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const PlantConfig& plant,
-                                      double period_s) {
+                                      double period_s, int module) {
   if (!config.force_control) return {};
-  const ContactLoop one = loopOf(config, plant, period_s);
+  const ContactLoop one = loopOf(config, plant, period_s, module);
   ContactLoop both = one;
   both.law = LoopLaw::kTwoSpaces;
   const auto pulled = [&](ContactLoop loop) {
@@ -62,7 +63,7 @@ std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const Plan
       limit.law = LoopLaw::kApproachLimit;
       limit.order = 1;
       limit.model_drive_lag_s = config.drive_lag_s;
-      limit.model_filter_cutoff_hz = config.tactile_modules.front().filter_cutoff_hz;
+      limit.model_filter_cutoff_hz = config.tactile_modules[module].filter_cutoff_hz;
       return {{"one space", one, kNull}, {"approach limit", limit, kNull}};
     }
   }
@@ -70,11 +71,11 @@ std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const Plan
 }
 
 void addGears(const ControllerConfig& config, const ArmDynamicsConfig& arm, double law_N_per_m,
-              std::vector<VariantLoop>& loops) {
-  const Vector3 n_Base = acrossLink(config);
+              std::vector<VariantLoop>& loops, int module) {
+  const Vector3 n_Base = acrossLink(config, module);
   for (VariantLoop& loop : loops) {
     if (!loop.space) continue;
-    GearedContact contact = gearedContact(config, arm, config.q_start, n_Base, *loop.space);
+    GearedContact contact = gearedContact(config, arm, config.q_start, n_Base, *loop.space, module);
     if (contact.way.isZero(0.0)) continue;
     contact.law_N_per_m = law_N_per_m;
     loop.loop.geared = contact;

@@ -113,7 +113,7 @@ void addHardware(const Scene& scene, Json& json) {
     buses.push_back(busLoadJson(scene.hardware->buses[i].interface, loads[i]));
 }
 
-Json stabilityJson(const StabilityReport& stability) {
+Json stabilityJson(const Scene& scene, const StabilityReport& stability) {
   Json loops = Json::array();
   for (const LoopReport& loop : stability.loops) {
     loops.push_back({{"name", loop.name},
@@ -126,6 +126,7 @@ Json stabilityJson(const StabilityReport& stability) {
   return {{"stiffest_N_per_m", stability.stiffest_N_per_m},
           {"stiffness_N_per_m", stability.stiffness_N_per_m},
           {"stiffness_ratio", stability.ratio()},
+          {"tactile_module", scene.module_links[stability.module]},
           {"gear_mode_hz", stability.gear_mode_hz ? Json(*stability.gear_mode_hz) : Json()},
           {"loops", loops}};
 }
@@ -154,25 +155,26 @@ Json checkJson(const Scene& scene, const Findings& findings) {
                {"smallest_singular_value_at_start", findings.start.smallest_singular_value},
                {"covers", coversJson(findings.covers)},
                {"warnings", findings.warnings}};
-  if (findings.stability) json["stability"] = stabilityJson(*findings.stability);
-  addContact(findings.contact, json);
+  if (findings.stability) json["stability"] = stabilityJson(scene, *findings.stability);
+  addContact(scene, findings.contact, json);
   addClearance(scene, json);
   addHardware(scene, json);
   return json;
 }
 
-std::string gearsText(const StabilityReport& stability) {
+std::string gearsText(const Scene& scene, const StabilityReport& stability) {
   if (!stability.gear_mode_hz)
     return textLine("gears", "rigid in these margins: flexible ones take about half of them");
   std::string text = fmt::format("rigid in these margins; the arm's, {:.3g} Hz at the start",
                                  *stability.gear_mode_hz);
   for (const LoopReport& loop : stability.loops)
     if (loop.ratio_with_gears)
-      text += fmt::format(", {} stable to c_e/c = {:.3g}", loop.name, *loop.ratio_with_gears);
+      text += fmt::format(", {}{} stable to c_e/c = {:.3g}", loop.name,
+                          ofModule(scene, loop.module_with_gears), *loop.ratio_with_gears);
   return textLine("gears", text);
 }
 
-std::string stabilityText(const StabilityReport& stability) {
+std::string stabilityText(const Scene& scene, const StabilityReport& stability) {
   std::string text =
       textLine("contact", fmt::format("up to c_e = {:g} N/m, taken for c = {:g} N/m",
                                       stability.stiffest_N_per_m, stability.stiffness_N_per_m));
@@ -180,11 +182,12 @@ std::string stabilityText(const StabilityReport& stability) {
     const StabilityMargins& margins = loop.margins;
     text += textLine(
         &loop == &stability.loops.front() ? "margins" : "",
-        fmt::format("{}: stable to c_e/c = {:.4g}; here gain {:.3g} ({:.3g} dB), phase {:.3g} deg",
-                    loop.name, margins.largest_stiffness_ratio, margins.gain_margin,
-                    20.0 * std::log10(margins.gain_margin), loop.phaseMargin_deg()));
+        fmt::format(
+            "{}{}: stable to c_e/c = {:.4g}; here gain {:.3g} ({:.3g} dB), phase {:.3g} deg",
+            loop.name, ofModule(scene, stability.module), margins.largest_stiffness_ratio,
+            margins.gain_margin, 20.0 * std::log10(margins.gain_margin), loop.phaseMargin_deg()));
   }
-  if (!stability.loops.empty()) text += gearsText(stability);
+  if (!stability.loops.empty()) text += gearsText(scene, stability);
   return text;
 }
 
@@ -208,8 +211,8 @@ std::string toText(const Scene& scene, const Findings& findings) {
                             start.smallest_singular_value));
   text += coversText(findings.covers);
   text += clearanceText(scene);
-  if (findings.stability) text += stabilityText(*findings.stability);
-  text += contactText(findings.contact);
+  if (findings.stability) text += stabilityText(scene, *findings.stability);
+  text += contactText(scene, findings.contact);
   for (const std::string& warning : findings.warnings) line("warning", warning);
   if (!scene.hardware) return text;
   line("hardware", fmt::format("{}", fmt::join(hardwareStageNames(*scene.hardware), ", ")));

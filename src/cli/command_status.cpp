@@ -82,6 +82,12 @@ std::string motionText(const Json& motion) {
       1e3 * of("tcp_error_max_m"));
 }
 
+std::string lostText(const Json& links) {
+  std::string text;
+  for (const Json& link : links) text += " " + escaped(link.get<std::string>());
+  return text.empty() ? "" : "lost    " + text + ": goes on slowly without\n";
+}
+
 std::string logText(const Json& log) {
   const long long files = countAt(log, "files");
   std::string shown = "log      " + textAt(log, "state");
@@ -93,6 +99,7 @@ std::string statusText(const Json& status) {
   std::string shown =
       fmt::format("{} ({}), process {}\n{}\n", textAt(status, "scene"), textAt(status, "variant"),
                   countAt(status, "pid"), textAt(status, "description"));
+  if (status.contains("modules_lost")) shown += lostText(status.at("modules_lost"));
   if (status.contains("motion")) shown += motionText(status.at("motion"));
   shown += fmt::format("cycles   {}, {} missed, {} not logged\n", countAt(status, "cycles"),
                        countAt(status, "missed_cycles"), countAt(status, "dropped_records"));

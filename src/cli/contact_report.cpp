@@ -13,9 +13,11 @@ std::string pointText(const Vector3& p) {
 
 Json pointJson(const Vector3& p) { return {p.x(), p.y(), p.z()}; }
 
-std::string touchText(const TouchReport& report) {
+std::string touchText(const Scene& scene, const TouchReport& report) {
+  const bool is_named = scene.module_links.size() > 1;
   std::string text =
-      fmt::format("obstacle {} at {:.3g} s with {:.3g} m/s: about {:.3g} N", report.obstacle,
+      fmt::format("obstacle {}{} at {:.3g} s with {:.3g} m/s: about {:.3g} N", report.obstacle,
+                  is_named ? " on " + scene.module_links[report.touch.module] : "",
                   report.touch.t_s, report.touch.speed_m_per_s, report.peak_N);
   if (!report.softer) return text;
   text += fmt::format("; for {:.3g} N: {:.2g} m/s", report.softer->force_N,
@@ -24,10 +26,14 @@ std::string touchText(const TouchReport& report) {
   return text + fmt::format(", or a filter of {:.2g} Hz", *report.softer->cutoff_hz);
 }
 
-std::string peakText(const PeakReport& peak) {
+std::string peakText(const Scene& scene, const PeakReport& peak) {
+  const bool is_named = scene.module_links.size() > 1;
+  const std::string whose =
+      is_named ? "the most for the sensor of " + scene.module_links[peak.fastest.module]
+               : "the fastest of the covers";
   std::string text =
-      fmt::format("{:g} N/m met with {:.3g} m/s, the fastest of the covers: about {:.3g} N",
-                  peak.stiffness_N_per_m, peak.fastest.speed_m_per_s, peak.peak_N());
+      fmt::format("{:g} N/m met with {:.3g} m/s, {}: about {:.3g} N", peak.stiffness_N_per_m,
+                  peak.fastest.speed_m_per_s, whose, peak.peak_N());
   text += fmt::format(" ({:.3g} N by a delay of {:.3g} ms", peak.delay_peak_N, 1e3 * peak.delay_s);
   if (peak.blow_peak_N)
     text += fmt::format(", {:.3g} N by a mass of {:.3g} kg", *peak.blow_peak_N, *peak.mass_kg);
@@ -40,8 +46,9 @@ std::string movingText(const MovingObstacle& moving) {
                      1e3 * moving.speed_m_per_s, moving.force_N, moving.stiffness_N_per_m);
 }
 
-Json touchJson(const TouchReport& report) {
+Json touchJson(const Scene& scene, const TouchReport& report) {
   Json json = {{"obstacle", report.obstacle},
+               {"tactile_module", scene.module_links[report.touch.module]},
                {"t_s", report.touch.t_s},
                {"speed_m_per_s", report.touch.speed_m_per_s},
                {"peak_force_N", report.peak_N}};
@@ -52,8 +59,9 @@ Json touchJson(const TouchReport& report) {
   return json;
 }
 
-Json peakJson(const PeakReport& peak) {
-  Json json = {{"stiffness_N_per_m", peak.stiffness_N_per_m},
+Json peakJson(const Scene& scene, const PeakReport& peak) {
+  Json json = {{"tactile_module", scene.module_links[peak.fastest.module]},
+               {"stiffness_N_per_m", peak.stiffness_N_per_m},
                {"speed_m_per_s", peak.fastest.speed_m_per_s},
                {"delay_s", peak.delay_s},
                {"delay_peak_N", peak.delay_peak_N},
@@ -83,10 +91,11 @@ std::string coversText(const std::vector<CoverReport>& covers) {
   return text;
 }
 
-std::string contactText(const ExpectedContact& report) {
+std::string contactText(const Scene& scene, const ExpectedContact& report) {
   std::string text;
-  for (const TouchReport& touch : report.touches) text += textLine("touch", touchText(touch));
-  if (report.peak) text += textLine("peak", peakText(*report.peak));
+  for (const TouchReport& touch : report.touches)
+    text += textLine("touch", touchText(scene, touch));
+  if (report.peak) text += textLine("peak", peakText(scene, *report.peak));
   if (report.moving) text += textLine("moving", movingText(*report.moving));
   return text;
 }
@@ -101,11 +110,11 @@ Json coversJson(const std::vector<CoverReport>& covers) {
   return json;
 }
 
-void addContact(const ExpectedContact& report, Json& json) {
+void addContact(const Scene& scene, const ExpectedContact& report, Json& json) {
   Json touches = Json::array();
-  for (const TouchReport& touch : report.touches) touches.push_back(touchJson(touch));
+  for (const TouchReport& touch : report.touches) touches.push_back(touchJson(scene, touch));
   json["touches"] = touches;
-  if (report.peak) json["expected_peak"] = peakJson(*report.peak);
+  if (report.peak) json["expected_peak"] = peakJson(scene, *report.peak);
   if (report.moving) {
     json["moving_obstacle"] = {{"stiffness_N_per_m", report.moving->stiffness_N_per_m},
                                {"speed_m_per_s", report.moving->speed_m_per_s},

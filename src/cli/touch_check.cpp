@@ -19,10 +19,10 @@ bool hasActivationForce(Variant variant) {
 }
 
 /// A touch of this spring by the scene's arm, whose loop of one space has its delays.
-TouchedSpring touchedSpring(const Scene& scene, const ObstacleConfig& obstacle,
+TouchedSpring touchedSpring(const Scene& scene, int module, const ObstacleConfig& obstacle,
                             double robot_stiffness_N_per_m) {
   const PlantConfig plant = plantOf(scene);
-  return {variantLoops(scene.controller, plant, scene.period_s).front().loop,
+  return {variantLoops(scene.controller, plant, scene.period_s, module).front().loop,
           scene.controller.gains.force.contact_threshold_N,
           ContactSpring(obstacle, robot_stiffness_N_per_m)};
 }
@@ -46,8 +46,8 @@ std::vector<TouchReport> touchesOf(const Scene& scene, const PathContacts& conta
   for (std::size_t i = 0; i < contacts.touches.size(); ++i) {
     const std::optional<PathTouch>& touch = contacts.touches[i];
     if (!touch || touch->t_s == 0.0 || touch->speed_m_per_s <= 0.0) continue;
-    const TouchedSpring touched =
-        touchedSpring(scene, scene.plant.obstacles[i], scene.plant.robot_stiffness_N_per_m);
+    const TouchedSpring touched = touchedSpring(scene, touch->module, scene.plant.obstacles[i],
+                                                scene.plant.robot_stiffness_N_per_m);
     // One that appears in the arm pushes at once.
     const double peak_N = std::max(touchPeak_N(touched, touch->speed_m_per_s),
                                    touched.spring.force_N(touch->depth_m));
@@ -78,7 +78,7 @@ PeakReport peakOf(const Scene& scene, const FastestCover& fastest, double stiffe
   const double v = fastest.speed_m_per_s;
   ObstacleConfig stiffest;
   stiffest.stiffness_N_per_m = stiffest_N_per_m;
-  const TouchedSpring touched = touchedSpring(scene, stiffest, kNoLimit);
+  const TouchedSpring touched = touchedSpring(scene, fastest.module, stiffest, kNoLimit);
   PeakReport report{.fastest = fastest,
                     .stiffness_N_per_m = stiffest_N_per_m,
                     .delay_s = touchDelay_s(touched, v),
@@ -99,6 +99,18 @@ PeakReport peakOf(const Scene& scene, const FastestCover& fastest, double stiffe
   report.target_speed_m_per_s =
       std::min(report.target_speed_m_per_s, report.target_N / blowPeak_N(1.0, k, *report.mass_kg));
   return report;
+}
+
+/// Of the modules the one that may come nearest to what its sensor can show.
+std::optional<PeakReport> worstPeak(const Scene& scene, const PathContacts& contacts,
+                                    double stiffest_N_per_m) {
+  std::optional<PeakReport> worst;
+  for (const FastestCover& fastest : contacts.fastest) {
+    if (fastest.speed_m_per_s <= 0.0) continue;
+    const PeakReport peak = peakOf(scene, fastest, stiffest_N_per_m);
+    if (!worst || peak.shareOfRange() > worst->shareOfRange()) worst = peak;
+  }
+  return worst;
 }
 
 MovingObstacle bearableMotion(const ForceGains& gains, double stiffest_N_per_m) {
@@ -139,10 +151,11 @@ std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& cont
   for (const CapsuleTouch& touch : contacts.unsensed)
     warnings.push_back(unsensedWarning(scene, touch));
   if (peak && peak->peak_N() > peak->max_force_N) {
-    warnings.push_back(fmt::format(
-        "the stiffest contact may come to {:.3g} N, the sensor's max_force_N is {:g}: that ends in "
-        "a fault",
-        peak->peak_N(), peak->max_force_N));
+    warnings.push_back(
+        fmt::format("the stiffest contact{} may come to {:.3g} N, the sensor's max_force_N is "
+                    "{:g}: that ends in "
+                    "a fault",
+                    ofModule(scene, peak->fastest.module), peak->peak_N(), peak->max_force_N));
   }
   return warnings;
 }
@@ -158,8 +171,7 @@ ExpectedContact checkContacts(const Scene& scene, double stiffest_N_per_m) {
       followPath(scene.controller, scene.plant, scene.period_s, scene.duration_s);
   if (scene.controller.force_control) {
     report.touches = touchesOf(scene, contacts);
-    if (contacts.fastest.speed_m_per_s > 0.0)
-      report.peak = peakOf(scene, contacts.fastest, stiffest_N_per_m);
+    report.peak = worstPeak(scene, contacts, stiffest_N_per_m);
     if (scene.controller.force_control->variant == Variant::kNullLimit)
       report.moving = bearableMotion(scene.controller.gains.force, stiffest_N_per_m);
   }

@@ -33,6 +33,16 @@ void locateContact(const TactileSample& sample, const TactileModuleConfig& modul
   if (sample.moment_x_Nm != 0.0) turnToNormal(sample.moment_x_Nm, module.cover_radius_m, contact);
 }
 
+double offCover_m(const TactileSample& sample, const TactileModuleConfig& config) noexcept {
+  const double F_y = flushed(sample.force_y_N);
+  const double F_z = flushed(sample.force_z_N);
+  const double force_squared = F_y * F_y + F_z * F_z;
+  const double telling_N = kTellingShare * config.max_force_N;
+  if (force_squared <= telling_N * telling_N) return 0.0;
+  const double x = (sample.moment_z_Nm * F_y - sample.moment_y_Nm * F_z) / force_squared;
+  return std::max({0.0, -x, x - config.length_m});
+}
+
 bool isValid(const TactileSample& sample, const TactileModuleConfig& config) noexcept {
   const double force = std::hypot(flushed(sample.force_y_N), flushed(sample.force_z_N));
   return force <= config.max_force_N && std::isfinite(sample.moment_y_Nm) &&

@@ -13,7 +13,12 @@ void Controller::restart(const Gains& gains, ControllerState& state) const noexc
                  state.way_out_before);
   }
   state.return_share = 0.0;
-  for (TactileReading& reading : state.modules) reading.cover.has_started = false;
+  state.speed_share = 1.0;
+  for (TactileReading& reading : state.modules) {
+    reading.cover.has_started = false;
+    reading.is_lost = false;
+    reading.unproven_s = 0.0;
+  }
   if (contact_controller_) state.contact = contact_controller_->initialState();
   if (several_contacts_) state.several = several_contacts_->initialState();
 }
@@ -25,12 +30,10 @@ void Controller::place(const JointVector& q, const Gains& gains,
   state.fault = Fault::kNone;
   state.retreat.velocity_at_fault = state.velocity_before;
   if (!joint_limit_avoidance_) return;
-  state.is_leaning =
-      config_.force_control &&
-      std::any_of(state.modules.begin(), state.modules.begin() + modules(),
-                  [&](const auto& module) {
-                    return module.contact.force_N > gains.force.transition.release_force_N;
-                  });
+  const auto isPushed = [&](const TactileReading& reading) {
+    return reading.contact.force_N > gains.force.transition.release_force_N;
+  };
+  state.is_leaning = config_.force_control && std::ranges::any_of(state.modules, isPushed);
   state.way_out_added = -limitCost(gains, state).gradient;
   if (state.is_leaning) state.way_out_added -= state.way_out_before;
 }

@@ -1,4 +1,9 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+
 #include "tactus/control/controller.h"
+#include "tactus/control/module_loss.h"
 
 /// What a controller takes from the tactile modules.
 namespace tactus {
@@ -24,20 +29,60 @@ FaultDetail Controller::sampleAge(int module, const RobotInput& input, double pe
   return {age_s, config_.tactile_modules[module].max_sample_age_s, "s", -1, module};
 }
 
+bool Controller::goesOnWithout(int module, const Gains& gains,
+                               const ControllerState& state) const noexcept {
+  const TactileReading& reading = state.modules[module];
+  const bool may_lose = reading.is_lost || (state.fault == Fault::kNone && !state.is_stopping);
+  if (!config_.module_loss || !may_lose || !mayBeLost(reading, gains.force.contact_threshold_N))
+    return false;
+  for (int i = 0; i < modules(); ++i)
+    if (i != module && isGood(state.modules[i], config_.tactile_modules[i])) return true;
+  return false;
+}
+
+/// The arm goes on without modules that have a fault now, as long as another is good.
+void Controller::goOnWithoutLost(const Gains& gains, double period_s,
+                                 std::array<Fault, kMaxTactileModules>& faults,
+                                 ControllerState& state) const noexcept {
+  for (int i = 0; i < modules(); ++i)
+    if (faults[i] == Fault::kNone) prove(period_s, state.modules[i]);
+  for (int i = 0; i < modules(); ++i) {
+    if (faults[i] == Fault::kNone || !goesOnWithout(i, gains, state)) continue;
+    lose(state.modules[i]);
+    faults[i] = Fault::kNone;
+  }
+  state.speed_share =
+      nextSpeedShare(config_.module_loss->speed_share,
+                     std::span(state.modules).first(static_cast<std::size_t>(modules())), period_s,
+                     state.speed_share);
+}
+
+/// The whole command, so that the arm keeps its direction.
+void Controller::slowDown(const ControllerState& state, JointVector& velocity) const noexcept {
+  double largest = 0.0;
+  for (int i = 0; i < velocity.size(); ++i)
+    largest = std::max(largest, std::abs(velocity[i]) / config_.limits.max_velocity[i]);
+  if (largest > state.speed_share) velocity *= state.speed_share / largest;
+}
+
 /// Of several modules with a fault the first one counts.
-void Controller::sense(const RobotInput& input, double period_s, ControllerState& state,
-                       ControllerOutput& output) const noexcept {
+void Controller::sense(const RobotInput& input, const Gains& gains, double period_s,
+                       ControllerState& state, ControllerOutput& output) const noexcept {
   output.modules = modules();
+  output.speed_share = state.speed_share;
+  output.modules_lost = 0;
+  std::array<Fault, kMaxTactileModules> faults{};
+  for (int i = 0; i < output.modules; ++i) faults[i] = read(i, input, period_s, state.modules[i]);
+  if (config_.module_loss) goOnWithoutLost(gains, period_s, faults, state);
   for (int i = 0; i < output.modules; ++i) {
-    TactileReading& reading = state.modules[i];
-    const Fault fault = read(i, input, period_s, reading);
-    if (state.fault == Fault::kNone && fault != Fault::kNone) {
-      state.fault = fault;
-      if (!state.is_stopping) state.retreat.velocity_at_fault = state.velocity_before;
-      output.fault_detail = reading.detail;
-      output.fault_detail.module = i;
-    }
+    const TactileReading& reading = state.modules[i];
     output.sensed[i] = reading.contact;
+    if (reading.is_lost) output.modules_lost |= std::uint64_t{1} << i;
+    if (state.fault != Fault::kNone || faults[i] == Fault::kNone) continue;
+    state.fault = faults[i];
+    if (!state.is_stopping) state.retreat.velocity_at_fault = state.velocity_before;
+    output.fault_detail = reading.detail;
+    output.fault_detail.module = i;
   }
 }
 

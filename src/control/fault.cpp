@@ -10,13 +10,16 @@ struct FaultRows {
   static constexpr auto kQuickStop = Reaction::kQuickStop;
   static constexpr auto kBrake = Reaction::kBrake;
   static constexpr auto kRelieved =
-      "at most F_act + F_th within 1 s; after a reading that is no number as after tactile_stale";
+      "at most F_act + F_th within 1 s; after a reading that is no number or off the cover as "
+      "after "
+      "tactile_stale";
   static constexpr auto kLastFelt = "the last one felt, less what the way out takes";
   static constexpr auto kAsStopped = "that where the arm stops";
   static constexpr auto kUnmoved = "that from before";
   static constexpr std::array<FaultRow, 22> kTable = {{
       {kNone, "none", "", "", Reaction::kNone, ""},
-      {kTactileInvalid, "tactile_invalid", "a reading not finite or beyond max_force_N",
+      {kTactileInvalid, "tactile_invalid",
+       "a reading not finite, beyond max_force_N, or of a push far off the cover",
        "a sample and 2 cycles", kRetreat, kRelieved},
       {kTactileStale, "tactile_stale", "no new sample for max_sample_age_s",
        "max_sample_age_s and 2 cycles", kRetreat, kLastFelt},

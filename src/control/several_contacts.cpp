@@ -86,14 +86,15 @@ void SeveralContacts::project(const TaskKinematics& kinematics, Place& place) co
 }
 
 void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics,
-                            const ContactPointState& sensor, const CommandedMotion& commanded,
+                            const TactileReading& reading, const CommandedMotion& commanded,
                             double period_s, const Module& module, ModuleContactState& state,
                             Place& place) const noexcept {
   ContactPointState& contact = state.approach.smoother.contact;
   contact.interval_s = 0.0;
-  if (sensor.isNew())
-    module.limit.follow(gains.force, sensor, framePose(kinematics.pose, module.link),
+  if (reading.contact.isNew())
+    module.limit.follow(gains.force, reading.contact, framePose(kinematics.pose, module.link),
                         state.approach);
+  if (reading.is_lost) contact.force_N = 0.0;
   locate(kinematics, module, contact, place);
   const double F_p_N = contactForce_N(gains.force, state);
   const double near = nearness(gains.force, state);
@@ -159,7 +160,7 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
     Place place;
     ModuleContactState& contact = state.modules[i];
     const ApproachLimitState& approach = contact.approach;
-    sense(gains, kinematics, readings[i].contact, commanded, period_s, modules_[i], contact, place);
+    sense(gains, kinematics, readings[i], commanded, period_s, modules_[i], contact, place);
     if (approach.memory_N_per_m > 0.0) {
       null_rows.row[null_rows.size] = place.row;
       holdRow(gains.force, approach, null_rows.row[null_rows.size++]);

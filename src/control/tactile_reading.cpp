@@ -38,7 +38,9 @@ Fault readSample(const TactileModuleConfig& module, const TactileSample& sample,
   const double interval_s = reading.age_s + period_s;
   reading.age_s = 0.0;
   reading.hardest.force_N *= fadedShare(module.filter_cutoff_hz, interval_s);
-  const bool is_valid = isValid(sample, module);
+  const bool is_in_range = isValid(sample, module);
+  const double off_m = is_in_range ? offCover_m(sample, module) : 0.0;
+  const bool is_valid = is_in_range && off_m <= module.length_m;
   reading.fault = is_valid ? Fault::kNone : Fault::kTactileInvalid;
   if (is_valid) {
     locateContact(sample, module, reading.contact);
@@ -46,7 +48,8 @@ Fault readSample(const TactileModuleConfig& module, const TactileSample& sample,
     if (reading.contact.force_N >= reading.hardest.force_N) reading.hardest = reading.contact;
   } else {
     reading.detail = {judgedForce_N(sample), module.max_force_N, "N"};
-    reading.has_excess = reading.detail.value < kMaxBelievable_N;
+    reading.has_excess = !is_in_range && reading.detail.value < kMaxBelievable_N;
+    if (is_in_range) reading.detail = {off_m, module.length_m, "m"};
     if (reading.has_excess) locateContact(sample, module, reading.excess);
   }
   return reading.fault;

@@ -44,6 +44,9 @@ Json statusJson(const RunStatus& status, double monotonic_s) {
                {"wake_latency_ns", timesJson(timeFigures(status.loop.wake_latency))},
                {"control_ns", timesJson(timeFigures(status.loop.control))}};
   if (status.figures) json["motion"] = motionJson(*status.figures);
+  if (status.scene.controller.module_loss)
+    json["modules_lost"] =
+        lostModules(status.scene, status.figures ? status.figures->modules_lost : std::uint64_t{0});
   if (status.log) json["log"] = logJson(*status.log, "writing");
   return json;
 }

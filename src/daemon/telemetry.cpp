@@ -4,6 +4,7 @@
 
 #include "tactus/daemon/journal_sink.h"
 #include "tactus/daemon/log_sink.h"
+#include "tactus/daemon/loss_sink.h"
 #include "tactus/daemon/status_sink.h"
 #include "tactus/daemon/summary_sink.h"
 #include "tactus/record/fault_text.h"
@@ -23,6 +24,7 @@ Telemetry::Telemetry(const Scene& scene, const std::string& folder, LoopLink& li
   }
   sinks_.push_back(std::make_unique<StatusSink>(scene, link, log_state));
   sinks_.push_back(std::make_unique<JournalSink>());
+  if (scene.controller.module_loss) sinks_.push_back(std::make_unique<LossSink>(scene));
 }
 
 void Telemetry::drain() {

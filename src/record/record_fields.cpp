@@ -63,6 +63,8 @@ constexpr std::array kFields = {
                 AT(tool_rotation_error_rad), true},
     RecordField{"tactile_moment_x_Nm", "Nm", kOfMomentX, kDouble, kInput, AT(tactile_moment_x_Nm),
                 true},
+    RecordField{"modules_lost", "", kOfLoss, kUint64, kOutput, AT(modules_lost), true},
+    RecordField{"speed_share", "", kOfLoss, kDouble, kOutput, AT(speed_share), true},
 };
 #undef AT
 
@@ -88,6 +90,8 @@ std::size_t RecordShape::entries(const RecordField& field) const noexcept {
       return static_cast<std::size_t>(modules);
     case kOfMomentX:
       return has_moment_x ? static_cast<std::size_t>(modules) : 0;
+    case kOfLoss:
+      return has_loss ? 1 : 0;
   }
   return 0;
 }

@@ -27,6 +27,15 @@ Json contactJson(const ContactSummary& contact, const Scene& scene) {
           {"tactile_module", scene.module_links[contact.module]}};
 }
 
+Json lossesJson(const RunFigures& figures, const Scene& scene) {
+  Json losses = Json::array();
+  for (const ModuleLoss& loss : figures.module_losses)
+    losses.push_back({{"tactile_module", scene.module_links[loss.module]},
+                      {"start_s", loss.start_s},
+                      {"end_s", loss.end_s}});
+  return losses;
+}
+
 void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
   json["cycles"] = figures.cycles;
   json["peak_force_N"] = figures.peak_force_N;
@@ -46,6 +55,7 @@ void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
   Json& contacts = json["contacts"] = Json::array();
   for (const ContactSummary& contact : figures.contacts)
     contacts.push_back(contactJson(contact, scene));
+  if (scene.controller.module_loss) json["module_losses"] = lossesJson(figures, scene);
   if (figures.unsensed) json["unsensed_contact"] = unsensedJson(*figures.unsensed, scene);
   json["step_time_ns"] = timesJson(figures.step_time_ns);
 }
@@ -55,14 +65,16 @@ void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
 RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
     : limits_(config.limits) {
   const std::size_t modules = config.tactile_modules.size();
+  // What a law acts on says of several modules only that one of them is touched.
+  const bool is_told_by_law = config.force_control.has_value() && modules == 1;
   for (std::size_t i = 0; i < modules; ++i) {
-    contacts_.emplace_back(config.force_control.has_value(), expected_cycles / modules,
-                           static_cast<int>(i));
+    contacts_.emplace_back(is_told_by_law, expected_cycles / modules, static_cast<int>(i));
   }
   if (config.task.hasRotation()) figures_.tcp_rotation_error.emplace();
 }
 
 void RunSummary::add(const CycleRecord& record) {
+  addLosses(record);
   addFigures(record);
   for (ContactList& contacts : contacts_) contacts.add(record);
 }
@@ -75,10 +87,25 @@ void RunSummary::addFigures(const CycleRecord& record) noexcept {
     figures_.stiffness_at_peak_N_per_m = record.stiffness_N_per_m;
   }
   figures_.final_force_N = force_N;
+  figures_.modules_lost = record.modules_lost;
   figures_.stiffness_final_N_per_m = record.stiffness_N_per_m;
   addToolError(record);
   addJoints(record);
   step_times_.add(record.step_ns);
+}
+
+/// Before the cycle's figures: those of the last one tell what is new.
+void RunSummary::addLosses(const CycleRecord& record) {
+  if (record.modules_lost == 0) return;
+  std::vector<ModuleLoss>& losses = figures_.module_losses;
+  for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+    const std::uint64_t bit = std::uint64_t{1} << i;
+    if ((record.modules_lost & bit) == 0) continue;
+    if ((figures_.modules_lost & bit) == 0) losses.push_back({i, record.t_s, record.t_s});
+    const auto last = std::find_if(losses.rbegin(), losses.rend(),
+                                   [i](const ModuleLoss& loss) { return loss.module == i; });
+    last->end_s = record.t_s;
+  }
 }
 
 void RunSummary::addToolError(const CycleRecord& record) noexcept {
@@ -121,6 +148,13 @@ RunFigures RunSummary::figures() const {
   std::ranges::stable_sort(figures.contacts, {}, &ContactSummary::start_s);
   figures.step_time_ns = timeFigures(step_times_);
   return figures;
+}
+
+std::vector<std::string> lostModules(const Scene& scene, std::uint64_t modules_lost) {
+  std::vector<std::string> links;
+  for (std::size_t i = 0; i < scene.module_links.size(); ++i)
+    if ((modules_lost >> i & 1U) != 0) links.push_back(scene.module_links[i]);
+  return links;
 }
 
 Json summaryJson(const Scene& scene, const RunFigures& figures, double real_time_factor,

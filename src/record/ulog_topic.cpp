@@ -100,9 +100,12 @@ std::string findShape(const std::vector<LoggedField>& fields, RecordShape& shape
         "no field force_sensor_N with an entry for each tactile module, 1 to {} are expected",
         kMaxTactileModules);
   }
-  shape = {static_cast<int>(q->entries), static_cast<int>(w->entries),
-           find(fields, "tool_rotation_error_rad") != nullptr, static_cast<int>(force->entries),
-           find(fields, "tactile_moment_x_Nm") != nullptr};
+  shape = {static_cast<int>(q->entries),
+           static_cast<int>(w->entries),
+           find(fields, "tool_rotation_error_rad") != nullptr,
+           static_cast<int>(force->entries),
+           find(fields, "tactile_moment_x_Nm") != nullptr,
+           find(fields, "modules_lost") != nullptr};
   return {};
 }
 

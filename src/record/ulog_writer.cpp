@@ -132,8 +132,12 @@ LogDescription describeLog(const Scene& scene) {
   const TaskConfig& task = scene.controller.task;
   const int modules = static_cast<int>(scene.controller.tactile_modules.size());
   description.shape = {
-      scene.controller.chain.size(), task.size, task.hasRotation(), std::max(1, modules),
-      std::ranges::any_of(scene.controller.tactile_modules, &TactileModuleConfig::feels_moment_x)};
+      scene.controller.chain.size(),
+      task.size,
+      task.hasRotation(),
+      std::max(1, modules),
+      std::ranges::any_of(scene.controller.tactile_modules, &TactileModuleConfig::feels_moment_x),
+      scene.controller.module_loss.has_value()};
   description.infos = {{"ver_sw", TACTUS_VERSION},
                        {"scene", scene.name},
                        {"variant", scene.variant},

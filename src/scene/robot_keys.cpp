@@ -1,7 +1,10 @@
+#include <array>
+
 #include "tactus/control/robot.h"
 #include "tactus/scene/cover_keys.h"
 #include "tactus/scene/hardware_keys.h"
 #include "tactus/scene/key_defaults.h"
+#include "tactus/scene/key_words.h"
 
 namespace tactus {
 namespace {
@@ -87,6 +90,26 @@ Table<TactileModuleSection> tactileModuleKeys() {
               moduleOnBusKeys());
 }
 
+constexpr std::array kModuleLostWords = {
+    Word<ModuleLost>{"stop", ModuleLost::kStop},
+    Word<ModuleLost>{"go_on_slowly", ModuleLost::kGoOnSlowly},
+};
+
+Table<RobotConfig> moduleLostKeys() {
+  using Config = RobotConfig;
+  const Table<ModuleLossConfig> share = {number("module_lost_speed_share", "", within(0.01, 1),
+                                                "of the speed at which the arm goes on slowly",
+                                                &ModuleLossConfig::speed_share)};
+  return join(
+      Table<Config>{choice(
+          "module_lost",
+          "when one of several tactile modules tells nothing any more while nothing pushes on it, "
+          "and another is good: stop, as after every fault, or go_on_slowly, until it has been "
+          "good for 1 s",
+          &Config::module_lost, kModuleLostWords)},
+      inside(&Config::module_loss, share));
+}
+
 Row<RobotConfig> capsuleSections() {
   using Config = CapsuleSection;
   const Table<Config> rows = {
@@ -127,7 +150,7 @@ Row<RobotConfig> dynamicsSection() {
 
 Table<RobotConfig> robotTable() {
   using Config = RobotConfig;
-  return {
+  const Table<Config> of_arm = {
       text("urdf", "robot description, relative to this file", &Config::urdf),
       text("tip", "URDF link that is the tool", &Config::tip),
       oneAJoint("home", "m or rad", within(-1e6, 1e6),
@@ -149,10 +172,9 @@ Table<RobotConfig> robotTable() {
       onlyEntryOf("tactile_modules", "tactile_module",
                   "in place of tactile_modules: the only one, with the same keys",
                   &Config::tactile_modules, tactileModuleKeys()),
-      capsuleSections(),
-      gpioSection(),
-      realTimeSection(),
   };
+  const Table<Config> beside = {capsuleSections(), gpioSection(), realTimeSection()};
+  return join(of_arm, moduleLostKeys(), beside);
 }
 
 }  // namespace

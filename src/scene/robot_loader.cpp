@@ -11,6 +11,19 @@
 #include "tactus/scene/tactile_loader.h"
 
 namespace tactus {
+namespace {
+
+/// Of two modules one may be lost.
+void checkModuleLost(const YamlNode& root, const RobotConfig& config) {
+  const char* const key = "module_lost";
+  const std::size_t modules = config.tactile_modules.size();
+  if (config.module_lost == ModuleLost::kStop || modules > 1) return;
+  failAt(locate(root, key), key, fmt::format("the robot has {} tactile module", modules),
+         "expected stop, or tactile_modules with two or more");
+}
+
+}  // namespace
+
 JointVector toJointVector(const std::vector<double>& values, const YamlNode& root,
                           const std::string& path, const UrdfChain& chain) {
   if (values.size() != chain.joints.size()) {
@@ -55,6 +68,7 @@ LoadedRobot loadRobot(const SourceFile& file, const SceneSettings& settings, Sou
 
   const NamedFrame tip{config.tip, "tip", locate(root, "tip")};
   checkModules(root, config.tactile_modules);
+  checkModuleLost(root, config);
   UrdfChain chain = loadUrdfChain(urdf, tip, moduleLinks(root, config.tactile_modules),
                                   capsuleLinks(root, config.collision_capsules));
   checkWithinLimits(toJointVector(config.home, root, "home", chain), root, "home", chain);

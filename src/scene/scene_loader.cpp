@@ -110,6 +110,8 @@ ControllerConfig makeController(const YamlNode& root, const SceneConfig& config,
     read.feels_moment_x = module.channels.moment_x.has_value();
     if (module.cover) read.cover = makeCover(*module.cover, module.config.length_m);
   }
+  if (robot.config.module_lost == ModuleLost::kGoOnSlowly)
+    controller.module_loss = robot.config.module_loss;
   controller.gravity_Base = robot.config.gravity_Base;
   controller.geared_links = loadGearedLinks(robot, q_start);
   controller.drive_lag_s = robot.config.drives.position_lag_s;

@@ -83,8 +83,8 @@ std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, doubl
 [[noreturn]] void failUnstable(const Scene& scene, const StabilityReport& report,
                                const std::string& stiffest_key,
                                const std::vector<VariantLoop>& loops, const LoopReport& unstable) {
-  const std::string contact =
-      fmt::format("unstable ({}) in a contact of {:g} N/m", unstable.name, report.stiffest_N_per_m);
+  const std::string contact = fmt::format("unstable ({}{}) in a contact of {:g} N/m", unstable.name,
+                                          ofModule(scene, report.module), report.stiffest_N_per_m);
   const double ratio = largestRatio(loops, kMinPhaseMargin_rad);
   if (unstable.margins.largest_stiffness_ratio < 1.0 || ratio == 0.0) {
     fail(scene, "controller.time_constant_s",
@@ -111,8 +111,9 @@ std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& r
       report.loops, {}, [](const LoopReport& loop) { return loop.phaseMargin_deg(); });
   if (nearest.phaseMargin_deg() < kMinPhaseMargin_deg) {
     warnings.push_back(fmt::format(
-        "phase margin of {:.1f} degrees ({}): overshoots and rings, better {:g} or more",
-        nearest.phaseMargin_deg(), nearest.name, kMinPhaseMargin_deg));
+        "phase margin of {:.1f} degrees ({}{}): overshoots and rings, better {:g} or more",
+        nearest.phaseMargin_deg(), nearest.name, ofModule(scene, report.module),
+        kMinPhaseMargin_deg));
   }
   const double assumed_N_per_m = scene.controller.gains.force.assumed_stiffness_N_per_m;
   const double needed_N_per_m = report.stiffest_N_per_m / largest_ratio;
@@ -125,7 +126,37 @@ std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& r
   return warnings;
 }
 
+std::vector<LoopReport> marginsOf(const std::vector<VariantLoop>& loops, double ratio) {
+  std::vector<LoopReport> reports;
+  for (const VariantLoop& loop : loops)
+    reports.push_back({loop.name, computeMargins(loop.loop, ratio)});
+  return reports;
+}
+
+const LoopReport& leastStable(const std::vector<LoopReport>& loops) {
+  return *std::ranges::min_element(
+      loops, {}, [](const LoopReport& loop) { return loop.margins.largest_stiffness_ratio; });
+}
+
+/// Keeps the smallest ratio of all modules, and whose it is.
+void noteGears(const std::vector<VariantLoop>& loops, int module, StabilityReport& report) {
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (!loops[i].loop.geared) continue;
+    const double ratio = largestStiffnessRatio(loops[i].loop, 0.0);
+    LoopReport& noted = report.loops[i];
+    const GearedContact& contact = *loops[i].loop.geared;
+    report.gear_mode_hz = gearModes_hz(contact.M, contact.arm.gear_stiffness).minCoeff();
+    if (noted.ratio_with_gears && *noted.ratio_with_gears <= ratio) continue;
+    noted.ratio_with_gears = ratio;
+    noted.module_with_gears = module;
+  }
+}
+
 }  // namespace
+
+std::string ofModule(const Scene& scene, int module) {
+  return scene.module_links.size() > 1 ? " of " + scene.module_links[module] : "";
+}
 
 PlantConfig plantOf(const Scene& scene) {
   PlantConfig plant = scene.plant;
@@ -137,25 +168,32 @@ PlantConfig plantOf(const Scene& scene) {
 }
 
 std::optional<StabilityReport> checkStability(const Scene& scene) {
-  std::vector<VariantLoop> loops = variantLoops(scene.controller, plantOf(scene), scene.period_s);
-  if (loops.empty()) return std::nullopt;
+  const PlantConfig plant = plantOf(scene);
+  if (variantLoops(scene.controller, plant, scene.period_s).empty()) return std::nullopt;
   const StiffestContact stiffest = stiffestContact(scene);
   StabilityReport report;
   report.stiffest_N_per_m = stiffest.stiffness_N_per_m;
   report.stiffness_N_per_m = stiffnessOfLaw(scene.controller, stiffest.stiffness_N_per_m);
-  if (stepsOfCommonPeriod(loops.front().loop) == 0) {
-    report.warnings = {"margins not computed: cycle and samples hardly ever coincide"};
-    return report;
+  double largest_ratio = std::numeric_limits<double>::infinity();
+  std::vector<VariantLoop> loops;
+  for (int i = 0; i < static_cast<int>(scene.controller.tactile_modules.size()); ++i) {
+    std::vector<VariantLoop> of_module = variantLoops(scene.controller, plant, scene.period_s, i);
+    if (stepsOfCommonPeriod(of_module.front().loop) == 0) {
+      report.loops.clear();
+      report.warnings = {"margins not computed: cycle and samples hardly ever coincide"};
+      return report;
+    }
+    std::vector<LoopReport> margins = marginsOf(of_module, report.ratio());
+    const double ratio = leastStable(margins).margins.largest_stiffness_ratio;
+    if (ratio >= largest_ratio) continue;
+    largest_ratio = ratio;
+    report.module = i;
+    report.loops = std::move(margins);
+    loops = std::move(of_module);
   }
-  for (const VariantLoop& loop : loops)
-    report.loops.push_back({loop.name, computeMargins(loop.loop, report.ratio())});
-  const auto worst = std::ranges::min_element(report.loops, {}, [](const LoopReport& loop) {
-    return loop.margins.largest_stiffness_ratio;
-  });
-  const double largest_ratio = worst->margins.largest_stiffness_ratio;
-  if (worst->margins.phase_margin_rad == 0.0) {
-    failUnstable(scene, report, stiffest.key, loops, *worst);
-  }
+  const LoopReport& worst = leastStable(report.loops);
+  if (worst.margins.phase_margin_rad == 0.0)
+    failUnstable(scene, report, stiffest.key, loops, worst);
   report.warnings = warningsOf(scene, report, largest_ratio);
   return report;
 }
@@ -170,22 +208,22 @@ double stiffestBeforeGears(const Scene& scene) {
 
 void addGearMargins(const Scene& scene, StabilityReport& report) {
   if (!scene.arm || !scene.arm->has_gears || report.loops.empty()) return;
-  std::vector<VariantLoop> loops = variantLoops(scene.controller, plantOf(scene), scene.period_s);
   const double stiffest_N_per_m = std::max(scene.stiffest_N_per_m, stiffestBeforeGears(scene));
   const double law_N_per_m =
       stiffnessOfLaw(scene.controller, std::max(report.stiffest_N_per_m, stiffest_N_per_m));
-  addGears(scene.controller, scene.arm->dynamics, law_N_per_m, loops);
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (!loops[i].loop.geared) continue;
-    const double ratio = largestStiffnessRatio(loops[i].loop, 0.0);
-    report.loops[i].ratio_with_gears = ratio;
-    const GearedContact& contact = *loops[i].loop.geared;
-    report.gear_mode_hz = gearModes_hz(contact.M, contact.arm.gear_stiffness).minCoeff();
-    if (ratio * law_N_per_m > stiffest_N_per_m) continue;
+  const PlantConfig plant = plantOf(scene);
+  for (int i = 0; i < static_cast<int>(scene.controller.tactile_modules.size()); ++i) {
+    std::vector<VariantLoop> loops = variantLoops(scene.controller, plant, scene.period_s, i);
+    addGears(scene.controller, scene.arm->dynamics, law_N_per_m, loops, i);
+    noteGears(loops, i, report);
+  }
+  for (const LoopReport& loop : report.loops) {
+    if (!loop.ratio_with_gears || *loop.ratio_with_gears * law_N_per_m > stiffest_N_per_m) continue;
     report.warnings.push_back(fmt::format(
-        "unstable with the arm's gears at its start ({}): in front of them stable to {:.0f} N/m, "
+        "unstable with the arm's gears at its start ({}{}): in front of them stable to {:.0f} N/m, "
         "not in {:.0f} N/m; more time_constant_s, or a larger c",
-        loops[i].name, ratio * law_N_per_m, stiffest_N_per_m));
+        loop.name, ofModule(scene, loop.module_with_gears), *loop.ratio_with_gears * law_N_per_m,
+        stiffest_N_per_m));
   }
 }
 

@@ -82,7 +82,9 @@ ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareCon
 void ControlCycle::update(const CycleInput& input) noexcept {
   coast(input.missed_cycles);
   robot_.expect(isCommanding(mode_.mode) ? state_.q_desired : output_.q_desired);
+  const auto samples_before = input_.tactile;
   robot_.read(input_);
+  if (controller_.config().module_loss && is_started_) withholdSamples(samples_before);
   startTares();
   const Mode before = mode_.mode;
   const Fault fault_before = mode_.fault;

@@ -59,6 +59,8 @@ void fillRecord(double t_s, const RobotInput& input, const Gains& gains,
   record.fault = static_cast<std::uint64_t>(output.fault);
   copy(tool_error_m, record.tool_error_m);
   record.path_time_s = output.path_time_s;
+  record.modules_lost = output.modules_lost;
+  record.speed_share = output.speed_share;
   record.gains = gains;
 }
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/canopen/cycle_count.h"
+#include "tactus/control/module_loss.h"
 #include "tactus/supervisor/control_cycle.h"
 
 /// What the cycle finds amiss in its own input, of whom that speaks, and by which value.
@@ -45,7 +47,7 @@ Fault ControlCycle::judgeController() noexcept {
   }
   for (int module = 0; module < modules(); ++module) {
     const TactileReading& reading = state_.modules[module];
-    if (reading.fault == Fault::kNone) continue;
+    if (reading.fault == Fault::kNone || reading.is_lost) continue;
     judged_.detail = reading.detail;
     judged_.detail.module = module;
     return reading.fault;
@@ -82,11 +84,34 @@ Fault ControlCycle::judgeDrives() noexcept {
 Fault ControlCycle::judgeTactile() noexcept {
   for (int module = 0; module < modules(); ++module) {
     const Fault fault = judgeModule(module);
-    if (fault == Fault::kNone) continue;
+    if (fault == Fault::kNone || isLeftOut(module, fault)) continue;
     judged_.detail.module = module;
     return fault;
   }
   return Fault::kNone;
+}
+
+/// A push beyond what channels can tell is no loss.
+bool ControlCycle::isLeftOut(int module, Fault fault) const noexcept {
+  const bool is_loss = fault == Fault::kTactileStale || fault == Fault::kTactileCableBreak;
+  return is_loss && isCommanding(mode_.mode) && controller_.goesOnWithout(module, gains_, state_);
+}
+
+/// A cable that breaks now and then is broken, until it has been good for a while: the controller,
+/// and a replay of it, know the module by its samples alone.
+void ControlCycle::withholdSamples(
+    const std::array<TactileSample, kMaxTactileModules>& samples_before) noexcept {
+  for (int module = 0; module < modules(); ++module) {
+    Withheld& withheld = withheld_[module];
+    const Fault fault = robot_.tactileModules()[module].fault();
+    if (fault == Fault::kTactileCableBreak && isLeftOut(module, fault))
+      withheld.cycles = cyclesLasting(kModuleProof_s, period_s_);
+    if (withheld.cycles == 0) continue;
+    const bool is_new = input_.tactile[module].sequence != withheld.sequence;
+    withheld.sequence = input_.tactile[module].sequence;
+    if (withheld.cycles > 1 || is_new) --withheld.cycles;
+    if (withheld.cycles > 0) input_.tactile[module] = samples_before[module];
+  }
 }
 
 Fault ControlCycle::judgeModule(int module) noexcept {

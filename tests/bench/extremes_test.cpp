@@ -113,7 +113,7 @@ TEST(Extremes, WatchEveryNumberOfTheState) {
     found[value] = name;
     ++count;
   });
-  EXPECT_EQ(count, 9 + 9 + 2 * kMaxJoints + 3 + 1 + 5 + 5 + 5 + 1 + 4 + 5 + 5 + 5 +
+  EXPECT_EQ(count, 9 + 9 + 2 * kMaxJoints + 4 + 2 + 5 + 5 + 5 + 1 + 4 + 5 + 5 + 5 +
                        (30 + 7 * kMaxJoints + 5 + 2) + 2 + (1 + 2 * 3 + 4 * 5) + 1 +
                        (5 + 5 + 3 + 2 + kMaxJoints + 7));
   EXPECT_EQ(found[7.0], "law.It");

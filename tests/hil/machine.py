@@ -51,7 +51,7 @@ class Build:
         """The summary of `tactus simulate`, on this machine."""
         folder = self.out / "simulated"
         self.call("simulate", SCENES / f"{name}.yaml", "-o", folder)
-        return summary(folder / name)
+        return summary(folder / Path(name).name)
 
 
 def summary(folder):

@@ -15,12 +15,12 @@ namespace {
 TEST(RecordFields, NameEveryWordOfARecordButItsGainsExactlyOnceInItsOrder) {
   std::vector<std::size_t> offsets;
   for (const RecordColumn& column :
-       recordColumns({kMaxJoints, kMaxTaskSize, true, kMaxTactileModules, true}))
+       recordColumns({kMaxJoints, kMaxTaskSize, true, kMaxTactileModules, true, true}))
     offsets.push_back(column.offset);
   std::ranges::sort(offsets);
   ASSERT_EQ(offsets.size() * 8, offsetof(CycleRecord, gains));
   for (std::size_t i = 0; i < offsets.size(); ++i) EXPECT_EQ(offsets[i], 8 * i);
-  const auto of_one_module = recordColumns({kMaxJoints, kMaxTaskSize, true, 1, true});
+  const auto of_one_module = recordColumns({kMaxJoints, kMaxTaskSize, true, 1, true, true});
   EXPECT_TRUE(std::ranges::is_sorted(of_one_module, {}, &RecordColumn::offset));
 }
 

@@ -38,8 +38,8 @@ TEST_F(FaultText, TellsTimeValueAndLimit) {
   static_cast<FaultReport&>(report) = forceTooLarge();
   report.mode = Mode::kHolding;
   EXPECT_EQ(describeMode(report, scene_),
-            "holding: tactile_invalid, at 3.214 s, 102.5 N, at most 100 N: a reading not finite or "
-            "beyond max_force_N; reaction: retreat");
+            "holding: tactile_invalid, at 3.214 s, 102.5 N, at most 100 N: a reading not finite, "
+            "beyond max_force_N, or of a push far off the cover; reaction: retreat");
   report.fault = Fault::kNone;
   EXPECT_EQ(describeMode(report, scene_), "holding");
 }

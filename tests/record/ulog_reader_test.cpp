@@ -70,19 +70,20 @@ TEST(UlogReader, FindsFieldsByNameWhateverTheirOrderAndNeighbours) {
   double number = 0.0;
   for (auto field = fields.rbegin(); field != fields.rend(); ++field) {
     text += HandMadeLog::declaration(*field);
-    for (std::size_t i = 0; i < RecordShape{2, 1, true, 1, true}.entries(*field); ++i)
+    for (std::size_t i = 0; i < RecordShape{2, 1, true, 1, true, true}.entries(*field); ++i)
       data += raw(number += 1.0);
   }
   log.format = message('F', text);
   log.data = message('D', data);
   const auto read = test::readLog(log.bytes());
   ASSERT_EQ(read.records.size(), 1u);
-  EXPECT_EQ(read.records[0].tool_rotation_error_rad, 2.0);
-  EXPECT_EQ(read.records[0].tactile_moment_x_Nm[0], 1.0);
-  EXPECT_EQ(read.records[0].tool_error_m[2], 9.0);
-  EXPECT_EQ(read.records[0].tool_error_m[0], 11.0);
-  EXPECT_EQ(read.records[0].q_measured[0], 17.0);
-  EXPECT_EQ(read.records[0].q_measured[1], 18.0);
+  EXPECT_EQ(read.records[0].speed_share, 1.0);
+  EXPECT_EQ(read.records[0].tool_rotation_error_rad, 4.0);
+  EXPECT_EQ(read.records[0].tactile_moment_x_Nm[0], 3.0);
+  EXPECT_EQ(read.records[0].tool_error_m[2], 11.0);
+  EXPECT_EQ(read.records[0].tool_error_m[0], 13.0);
+  EXPECT_EQ(read.records[0].q_measured[0], 19.0);
+  EXPECT_EQ(read.records[0].q_measured[1], 20.0);
   EXPECT_EQ(read.records[0].t_s, number);
 }
 
@@ -92,7 +93,7 @@ TEST(UlogReader, PassesOverOtherTopicsAndHarmlessMessages) {
                     message('I', "\x0b"s + "float[2] xy" + std::string(8, '\0')) +
                     message('M', "\0\x08"s + "int8_t m" + "m") + message('A', "\0\1\0other"s) +
                     message('Q', "whatever");
-  const std::size_t size = 2 + 8 + 8 * (17 + 4 + 3 + 3 + 2 + 5 + 3 + 5 + 3);
+  const std::size_t size = 2 + 8 + 8 * (17 + 4 + 3 + 3 + 2 + 5 + 3 + 5 + 5);
   log.data = message('D', "\1\0"s + "other topic") + message('L', "6text") + message('S', "sync") +
              message('O', "\5\0"s) + message('D', std::string(size, '\0')) + message('R', "\1\0"s);
   EXPECT_EQ(test::readLog(log.bytes()).records.size(), 1u);
@@ -103,6 +104,7 @@ TEST(UlogReader, ReadsALogOfBeforeThereWereMissedCycles) {
   log.replaceInFormat("uint64_t missed_cycles;", "");
   log.replaceInFormat("double path_time_s;", "");
   log.replaceInFormat("double tactile_moment_x_Nm;", "");
+  log.replaceInFormat("uint64_t modules_lost;double speed_share;", "");
   log.data = message('D', "\0\0"s + std::string(8 + 8 * (17 + 4 + 3 + 3 + 2 + 5 + 3 + 5), '\0'));
   EXPECT_EQ(test::readLog(log.bytes()).records.size(), 1u);
   for (const HandMadeLog& candidate : {log, HandMadeLog()}) {

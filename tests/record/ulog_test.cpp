@@ -137,6 +137,15 @@ TEST(Ulog, HasAMomentAboutTheAxisOnlyOfModulesThatTellIt) {
   EXPECT_EQ(recordColumns(description.shape).back().name, name + "_3");
 }
 
+TEST(Ulog, HasWhatIsLostOnlyOfARobotThatGoesOnWithoutIt) {
+  LogDescription description = smallDescription();
+  EXPECT_EQ(writeLog(description, {}).find("modules_lost"), std::string::npos);
+  description.shape.has_loss = true;
+  const std::string bytes = writeLog(description, {});
+  EXPECT_NE(bytes.find("uint64_t modules_lost;double speed_share;"), std::string::npos);
+  EXPECT_EQ(recordColumns(description.shape).back().name, "speed_share");
+}
+
 /// Every byte of a small log, written down from the specification.
 TEST(Ulog, WritesTheBytesOfTheSpecification) {
   LogDescription description;

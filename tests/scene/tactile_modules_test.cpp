@@ -149,6 +149,24 @@ TEST(TactileModules, ThatDoNotFitAreRefused) {
                      "null_limit, none, or a robot with one"});
 }
 
+TEST(TactileModules, MayBeLostOnlyOfSeveral) {
+  EXPECT_FALSE(twoModules().load().controller.module_loss) << "unless it is asked for";
+  EXPECT_FALSE(twoModules().load({{"robot.module_lost", "stop"}}).controller.module_loss);
+  const Scene slow = twoModules().load(
+      {{"robot.module_lost", "go_on_slowly"}, {"robot.module_lost_speed_share", "0.5"}});
+  ASSERT_TRUE(slow.controller.module_loss);
+  EXPECT_EQ(slow.controller.module_loss->speed_share, 0.5);
+  SceneFiles one = filesOf(moduleEntry("cover"));
+  one.robot += "module_lost: go_on_slowly\n";
+  test::expectError(errorOf(one), {"", "only one", "robot.yaml:17:14: module_lost: ",
+                                   "the robot has 1 tactile module",
+                                   "stop, or tactile_modules with two or more"});
+  SceneFiles word = twoModules();
+  word.robot += "module_lost: go_on\n";
+  test::expectError(errorOf(word),
+                    {"", "a word", "robot.yaml:27:14: module_lost: ", "go_on", "stop"});
+}
+
 TEST(TactileModules, WithOneIdOnABusAreRefused) {
   const std::string on = "  interface: can1\n  first_id: ";
   test::expectError(

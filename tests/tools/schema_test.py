@@ -178,6 +178,7 @@ class Case(unittest.TestCase):
         robot["dynamics"] = load((crops9 / "robot.yaml").read_text())["dynamics"] | {
             "servo_bandwidth_hz": 40, "servo_integral_hz": 8}  # fmt: skip
         robot["gravity_m_per_s2"] = [0, 0, -9.81]
+        robot |= {"module_lost": "stop", "module_lost_speed_share": 0.25}
         robot["tactile_module"]["cover"] = {
             "mass_kg": 0.3, "center_m": [0.19, 0, 0], "behind_gears": True}  # fmt: skip
         robot["collision_capsules"] = [

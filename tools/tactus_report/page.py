@@ -4,7 +4,7 @@ import html
 import pathlib
 import re
 
-from . import comparison, levels, paper_figures, run_figures, runs
+from . import comparison, levels, paper_figures, run_figures, runs, skin_figures
 from .figures import as_figure, scatter_figure
 
 CSS = pathlib.Path(__file__).with_name("page.css")
@@ -34,6 +34,8 @@ def build_page(loaded, tactus):
         body.append(runs_table([run for run in loaded if run.scene in PAPER_SCENES]))
     body += faults_section(loaded)
     body += unsensed_section(loaded)
+    body += skin_figures.section(loaded)
+    body += contacts_section(loaded)
     if further:
         body += ["<h2>Further runs, not of the paper</h2>" if of_paper else "<h2>Runs</h2>",
                  runs_table([run for run in loaded if run.scene not in PAPER_SCENES]),
@@ -167,6 +169,14 @@ def faults_section(runs):
                          with_unit(fault["limit"], unit), fault["description"]])
     heads = ["Run", "Fault", "At, s", "Joint or bus", "Value", "Limit", "In words"]
     return ["<h2>Faults</h2>", table(heads, rows, "faults")] if rows else []
+
+
+def contacts_section(runs):
+    """Of arms with several modules, whose contacts have a link to be told apart by."""
+    rows = [[name, link, number(start_s, 3), number(end_s, 3), number(peak_N, 2), number(settling_s, 3)]
+            for name, link, start_s, end_s, peak_N, settling_s in skin_figures.contact_rows(runs)]
+    heads = ["Run", "Link of the module", "From, s", "To, s", "Largest force, N", "Settles in, s"]
+    return ["<h3>Their contacts</h3>", table(heads, rows, "contacts")] if rows else []
 
 
 def unsensed_section(runs):

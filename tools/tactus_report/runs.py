@@ -11,6 +11,8 @@ import tempfile
 
 import numpy as np
 
+from . import log_text
+
 
 class InputError(Exception):
     """Something wrong with what the user gave; the message is one line."""
@@ -19,6 +21,8 @@ class InputError(Exception):
 SUMMARY_NUMBERS = ("peak_force_N", "final_force_N", "tcp_error_max_m", "tcp_error_rms_m",
                    "tcp_error_final_m", "peak_joint_speed_squared", "joints_at_limit_cycles",
                    "stiffness_at_peak_N_per_m", "real_time_factor")
+# Beginnings of columns that tell of several modules.
+OF_SKINS = ("force_sensor_N_", "contact_position_m", "contact_dir_", "q_measured_")
 STEP_TIMES = ("median", "p99")
 
 
@@ -28,11 +32,18 @@ class Run:
     scene: str
     summary: dict  # checked: every name above is there, a finite number or None
     time_s: np.ndarray
-    force_N: np.ndarray  # F_sen
+    force_N: np.ndarray  # F_sen, of several modules the largest
     stiffness_N_per_m: np.ndarray  # c
     joint_jerk: np.ndarray  # norm of the second difference of the command; mixed likewise
     joint_speed_squared: np.ndarray  # of the command; m/s and rad/s mixed, as in the paper
     tool_error_m: np.ndarray  # |w_d - w| of the real arm
+    # Of each tactile module, in the order of robot.yaml; of logs without these columns: nothing.
+    modules: list = dataclasses.field(default_factory=list)  # their links
+    forces_N: list = dataclasses.field(default_factory=list)
+    positions_m: list = dataclasses.field(default_factory=list)  # of the contact along the link
+    directions: list = dataclasses.field(default_factory=list)  # one row a cycle, frame of the module
+    q: np.ndarray = None  # as measured, one row a cycle
+    log: log_text.LogText = None  # None: no ULog
 
 
 def load_runs(folders, tactus):
@@ -93,9 +104,29 @@ def load_run(folder, name, tactus):
     column = dict(zip(names, values.T))
     velocities = [values for name, values in column.items() if name.startswith("dq_")]
     errors = [column[f"tool_error_{axis}_m"] for axis in "xyz"]
-    return Run(name, summary["scene"], summary, column["t_s"], column["force_sensor_N"],
-               column["stiffness_N_per_m"], jerk(column["t_s"], velocities), np.sum(np.square(velocities), axis=0),
-               np.sqrt(np.sum(np.square(errors), axis=0)))
+    modules = of_modules(column, log_text.read_log_text(log))
+    return Run(name, summary["scene"], summary, column["t_s"],
+               np.max([column[key] for key in column if key.startswith("force_sensor_N")], axis=0),
+               column["stiffness_N_per_m"], jerk(column["t_s"], velocities),
+               np.sum(np.square(velocities), axis=0), np.sqrt(np.sum(np.square(errors), axis=0)),
+               **modules)
+
+
+def of_modules(column, log):
+    """The members of Run that speak of several modules; none where the log has not all of them."""
+    if log is None:
+        return {}
+    links = log.module_links()
+    endings = [""] + [f"_{number}" for number in range(2, len(links) + 1)]
+    names = ["force_sensor_N", "contact_position_m", *(f"contact_dir_{axis}" for axis in "xyz")]
+    if len(links) < 2 or not all(name + ending in column for name in names for ending in endings):
+        return {}
+    q = [values for name, values in column.items() if name.startswith("q_measured_")]
+    return {"modules": links, "log": log, "q": np.column_stack(q) if q else None,
+            "forces_N": [column["force_sensor_N" + ending] for ending in endings],
+            "positions_m": [column["contact_position_m" + ending] for ending in endings],
+            "directions": [np.column_stack([column[f"contact_dir_{axis}{ending}"] for axis in "xyz"])
+                           for ending in endings]}
 
 
 def jerk(time_s, velocities):
@@ -123,7 +154,21 @@ def read_summary(path):
         check_number(path, key, times)
     check_fault(path, summary.get("fault"))
     check_unsensed(path, summary.get("unsensed_contact"))
+    check_contacts(path, summary.get("contacts", []))
     return summary
+
+
+def check_contacts(path, contacts):
+    if not isinstance(contacts, list):
+        raise InputError(f"{path}: contacts: no list, expected one of contacts")
+    for number, contact in enumerate(contacts):
+        place = f"{path}: contacts[{number}]"
+        if not isinstance(contact, dict) or not isinstance(contact.get("tactile_module"), str):
+            raise InputError(f"{place}.tactile_module: missing or no text, expected a link")
+        for key in ("start_s", "end_s", "peak_force_N", "settling_s"):
+            check_number(place, key, contact)
+            if contact[key] is None:
+                raise InputError(f"{place}: {key}: null, expected a finite number")
 
 
 def check_unsensed(path, contact):
@@ -183,6 +228,7 @@ def read_table(table, log):
         wanted = ["t_s", "force_sensor_N", "stiffness_N_per_m"]
         wanted += [f"tool_error_{axis}_m" for axis in "xyz"]
         wanted += [name for name in header if name.startswith("dq_")]
+        wanted += [name for name in header if name.startswith(OF_SKINS) and name not in wanted]
         missing = [name for name in wanted if name not in header]
         if missing:
             raise InputError(f"{log}: column {missing[0]} missing, expected it in every log")

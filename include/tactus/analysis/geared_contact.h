@@ -20,10 +20,11 @@ struct GearedContact {
 /// In which joints a law lets a contact give way.
 enum class AnswerSpace { kNull, kJoint, kTask };
 
-/// The contact of the first module in the middle of its cover, pushed along n_Base (unit vector,
+/// The contact of a module in the middle of its cover, pushed along n_Base (unit vector,
 /// base frame), at q. `way` is zero where that space does not move the contact.
 GearedContact gearedContact(const ControllerConfig& config, const ArmDynamicsConfig& arm,
-                            const JointVector& q, const Vector3& n_Base, AnswerSpace space);
+                            const JointVector& q, const Vector3& n_Base, AnswerSpace space,
+                            int module = 0);
 
 /// What a step of step_s makes of [link positions, motor positions, link speeds, motor speeds,
 /// commanded x, commanded speed] with a spring of stiffness_ratio c at the contact; the speed stays

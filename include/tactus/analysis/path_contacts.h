@@ -39,8 +39,8 @@ struct CapsuleTouch {
 struct PathContacts {
   std::vector<std::optional<PathTouch>> touches;  ///< one an obstacle
   std::vector<CapsuleTouch> unsensed;             ///< in the order of their first touch
-  FastestCover fastest;
-  bool is_complete = false;  ///< the path was followed for all of the duration
+  std::vector<FastestCover> fastest;              ///< one a module
+  bool is_complete = false;                       ///< the path was followed for all of the duration
 };
 
 /// Of a long run its first kMaxFollowedCycles, so that a check stays quick.

@@ -25,8 +25,9 @@ struct StateVisitor {
 
   void all(const ControllerState& state) const {
     const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
-                 way_out_before, way_out_added, is_leaning, modules, contact, several, zones,
-                 retreat] = state;
+                 way_out_before, way_out_added, is_leaning, speed_share, modules, contact, several,
+                 zones, retreat] = state;
+    visit("speed_share", 0, speed_share);
     visit("waited_s", 0, waited_s);
     visit("progress", 0, progress);
     visit("return_share", 0, return_share);
@@ -35,7 +36,8 @@ struct StateVisitor {
     list("q_desired", q_desired);
     list("velocity_before", velocity_before);
     const auto& [sequence, age_s, sample_fault, detail, sensed_contact, hardest, excess, has_excess,
-                 cover] = modules.front();
+                 cover, is_lost, unproven_s] = modules.front();
+    visit("unproven_s", 0, unproven_s);
     visit("sample_age_s", 0, age_s);
     point("force_N", "position_m", "direction", sensed_contact);
     point("hardest.force_N", "hardest.position_m", "hardest.direction", hardest);

@@ -24,7 +24,8 @@ struct TouchReport {
   std::optional<SofterTouch> softer;
 };
 
-/// What the stiffest contact would come to at the fastest speed of the covers on their path.
+/// What the stiffest contact would come to at the fastest speed of a cover on its path: of several
+/// modules, of the one that it brings nearest to its max_force_N.
 struct PeakReport {
   FastestCover fastest;
   double stiffness_N_per_m;  ///< c_e, obstacle and arm in series
@@ -34,6 +35,7 @@ struct PeakReport {
   double target_N, target_speed_m_per_s;       ///< F_act + F_th, or max_force_N without F_act
 
   double peak_N() const;
+  double shareOfRange() const { return peak_N() / max_force_N; }
 };
 
 /// How fast an obstacle may come or go: at v_o the approach limit lets the force rest off F_act by

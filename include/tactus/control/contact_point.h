@@ -33,6 +33,14 @@ inline constexpr double kMaxTiltSine = 0.70710678;
 void locateContact(const TactileSample& sample, const TactileModuleConfig& module,
                    ContactPointState& contact) noexcept;
 
+/// A force of so much of the module's range has a place on its cover, or a module length off it at
+/// most, as of two pushes from opposite sides: of others in proportion. Else no push explains it.
+inline constexpr double kTellingShare = 0.1;
+
+/// How far off the cover the push is that would explain such a sample, m; 0: on it, or too weak to
+/// tell. More than the module's length contradicts itself.
+double offCover_m(const TactileSample& sample, const TactileModuleConfig& config) noexcept;
+
 /// Finite and within the module's range?
 bool isValid(const TactileSample& sample, const TactileModuleConfig& config) noexcept;
 

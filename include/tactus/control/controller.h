@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -29,6 +30,8 @@ struct ControllerOutput {
   int modules = 0;             ///< entries of `sensed` that count
   std::array<ContactPointState, kMaxTactileModules> sensed;  ///< as each module says
   ContactReport contact;
+  std::uint64_t modules_lost = 0;  ///< bit i: the arm goes on without module i
+  double speed_share = 1.0;        ///< in this cycle, of an arm that goes on without a module
   Fault fault = Fault::kNone;
   FaultDetail fault_detail;  ///< of the fault; set in its first cycle, then left alone
 };
@@ -45,7 +48,8 @@ struct ControllerState {
   /// Out of joint limits' zones, as Motion::v_scaled: before the last restart(), and what came to
   /// it by the place where the arm stands since.
   ScaledVector way_out_before = ScaledVector::Zero(), way_out_added = ScaledVector::Zero();
-  bool is_leaning = false;  ///< on something, where it stands since
+  bool is_leaning = false;   ///< on something, where it stands since
+  double speed_share = 1.0;  ///< of all but answers to contacts; less without a tactile module
   std::array<TactileReading, kMaxTactileModules> modules;
   ContactControllerState contact;
   SeveralContactsState several;  ///< instead, with several modules
@@ -62,6 +66,7 @@ struct PreparedCycle {
   TaskVector push;        ///< and this push of the law, see TaskConfig
   double return_share = 1.0;
   bool is_leaning = false;
+  double speed_share = 1.0;
   TaskGains task_gains;  ///< and these gains
   JointLimitAvoidanceGains limit_gains;
   TaskKinematics kinematics;
@@ -106,6 +111,9 @@ class Controller {
   FaultDetail sampleAge(int module, const RobotInput& input, double period_s,
                         const ControllerState& state) const noexcept;
 
+  /// Whether the arm goes on, slowly, if nothing more comes from this module.
+  bool goesOnWithout(int module, const Gains& gains, const ControllerState& state) const noexcept;
+
   /// For cycles that were missed: the drives kept the last command for as long, and the reference
   /// its progress.
   void coast(int missed_cycles, double period_s, ControllerState& state) const noexcept;
@@ -146,11 +154,15 @@ class Controller {
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
   Fault read(int module, const RobotInput& input, double period_s,
              TactileReading& reading) const noexcept;
-  void sense(const RobotInput& input, double period_s, ControllerState& state,
+  void sense(const RobotInput& input, const Gains& gains, double period_s, ControllerState& state,
              ControllerOutput& output) const noexcept;
   void answerContact(const Gains& gains, const TaskKinematics& kinematics,
                      const FreeAcceleration& free, double period_s, ControllerState& state,
                      ControllerOutput& output, Motion& motion) const noexcept;
+  void goOnWithoutLost(const Gains& gains, double period_s,
+                       std::array<Fault, kMaxTactileModules>& faults,
+                       ControllerState& state) const noexcept;
+  void slowDown(const ControllerState& state, JointVector& velocity) const noexcept;
   double leastStiffness_N_per_m(const Gains& gains, int module,
                                 const ControllerState& state) const noexcept;
   double untold_s(int module, const ControllerState& state) const noexcept;

@@ -85,6 +85,15 @@ struct ForceControlConfig {
   double friction_coefficient = 0.0;  ///< mu_max that contacts may have; null_limit only
 };
 
+/// What an arm does that loses one of several tactile modules (silent, or no numbers) while nothing
+/// pushes on that: it goes on at this share of its speed. The reference's clock, what brings the
+/// tool back to its path and joints out of their limits' zones, and the largest speeds of the
+/// joints are slowed alike; answers to the contacts of other modules are only bounded by the last.
+/// Lost in a contact, or as the last good one, a module is a fault, which ends at rest.
+struct ModuleLossConfig {
+  double speed_share = 0.25;  ///< > 0, at most 1
+};
+
 struct ControllerConfig {
   SerialChain chain;
   JointVector q_start{};
@@ -93,6 +102,7 @@ struct ControllerConfig {
   JointVector weights{};  ///< diagonal of W, > 0, with a median of 1: see redundancy.weights
   bool has_joint_limit_avoidance = false;
   std::vector<TactileModuleConfig> tactile_modules{};  ///< at most kMaxTactileModules
+  std::optional<ModuleLossConfig> module_loss{};       ///< absent: every loss is a fault
   Vector3 gravity_Base = Vector3::Zero();              ///< m/s^2; only covers ask
   std::optional<GearedLinks> geared_links{};  ///< only covers ask; absent: links are measured
   double drive_lag_s = 0.005;  ///< nominal first-order lag of position; only null_limit asks

@@ -63,7 +63,7 @@ class SeveralContacts {
   void locate(const TaskKinematics& kinematics, const Module& module,
               const ContactPointState& point, Place& place) const noexcept;
   void project(const TaskKinematics& kinematics, Place& place) const noexcept;
-  void sense(const Gains& gains, const TaskKinematics& kinematics, const ContactPointState& sensor,
+  void sense(const Gains& gains, const TaskKinematics& kinematics, const TactileReading& reading,
              const CommandedMotion& commanded, double period_s, const Module& module,
              ModuleContactState& state, Place& place) const noexcept;
   void addRow(const ForceGains& gains, const TaskKinematics& kinematics, const Module& module,

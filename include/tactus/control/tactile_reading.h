@@ -21,6 +21,8 @@ struct TactileReading {
   ContactPointState excess;      ///< of the newest sample beyond the module's range
   bool has_excess = false;       ///< the newest sample is one, and all of it is numbers
   CoverCompensationState cover;  ///< only of a module with one
+  bool is_lost = false;          ///< the arm goes on without it; see module_loss.h
+  double unproven_s = 0.0;       ///< to be good for before it counts as before
 };
 
 /// A push fades with this time constant: an arm that swings in a contact is back by then; or, if

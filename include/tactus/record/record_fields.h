@@ -20,6 +20,7 @@ enum class FieldShape : std::uint8_t {
   kPerModule,   ///< a scalar for each tactile module
   kOfRotation,  ///< a scalar that only tasks with a rotation have
   kOfMomentX,   ///< likewise for each module, if any of them tells M_x
+  kOfLoss,      ///< a scalar of robots that go on without a module
 };
 enum class FieldType : std::uint8_t { kDouble, kInt64, kUint64 };
 
@@ -46,6 +47,7 @@ struct RecordShape {
   bool has_rotation = false;  ///< of the task
   int modules = 1;            ///< tactile; zeros for the one that a robot does not have
   bool has_moment_x = false;  ///< any of them
+  bool has_loss = false;      ///< the arm may go on without one
 
   std::size_t entries(const RecordField& field) const noexcept;
   /// Whether the field is logged as an array, if only of one entry.

@@ -22,6 +22,12 @@ struct RotationError {
   double max_rad = 0.0, rms_rad = 0.0, final_rad = 0.0;
 };
 
+/// The time that an arm went on without a tactile module.
+struct ModuleLoss {
+  int module = 0;
+  double start_s = 0.0, end_s = 0.0;
+};
+
 /// The figures of a run that its summary.json holds. Forces are the sensor's, F_sen, of several the
 /// largest; the tool's error is that of the measured arm.
 struct RunFigures {
@@ -38,6 +44,8 @@ struct RunFigures {
   double stiffness_final_N_per_m = 0.0;
   double stiffness_at_peak_N_per_m = 0.0;  ///< in the (first) cycle of the peak force
   std::vector<ContactSummary> contacts;    ///< in the order of their start
+  std::uint64_t modules_lost = 0;          ///< in the last cycle; bit i: module i
+  std::vector<ModuleLoss> module_losses;   ///< in the order of their start
   TimeFigures step_time_ns;
   /// The strongest of the simulated world that no module feels; absent without capsules.
   std::optional<UnsensedContact> unsensed;
@@ -51,16 +59,17 @@ class RunSummary {
   RunSummary(const ControllerConfig& config, std::size_t expected_cycles);
 
   void add(const CycleRecord& record);
-  /// All but contacts, so that memory does not grow.
+  /// All but contacts and losses, so that memory does not grow.
   void addFigures(const CycleRecord& record) noexcept;
 
   RunFigures figures() const;
-  /// At any time, at no cost: without contacts, times and what is a root mean square.
+  /// At any time, at no cost: without contacts, losses, times and what is a root mean square.
   const RunFigures& soFar() const noexcept { return figures_; }
 
  private:
   void addToolError(const CycleRecord& record) noexcept;
   void addJoints(const CycleRecord& record) noexcept;
+  void addLosses(const CycleRecord& record);
 
   JointLimits limits_;
   RunFigures figures_;
@@ -68,6 +77,9 @@ class RunSummary {
   double squared_error_sum_m2_ = 0.0, squared_rotation_sum_rad2_ = 0.0;
   Histogram step_times_;
 };
+
+/// The links of the modules in CycleRecord::modules_lost.
+std::vector<std::string> lostModules(const Scene& scene, std::uint64_t modules_lost);
 
 /// What only a run on hardware has.
 struct HardwareFigures {

@@ -67,6 +67,9 @@ struct DynamicsSection {
   std::optional<double> contact_stiffness_N_per_m;
 };
 
+/// What the arm does when one of several tactile modules is lost.
+enum class ModuleLost { kStop, kGoOnSlowly };
+
 /// What a robot.yaml says: each value checked for itself, not yet against the others and the URDF.
 struct RobotConfig {
   std::string urdf;  ///< path as written
@@ -80,6 +83,8 @@ struct RobotConfig {
   DrivesSection drives;
   /// Of `tactile_modules`, or the one of `tactile_module`.
   std::vector<TactileModuleSection> tactile_modules;
+  ModuleLost module_lost = ModuleLost::kStop;
+  ModuleLossConfig module_loss;  ///< only of kGoOnSlowly
   std::vector<CapsuleSection> collision_capsules;
   std::optional<GpioConfig> gpio;
   RealTimeConfig real_time;

@@ -18,6 +18,7 @@ struct LoopReport {
   /// The largest c_e/c with masses, servos and gears at the start; of loops of one space, once
   /// addGearMargins() was asked.
   std::optional<double> ratio_with_gears{};
+  int module_with_gears = 0;  ///< of several the one whose that is, the smallest
 
   double phaseMargin_deg() const { return margins.phase_margin_rad * 180.0 / std::numbers::pi; }
 };
@@ -27,12 +28,16 @@ struct StabilityReport {
   double stiffest_N_per_m = 0.0;   ///< c_e: declared or assumed, or of a stiffer simulated obstacle
   double stiffness_N_per_m = 0.0;  ///< c: assumed, or where the estimate of c_e ends
   std::vector<LoopReport> loops;   ///< empty where the margins can't be computed; then a warning
+  int module = 0;                  ///< whose they are: of several the least stable one
   /// The links' first mode behind motors held fast, where gears are known.
   std::optional<double> gear_mode_hz;
   std::vector<std::string> warnings;
 
   double ratio() const { return stiffest_N_per_m / stiffness_N_per_m; }
 };
+
+/// " of link6" where the scene reads several modules, else nothing.
+std::string ofModule(const Scene& scene, int module);
 
 /// The plant that filters as the loop does: its modules do not where the daemon does.
 PlantConfig plantOf(const Scene& scene);

@@ -61,6 +61,9 @@ class ControlCycle {
   Fault judgeDrives() noexcept;
   Fault judgeTactile() noexcept;
   Fault judgeModule(int module) noexcept;
+  bool isLeftOut(int module, Fault fault) const noexcept;
+  void withholdSamples(
+      const std::array<TactileSample, kMaxTactileModules>& samples_before) noexcept;
   Fault judgeController() noexcept;
   ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
   bool areConfigured() const noexcept;
@@ -110,6 +113,13 @@ class ControlCycle {
     double age_s = 0.0;
   };
   std::array<SampleAtStart, kMaxTactileModules> samples_at_start_;
+  /// Samples of a module that said of late that its cable is broken, and that the arm goes on
+  /// without.
+  struct Withheld {
+    int cycles = 0;              ///< to go; the last one lasts until a new sample
+    std::uint32_t sequence = 0;  ///< of the newest one
+  };
+  std::array<Withheld, kMaxTactileModules> withheld_;
   RobotInput input_;
   ControllerOutput output_;
   bool is_started_ = false;  ///< the controller has a state

@@ -48,12 +48,15 @@ struct CycleRecord {
   double path_time_s = 0.0;         ///< the reference's clock: task_time_s less the time it waited
   double tool_rotation_error_rad = 0.0;  ///< as tool_error_m; only for tasks with a rotation
   double tactile_moment_x_Nm[kMaxTactileModules] = {};  ///< 0 of modules that do not tell it
+  // Of an arm that goes on without a tactile module, as ControllerOutput:
+  std::uint64_t modules_lost = 0;  ///< bit i: module i
+  double speed_share = 1.0;
   Gains gains;  ///< of this cycle; the log has them where they change
 };
 
 static_assert(std::is_trivially_copyable_v<CycleRecord> && std::is_standard_layout_v<CycleRecord>);
 static_assert(sizeof(CycleRecord) ==
-              8 * (12 + 11 * kMaxTactileModules + 3 * kMaxJoints + 3 * kMaxTaskSize + 13) +
+              8 * (12 + 11 * kMaxTactileModules + 3 * kMaxJoints + 3 * kMaxTaskSize + 15) +
                   sizeof(Gains));
 
 /// Copies one cycle into a record; wake_latency_ns and step_ns are left to the caller, who alone

@@ -1,0 +1,91 @@
+"""Where the links of a serial arm are, by the text of its URDF."""
+
+import dataclasses
+import xml.etree.ElementTree
+
+import numpy as np
+
+MOVING = ("revolute", "continuous", "prismatic")
+
+
+@dataclasses.dataclass
+class Joint:
+    name: str
+    kind: str
+    child: str  # link
+    pose: np.ndarray  # 4 x 4, in the parent link
+    axis: np.ndarray  # in the joint's frame
+
+
+@dataclasses.dataclass
+class Chain:
+    joints: list  # from the base to the tip, fixed ones too
+
+    def moving(self):
+        return [joint.name for joint in self.joints if joint.kind in MOVING]
+
+    def poses(self, q):
+        """Of each child link, 4 x 4 in the base frame, for a value of each moving joint, m or rad."""
+        poses, pose, values = {}, np.eye(4), iter(q)
+        for joint in self.joints:
+            pose = pose @ joint.pose
+            if joint.kind in MOVING:
+                pose = pose @ moved(joint, next(values))
+            poses[joint.child] = pose
+        return poses
+
+    def way(self, q):
+        """The places of the joints and of the tip, base frame, m."""
+        return np.array([pose[:3, 3] for pose in self.poses(q).values()])
+
+
+def read_chain(urdf, tip):
+    """From the URDF's root to the link `tip`; ValueError where there is no such way."""
+    try:
+        root = xml.etree.ElementTree.fromstring(urdf)
+    except xml.etree.ElementTree.ParseError as error:
+        raise ValueError(f"the URDF is no XML: {error}") from error
+    by_child = {element.find("child").get("link"): element for element in root.findall("joint")}
+    joints, link = [], tip
+    while link in by_child:
+        element = by_child.pop(link)
+        joints.insert(0, read_joint(element))
+        link = element.find("parent").get("link")
+    if not joints:
+        raise ValueError(f"the URDF has no way to the link {tip}")
+    return Chain(joints)
+
+
+def read_joint(element):
+    origin, axis = element.find("origin"), element.find("axis")
+    pose = np.eye(4)
+    if origin is not None:
+        pose[:3, :3] = rotation_of(numbers(origin.get("rpy", "0 0 0")))
+        pose[:3, 3] = numbers(origin.get("xyz", "0 0 0"))
+    direction = numbers(axis.get("xyz")) if axis is not None else np.array([1.0, 0.0, 0.0])
+    return Joint(element.get("name"), element.get("type"), element.find("child").get("link"), pose,
+                 direction / np.linalg.norm(direction))
+
+
+def numbers(text):
+    return np.array([float(word) for word in text.split()])
+
+
+def rotation_of(rpy):
+    """Of fixed axes: first about x, then y, then z."""
+    return about([0, 0, 1], rpy[2]) @ about([0, 1, 0], rpy[1]) @ about([1, 0, 0], rpy[0])
+
+
+def about(axis, angle):
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def moved(joint, value):
+    pose = np.eye(4)
+    if joint.kind == "prismatic":
+        pose[:3, 3] = value * joint.axis
+    else:
+        pose[:3, :3] = about(joint.axis, value)
+    return pose
