@@ -174,6 +174,9 @@ void parse(CLI::App& app, Options& options, int argc, char** argv) {
       "--contact", [&options] { options.names.push_back("contact"); },
       "null_limit on contacts that rub: --study contact; SCENE: as for --law");
   app.add_flag_callback(
+      "--several", [&options] { options.names.push_back("several"); },
+      "null_limit on contacts of several modules: --study several; SCENE: their base");
+  app.add_flag_callback(
       "--physics", [&options] { options.names.push_back("physics"); },
       "The simulated arm beside MuJoCo: --study physics; some ten minutes");
   app.add_flag("--quick", options.is_quick, "A look: few repetitions, short sweeps");

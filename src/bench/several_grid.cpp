@@ -130,6 +130,8 @@ std::vector<SeveralCase> drawSeveral(const RunSetup& base, std::uint64_t seed, i
   std::vector<SeveralCase> cases;
   for (int i = 0; i < count; ++i) {
     SeveralCase drawn{static_cast<SeveralKind>(i % kSeveralKinds), 0, base};
+    // Limits would spread a step over several cycles.
+    drawn.setup.controller.limits.max_acceleration.setConstant(kNoLimit);
     for (TactileModuleConfig& module : drawn.setup.controller.tactile_modules)
       module.max_force_N = kNoLimit;
     for (SimulatedModuleConfig& module : drawn.setup.plant.modules) module.quantised = false;

@@ -13,6 +13,7 @@ const std::vector<Study>& studies() {
       {"law", "the approach-speed limit beside the paper's law, on bands and profiles", false,
        false, studyLaw},
       {"contact", "null_limit on contacts that rub", false, false, studyContact},
+      {"several", "null_limit on contacts of several modules", false, false, studySeveral},
       {"physics", "the simulated arm beside MuJoCo", false, false, studyPhysics},
   };
   return list;

@@ -162,6 +162,10 @@ void checkLevel(const Checked& c) {
     c.fail("controller.level", "acceleration has no variant " + wordOf(kVariantWords, variant),
            "velocity, or the variant null_space, null_task or null_limit");
   }
+  if (c.robot.config.tactile_modules.size() > 1) {
+    c.fail("controller.level", "acceleration answers the contact of one tactile module",
+           "velocity, or a robot with one");
+  }
   if (control.order != 2)
     c.fail("controller.order", fmt::format("{}{}", control.order, at_level), "2");
   if (control.friction_coefficient > 0.0) {

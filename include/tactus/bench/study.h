@@ -53,5 +53,6 @@ StudyResult studyStability(const BenchOptions& options);
 StudyResult studyLaw(const BenchOptions& options);
 StudyResult studyContact(const BenchOptions& options);
 StudyResult studyPhysics(const BenchOptions& options);
+StudyResult studySeveral(const BenchOptions& options);
 
 }  // namespace tactus

@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <array>
+
+#include "tactus/bench/parallel.h"
+#include "tactus/bench/several_grid.h"
+#include "tactus/bench/study.h"
+#include "tactus/scene/scene_loader.h"
+
+namespace tactus {
+namespace {
+
+constexpr const char* kSeveralBase = "/whole_arm/crops9_skin_two_links.yaml";
+constexpr std::uint64_t kSeveralSeed = 20'261'125;
+constexpr int kSeveralDraws = 360;
+
+/// What is done to all environments.
+struct SeveralTrial {
+  const char* name;
+  double noise_N, friction, bearable_friction;
+};
+constexpr std::array kSeveralTrials = {
+    SeveralTrial{"alone", 0.0, 0.0, 0.0},
+    SeveralTrial{"noise 0.05 N", 0.05, 0.0, 0.0},
+    SeveralTrial{"friction 0.3, 0.5 set", 0.0, 0.3, 0.5},
+    SeveralTrial{"friction 0.3, 0.5 set, noise 0.05 N", 0.05, 0.3, 0.5},
+};
+
+void apply(const SeveralTrial& trial, RunSetup& setup) {
+  setup.controller.force_control->friction_coefficient = trial.bearable_friction;
+  std::uint64_t seed = 0;
+  for (SimulatedModuleConfig& module : setup.plant.modules) {
+    module.noise_N = trial.noise_N;
+    module.seed = ++seed;
+  }
+  for (ObstacleConfig& post : setup.plant.obstacles) post.friction_coefficient = trial.friction;
+}
+
+/// Of all kinds and trials, without posts that move: a force that follows them does not rest.
+struct StaticShares {
+  double runs = 0, high = 0, restless = 0, most_restless_N = 0.0, largest_rest = 0.0, step = 0.0;
+
+  explicit StaticShares(const Table& table) {
+    const std::size_t kind = table.column("kind");
+    const auto value = [&](const std::vector<Cell>& row, const char* column) {
+      return std::get<double>(row[table.column(column)]);
+    };
+    for (const std::vector<Cell>& row : table.rows) {
+      const std::string& name = std::get<std::string>(row[kind]);
+      if (name == "all" || name == severalKindName(SeveralKind::kMoving)) continue;
+      runs += value(row, "runs");
+      high += value(row, "peaks_above_1_15");
+      restless += value(row, "restless");
+      most_restless_N = std::max(most_restless_N, value(row, "largest_restlessness_N"));
+      largest_rest = std::max(largest_rest, value(row, "largest_rest_to_limit"));
+      if (std::get<std::string>(row[table.column("trial")]) == kSeveralTrials[0].name)
+        step = std::max(step, value(row, "largest_step_between_samples"));
+    }
+  }
+};
+
+std::vector<Goal> severalGoals(const Table& table) {
+  const StaticShares all(table);
+  return {
+      {"several contacts: share of peaks above 1.15 of the natural scale", 0.02,
+       all.high / all.runs},
+      {"several contacts: share that does not come to rest", 0.01, all.restless / all.runs},
+      {"several contacts: largest restlessness, N", 0.2, all.most_restless_N},
+      {"several contacts: largest true force at rest over F_act + F_th", 1.02, all.largest_rest},
+      {"several contacts: largest step of a joint between samples, without noise, rad/s", 0.02,
+       all.step}};
+}
+
+}  // namespace
+
+StudyResult studySeveral(const BenchOptions& options) {
+  const Scene scene = loadScene(
+      options.scenes.empty() ? options.scenes_folder + kSeveralBase : options.scenes.front(), {},
+      SceneUse::kSimulation);
+  const RunSetup base{scene.controller, scene.plant, scene.period_s, scene.duration_s};
+  const std::vector<SeveralCase> cases =
+      drawSeveral(base, kSeveralSeed, options.is_quick ? 12 : kSeveralDraws);
+  StudyResult result;
+  result.title = "Several contacts";
+  result.text =
+      "null_limit on an arm with several tactile modules: starts, paths and two or three posts of "
+      "100 to 1e6 N/m that were drawn; before several links at once or in turn, behind a link "
+      "where the arm gives way to, on both sides with little room, one that vanishes, one of up "
+      "to 7000 N/m that comes and goes with up to 5 mm/s. Peaks are true forces over what no law "
+      "could avoid. Of posts that move no rest is asked for. What the figures mean is in "
+      "docs/gate.md.";
+  Table table = emptySeveralTable("several_contacts");
+  for (const SeveralTrial& trial : kSeveralTrials) {
+    std::vector<SeveralRun> runs(cases.size());
+    inParallel(cases.size(), [&](std::size_t i) {
+      RunSetup setup = cases[i].setup;
+      apply(trial, setup);
+      runs[i] = runSeveral(setup);
+    });
+    addSeveralRows(trial.name, cases, runs, table);
+  }
+  result.goals = severalGoals(table);
+  result.tables = {std::move(table)};
+  return result;
+}
+
+}  // namespace tactus

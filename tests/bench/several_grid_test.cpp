@@ -1,0 +1,70 @@
+#include "tactus/bench/several_grid.h"
+
+#include <gtest/gtest.h>
+
+#include "tactus/bench/parallel.h"
+#include "tactus/scene/scene_loader.h"
+
+namespace tactus {
+namespace {
+
+RunSetup skin() {
+  const Scene scene = loadScene(
+      std::string(TACTUS_SOURCE_DIR) + "/config/scenes/whole_arm/crops9_skin_two_links.yaml", {},
+      SceneUse::kSimulation);
+  return {scene.controller, scene.plant, scene.period_s, scene.duration_s};
+}
+
+TEST(SeveralGrid, DrawsTheSameEachTimeAndOfAllKinds) {
+  const std::vector<SeveralCase> some = drawSeveral(skin(), 5, 24);
+  const std::vector<SeveralCase> again = drawSeveral(skin(), 5, 24);
+  ASSERT_EQ(some.size(), again.size());
+  std::array<int, kSeveralKinds> kinds{};
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    ++kinds[static_cast<std::size_t>(some[i].kind)];
+    const RunSetup& setup = some[i].setup;
+    EXPECT_EQ(setup.plant.obstacles.size(), again[i].setup.plant.obstacles.size());
+    EXPECT_EQ(setup.controller.q_start, again[i].setup.controller.q_start);
+    EXPECT_EQ(static_cast<int>(setup.plant.obstacles.size()), some[i].modules);
+    EXPECT_GE(some[i].modules, 2);
+  }
+  for (const int of_kind : kinds) EXPECT_GE(of_kind, 2);
+}
+
+/// Fresh ones at each change of the seed; the study has more.
+TEST(SeveralGrid, TheLawKeepsItsForcesAndRests) {
+  const std::vector<SeveralCase> cases = drawSeveral(skin(), 77, 30);
+  std::vector<SeveralRun> runs(cases.size());
+  inParallel(cases.size(), [&](std::size_t i) { runs[i] = runSeveral(cases[i].setup); });
+  int judged = 0, with_two = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const SeveralRun& run = runs[i];
+    if (run.is_out || cases[i].kind == SeveralKind::kMoving) continue;
+    SCOPED_TRACE(severalKindName(cases[i].kind) + std::string(" ") + std::to_string(i));
+    ++judged;
+    with_two += run.touched_modules > 1;
+    EXPECT_EQ(run.fault, Fault::kNone);
+    EXPECT_LT(run.largest_peak_to_scale, 1.15);
+    EXPECT_LT(run.restlessness_N, JudgedRun::kMaxRestlessness_N);
+    EXPECT_LT(run.peak_at_rest_N, 5.1);
+  }
+  EXPECT_GT(judged, 8);
+  EXPECT_GT(with_two, 4);
+}
+
+/// The judge sees what it is there for.
+TEST(SeveralGrid, TellsAnArmThatDoesNotAnswer) {
+  const std::vector<SeveralCase> cases = drawSeveral(skin(), 77, 30);
+  int high = 0;
+  for (const SeveralCase& one : cases) {
+    if (one.kind != SeveralKind::kAtOnce || high > 0) continue;
+    RunSetup deaf = one.setup;
+    deaf.controller.force_control.reset();
+    const SeveralRun run = runSeveral(deaf);
+    high += !run.is_out && run.largest_peak_to_scale > 1.15;
+  }
+  EXPECT_GT(high, 0);
+}
+
+}  // namespace
+}  // namespace tactus
