@@ -22,8 +22,7 @@ int clearanceRuns(int usual) {
 /// An arm that starts clear and is commanded by limiter and clearance alone.
 struct GuardedArm {
   explicit GuardedArm(test::Random& random)
-      : random(random),
-        n(random.integer(2, kMaxJoints)),
+      : n(random.integer(2, kMaxJoints)),
         config(test::randomController(random, n, random.integer(1, std::min(n, 3)))),
         period_s(random.chance(0.5) ? 0.001 : random.logUniform(2e-4, 0.02)) {
     config.limits.lower = config.q_start - random.vector(n, 0.0, 2.0);
@@ -79,7 +78,6 @@ struct GuardedArm {
     return nearestBody(clearance->distances(), pose).distance_m;
   }
 
-  test::Random& random;
   int n;
   ControllerConfig config;
   double period_s;
@@ -93,7 +91,7 @@ struct GuardedArm {
 TEST(Clearance, IsKeptWhateverIsCommanded) {
   test::Random random(411);
   int close = 0;
-  const int runs = clearanceRuns(600);
+  const int runs = clearanceRuns(300);
   for (int run = 0; run < runs; ++run) {
     GuardedArm arm(random);
     const double d_s = arm.config.clearance->safe_distance_m;

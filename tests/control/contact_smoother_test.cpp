@@ -11,17 +11,17 @@
 namespace tactus {
 namespace {
 
-constexpr double kLength_m = 0.38;
+constexpr double kModuleLength_m = 0.38;
 constexpr double kSample_s = 0.004;
 constexpr double kMin_N = 0.2;
 constexpr double kThreshold_N = 1.2;
-constexpr double kRadius_m = 0.06;
+constexpr double kModuleRadius_m = 0.06;
 
 TactileModuleConfig coverOf(double filter_cutoff_hz) {
   TactileModuleConfig module;
-  module.length_m = kLength_m;
+  module.length_m = kModuleLength_m;
   module.filter_cutoff_hz = filter_cutoff_hz;
-  module.cover_radius_m = kRadius_m;
+  module.cover_radius_m = kModuleRadius_m;
   return module;
 }
 
@@ -34,7 +34,7 @@ class Smoother : public testing::Test {
     sample.force_z_N += noise(sigma_N);
     sample.moment_y_Nm += 0.15 * noise(sigma_N);
     sample.moment_z_Nm += 0.15 * noise(sigma_N);
-    locateContact(sample, test::moduleOfLength(kLength_m), sensor_);
+    locateContact(sample, test::moduleOfLength(kModuleLength_m), sensor_);
     sensor_.interval_s = kSample_s;
     smoother_.update({}, sensor_, X_BaseModule_, state_);
   }
@@ -164,7 +164,8 @@ TEST_F(Smoother, NoBlowTurnsTheContactAround) {
     for (int i = 0; i < 1000; ++i) {
       const double force_N = filter.update(1e-3 * i < blow_s ? 1000.0 : 0.0);
       if (i % stride != phase) continue;
-      locateContact(test::touchAt(0.2, force_N, 0.5, 1), test::moduleOfLength(kLength_m), sensor_);
+      locateContact(test::touchAt(0.2, force_N, 0.5, 1), test::moduleOfLength(kModuleLength_m),
+                    sensor_);
       sensor_.interval_s = 1e-3 * stride;
       smoother.update({}, sensor_, X_BaseModule_, state);
       const bool is_turned =
@@ -187,10 +188,10 @@ TEST_F(SmootherWithFriction, TheTiltOfOneContactIsAveraged) {
   const double tilt = 0.98 * std::atan(kFriction);
   for (int i = 0; i < 1000; ++i) {
     const double side = i % 24 < 12 ? 1.0 : -1.0;  // about 10 Hz
-    feel(0.2 + 0.98 * side * kFriction * kRadius_m, 5.0, 0.5 + side * tilt);
+    feel(0.2 + 0.98 * side * kFriction * kModuleRadius_m, 5.0, 0.5 + side * tilt);
     if (i < 500) continue;
     ASSERT_NEAR(angle(), 0.5, 0.1 * tilt) << i;
-    ASSERT_NEAR(state_.contact.position_m, 0.2, 0.1 * kFriction * kRadius_m) << i;
+    ASSERT_NEAR(state_.contact.position_m, 0.2, 0.1 * kFriction * kModuleRadius_m) << i;
   }
 }
 
@@ -211,8 +212,8 @@ TEST_F(SmootherWithFriction, FollowsAnotherContactAtOnce) {
   for (int i = 0; i < 200; ++i) feel(0.1, 4.0, 0.0);
   feel(0.1, 4.5, 2.1 * std::atan(kFriction));
   EXPECT_NEAR(angle(), 2.1 * std::atan(kFriction), 0.02) << "turned by more than friction can";
-  feel(0.1 + 2.1 * kFriction * kRadius_m, 5.5, 2.1 * std::atan(kFriction));
-  EXPECT_NEAR(state_.contact.position_m, 0.1 + 2.1 * kFriction * kRadius_m, 0.002);
+  feel(0.1 + 2.1 * kFriction * kModuleRadius_m, 5.5, 2.1 * std::atan(kFriction));
+  EXPECT_NEAR(state_.contact.position_m, 0.1 + 2.1 * kFriction * kModuleRadius_m, 0.002);
 }
 
 /// What the filter still shows of a blow turns the first force after it.
@@ -273,7 +274,7 @@ TEST_F(Smoother, StaysAUnitVectorOnTheCoverWhateverComes) {
     feel(random_.uniform(-1.0, 1.0), random_.chance(0.2) ? 0.0 : random_.logUniform(1e-6, 1e6),
          random_.uniform(-4.0, 4.0), random_.logUniform(1e-6, 1e3));
     ASSERT_GE(state_.contact.position_m, -1e-12);
-    ASSERT_LE(state_.contact.position_m, kLength_m + 1e-12);
+    ASSERT_LE(state_.contact.position_m, kModuleLength_m + 1e-12);
     const double length = state_.contact.direction.norm();
     if (length != 0.0) {
       ASSERT_NEAR(length, 1.0, 1e-12);
