@@ -55,7 +55,7 @@ void stopOrGoOn(test::Random& random, const Controller& controller, ControllerSt
 TEST(ClearController, KeepsItWhateverHappens) {
   test::Random random(421);
   const char* const wanted_runs = std::getenv("TACTUS_CLEARANCE_RUNS");
-  const int runs = wanted_runs ? std::atoi(wanted_runs) : 300;
+  const int runs = wanted_runs ? std::atoi(wanted_runs) : 150;
   int close = 0;
   for (int run = 0; run < runs; ++run) {
     const ControllerConfig config = clearController(random);

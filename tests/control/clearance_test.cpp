@@ -21,18 +21,17 @@ int clearanceRuns(int usual) {
 
 /// An arm that starts clear and is commanded by limiter and clearance alone.
 struct GuardedArm {
-  explicit GuardedArm(test::Random& from)
-      : random(from),
-        n(from.integer(2, kMaxJoints)),
-        config(test::randomController(from, n, from.integer(1, std::min(n, 3)))),
-        period_s(from.chance(0.5) ? 0.001 : from.logUniform(2e-4, 0.02)) {
-    config.limits.lower = config.q_start - from.vector(n, 0.0, 2.0);
-    config.limits.upper = config.q_start + from.vector(n, 0.0, 2.0);
+  explicit GuardedArm(test::Random& random)
+      : n(random.integer(2, kMaxJoints)),
+        config(test::randomController(random, n, random.integer(1, std::min(n, 3)))),
+        period_s(random.chance(0.5) ? 0.001 : random.logUniform(2e-4, 0.02)) {
+    config.limits.lower = config.q_start - random.vector(n, 0.0, 2.0);
+    config.limits.upper = config.q_start + random.vector(n, 0.0, 2.0);
     for (int i = 0; i < n; ++i) {
-      config.limits.max_velocity[i] = from.logUniform(0.1, 5.0);
-      config.limits.max_acceleration[i] = from.logUniform(1.0, 500.0);
+      config.limits.max_velocity[i] = random.logUniform(0.1, 5.0);
+      config.limits.max_acceleration[i] = random.logUniform(1.0, 500.0);
     }
-    config.clearance = test::randomBodies(from, n);
+    config.clearance = test::randomBodies(random, n);
     test::leaveOutTouching(config.chain, config.q_start, *config.clearance);
     clearance.emplace(config);
     q = config.q_start;
@@ -79,7 +78,6 @@ struct GuardedArm {
     return nearestBody(clearance->distances(), pose).distance_m;
   }
 
-  test::Random& random;
   int n;
   ControllerConfig config;
   double period_s;
@@ -93,7 +91,7 @@ struct GuardedArm {
 TEST(Clearance, IsKeptWhateverIsCommanded) {
   test::Random random(411);
   int close = 0;
-  const int runs = clearanceRuns(600);
+  const int runs = clearanceRuns(300);
   for (int run = 0; run < runs; ++run) {
     GuardedArm arm(random);
     const double d_s = arm.config.clearance->safe_distance_m;

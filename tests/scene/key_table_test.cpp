@@ -135,7 +135,11 @@ std::string fullScene() {
                          "line: {point_m: [0, 0, 0], direction: [0, 0, 1]}, "
                          "post: {foot_m: [0, 0, 0], height_m: 1}}");
   scene = test::replaced(scene, "redundancy:", "    waypoints: [{}]\nredundancy:");
-  return scene + "  troubles: [{kind: drop, from_s: 1, until_s: 2}]\n";
+  return scene +
+         "  troubles: [{kind: drop, from_s: 1, until_s: 2}]\n"
+         "clearance:\n  exclude: [{link: base, other: tool}]\n"
+         "  keep_out: [{sphere: {center_m: [0, 0, 0], radius_m: 1}, plane: {point_m: [0, 0, 0], "
+         "normal: [0, 0, 1]}, post: {foot_m: [0, 0, 0], height_m: 1}}]\n";
 }
 
 std::string fullRobot() {

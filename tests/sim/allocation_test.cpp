@@ -7,6 +7,7 @@
 #include "support/allocation_guard.h"
 #include "support/closed_loop.h"
 #include "support/controller_run.h"
+#include "support/random_clearance.h"
 
 /// The cycle touches no heap: controller and simulated robot, in every variant.
 namespace tactus {
@@ -129,7 +130,9 @@ TEST_P(NoAllocation, InSingularPosesOfAnyRobot) {
 
 TEST_P(NoAllocation, WhileAFaultBringsTheArmToRest) {
   test::Random random(332);
-  const Controller controller(test::fullController(random, 9, variant(), level()));
+  ControllerConfig config = test::fullController(random, 9, variant(), level());
+  config.clearance = test::randomBodies(random, 9);
+  const Controller controller(config);
   ControllerState state = controller.initialState();
   ControllerOutput output;
   test::RandomTouches touches(random);

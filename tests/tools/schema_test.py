@@ -195,7 +195,7 @@ class Case(unittest.TestCase):
             shaped.append(copy.deepcopy(scene))
             shaped[-1]["simulation"]["obstacles"] = [shape | {"stiffness_N_per_m": 60}]
             if "line" not in shape:
-                shaped[-1]["clearance"]["keep_out"] = [shape]
+                shaped[-1]["clearance"]["keep_out"] = [copy.deepcopy(shape)]
         revolute_first = copy.deepcopy(robot)
         revolute_first["drives"]["joints"].append(revolute_first["drives"]["joints"].pop(0))
         listed = copy.deepcopy(robot)
