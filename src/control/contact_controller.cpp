@@ -34,6 +34,11 @@ void goOn(const Vector3& p_BaseContact, bool is_touching, ContactControllerState
   state.joint_space_transition.p_BaseLost = p_BaseContact;
 }
 
+/// a^T q_dot
+double speedAlong(const ContactSpace& space, const Motion& motion, int task_size) noexcept {
+  return dot(space.a_task, motion.y, task_size) + dot(space.a_scaled, motion.v_scaled);
+}
+
 void tell(double F_p_N, const ControlLawInput& input, const ContactSpace& space,
           const ControlLawOutput& u, ContactReport& report) noexcept {
   report.force_contact_N = F_p_N;
@@ -94,9 +99,8 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   const ContactPointState& point = follow(gains, sensor, kinematics, commanded, period_s, state);
   const Contact contact = locate(kinematics, point, motion.a);
 
-  ControlLawInput input;
   const double F_p_N = std::max(0.0, point.force_N - gains.force.contact_threshold_N);
-  input.F_p_N = F_p_N;
+  ControlLawInput input{.F_p_N = F_p_N};
   estimate(gains.force, contact, commanded, period_s, state, report, input);
   if (state.is_resting && commanded.is_followed)
     goOn(contact.p_Base, point.force_N > gains.force.transition.release_force_N, state);
@@ -113,34 +117,30 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   input.cut_m_per_s = state.cut_m_per_s + state.cut_by_rows_m_per_s;
   ControlLawOutput u =
       answer(gains.force, kinematics, contact, commanded, input, period_s, state.law, motion);
+  const ContactSpace& space = contact.space;
   if (approach_limit_ && !friction_cone_) {
-    const ContactSpace& space = contact.space;
-    const double v_res = dot(space.a_task, motion.y, task_.size) +
-                         dot(space.a_scaled, motion.v_scaled) - space.k_n * u.u_n;
+    const double v_res = speedAlong(space, motion, task_.size) - space.k_n * u.u_n;
     double excess = approach_limit_->excess(gains.force, F_p_N, v_res, state.approach);
     if (acceleration_law_ && excess < 0.0)
       excess =
           std::min(0.0, v_res - eased(gains.force, space, commanded, period_s, v_res - excess));
     u.u_t = excess * invertRegularised(space.k_t, space.k_j);
   }
-
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
-  motion.y += (u.u_n - u.u_t) * contact.space.a_task;
-  motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
+  motion.y += (u.u_n - u.u_t) * space.a_task;
+  motion.v_scaled -= (u.u_n + u.u_j) * space.a_scaled;
   if (friction_cone_) state.approach.is_limiting = false;
   if (friction_cone_ || (approach_limit_ && (state.cut_m_per_s > 0.0 || state.keeps_joints)))
-    u.u_t += limitRows(gains.force, kinematics, commanded, contact.space, F_p_N, period_s, state,
-                       motion);
+    u.u_t += limitRows(gains.force, kinematics, commanded, space, F_p_N, period_s, state, motion);
 
   if (is_multi_space_ && commanded.is_followed && hasReturnSpeed(gains.task)) {
-    state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * contact.space.a_task);
+    state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * space.a_task);
     state.has_push = true;
   } else if (state.has_push) {
     state.push.setZero();
     state.has_push = false;
   }
-
-  tell(F_p_N, input, contact.space, u, report);
+  tell(F_p_N, input, space, u, report);
 }
 
 ControlLawOutput ContactController::answer(const ForceGains& gains,
@@ -225,9 +225,7 @@ double ContactController::limitRows(const ForceGains& gains, const TaskKinematic
       std::max(state.approach.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
   limit_rows_->add(commanded.q, kinematics, inv_sqrt_weights_, std::min(1.0, memory / in_contact),
                    rows);
-  const auto retreat = [&] {
-    return dot(space.a_scaled, motion.v_scaled) + dot(space.a_task, motion.y, task_.size);
-  };
+  const auto retreat = [&] { return speedAlong(space, motion, task_.size); };
   const double retreat_before = retreat();
   const RowVector l = keepSpeedRows(rows, task_.size, motion);
   const double sum = l.head(corners).sum();
@@ -315,8 +313,7 @@ void ContactController::passJointSpaceContact(const Gains& gains, const TaskKine
                                               Motion& motion) const noexcept {
   JointSpaceTransitionState& transition = state.joint_space_transition;
   const ContactSpace& space = contact.space;
-  const double x_free =
-      dot(space.a_task, motion.y, task_.size) + dot(space.a_scaled, motion.v_scaled);
+  const double x_free = speedAlong(space, motion, task_.size);
   PaddedTaskVector y_pull = kinematics.pseudoinverse.solve(pull(gains, kinematics.error));
   y_pull *=
       law_.speedShare(gains.force, kinematics.pseudoinverse.expand(y_pull), state.law.null_speed) *
