@@ -4,7 +4,6 @@
 
 #include "tactus/control/return_speed.h"
 #include "tactus/math/filter.h"
-#include "tactus/math/velocity_product.h"
 
 namespace tactus {
 namespace {
@@ -32,6 +31,21 @@ void goOn(const Vector3& p_BaseContact, bool is_touching, ContactControllerState
   state.joint_space_transition.touching = is_touching;
   state.joint_space_transition.gamma = gamma;
   state.joint_space_transition.p_BaseLost = p_BaseContact;
+}
+
+void rememberPush(bool pushes, const WeightedPseudoinverse& pseudoinverse,
+                  const PaddedTaskVector& y_push, ContactControllerState& state) noexcept {
+  if (pushes) {
+    state.push = pseudoinverse.taskVelocity(y_push);
+  } else {
+    state.push.setZero();
+  }
+  state.has_push = pushes;
+}
+
+/// a^T q_dot
+double speedAlong(const ContactSpace& space, const Motion& motion, int task_size) noexcept {
+  return dot(space.a_task, motion.y, task_size) + dot(space.a_scaled, motion.v_scaled);
 }
 
 void tell(double F_p_N, const ControlLawInput& input, const ContactSpace& space,
@@ -94,9 +108,8 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   const ContactPointState& point = follow(gains, sensor, kinematics, commanded, period_s, state);
   const Contact contact = locate(kinematics, point, motion.a);
 
-  ControlLawInput input;
   const double F_p_N = std::max(0.0, point.force_N - gains.force.contact_threshold_N);
-  input.F_p_N = F_p_N;
+  ControlLawInput input{.F_p_N = F_p_N};
   estimate(gains.force, contact, commanded, period_s, state, report, input);
   if (state.is_resting && commanded.is_followed)
     goOn(contact.p_Base, point.force_N > gains.force.transition.release_force_N, state);
@@ -111,57 +124,34 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
   }
   input.is_followed = commanded.is_followed;
   input.cut_m_per_s = state.cut_m_per_s + state.cut_by_rows_m_per_s;
-  ControlLawOutput u =
-      answer(gains.force, kinematics, contact, commanded, input, period_s, state.law, motion);
+  const ContactSpace& space = contact.space;
+  ControlLawOutput u;
+  if (acceleration_law_)
+    u = accelerate(gains.force, kinematics, contact.p_Base, contact.F_Base, space, commanded, input,
+                   period_s, state.law, motion);
+  else
+    law_.update(gains.force, input, space, period_s, state.law, u);
   const bool has_rows = approach_limit_ && (friction_cone_ || gate.clearance());
   if (approach_limit_ && !has_rows) {
-    const ContactSpace& space = contact.space;
-    const double v_res = dot(space.a_task, motion.y, task_.size) +
-                         dot(space.a_scaled, motion.v_scaled) - space.k_n * u.u_n;
+    const double v_res = speedAlong(space, motion, task_.size) - space.k_n * u.u_n;
     double excess = approach_limit_->excess(gains.force, F_p_N, v_res, state.approach);
     if (acceleration_law_ && excess < 0.0)
       excess =
           std::min(0.0, v_res - eased(gains.force, space, commanded, period_s, v_res - excess));
     u.u_t = excess * invertRegularised(space.k_t, space.k_j);
   }
-
   // J# J b u_t = W^-1/2 Q (Q^T a^) u_t needs no inverse, so it is exact in singular poses, too.
-  motion.y += (u.u_n - u.u_t) * contact.space.a_task;
-  motion.v_scaled -= (u.u_n + u.u_j) * contact.space.a_scaled;
+  motion.y += (u.u_n - u.u_t) * space.a_task;
+  motion.v_scaled -= (u.u_n + u.u_j) * space.a_scaled;
   if (has_rows) state.approach.is_limiting = false;
   if (has_rows || (approach_limit_ && (state.cut_m_per_s > 0.0 || state.keeps_joints)))
-    u.u_t += limitRows(gains.force, kinematics, commanded, contact.space, F_p_N, gate, period_s,
-                       state, motion);
+    u.u_t +=
+        limitRows(gains.force, kinematics, commanded, space, F_p_N, gate, period_s, state, motion);
 
-  if (is_multi_space_ && commanded.is_followed && hasReturnSpeed(gains.task)) {
-    state.push = kinematics.pseudoinverse.taskVelocity(-(u.u_t + u.u_j) * contact.space.a_task);
-    state.has_push = true;
-  } else if (state.has_push) {
-    state.push.setZero();
-    state.has_push = false;
-  }
-
-  tell(F_p_N, input, contact.space, u, report);
-}
-
-ControlLawOutput ContactController::answer(const ForceGains& gains,
-                                           const TaskKinematics& kinematics, const Contact& contact,
-                                           const CommandedMotion& commanded,
-                                           const ControlLawInput& input, double period_s,
-                                           ControlLawState& state, Motion& motion) const noexcept {
-  ControlLawOutput u;
-  if (!acceleration_law_) {
-    law_.update(gains, input, contact.space, period_s, state, u);
-  } else if (commanded.is_followed) {
-    const VelocityProduct curvature =
-        velocityProduct(chain_, kinematics.pose, link_.joint, contact.p_Base, commanded.velocity);
-    acceleration_law_->update(gains, input, contact.F_Base.dot(curvature.linear), *commanded.free,
-                              kinematics, contact.space, period_s, state, motion, u);
-    u.u_n *= law_.speedShare(gains, u.u_n * contact.space.a_scaled, state.null_speed);
-  } else {
-    state.It_m_per_s = 0.0;
-  }
-  return u;
+  if (is_multi_space_ && (state.has_push || hasReturnSpeed(gains.task)))
+    rememberPush(commanded.is_followed && hasReturnSpeed(gains.task), kinematics.pseudoinverse,
+                 -(u.u_t + u.u_j) * space.a_task, state);
+  tell(F_p_N, input, space, u, report);
 }
 
 void ContactController::estimate(const ForceGains& gains, const Contact& contact,
@@ -188,13 +178,6 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
   }
   input.stiffness_N_per_m = state.estimator.stiffness_N_per_m;
   report.stiffness_raw_N_per_m = state.estimator.stiffness_raw_N_per_m;
-}
-
-double ContactController::eased(const ForceGains& gains, const ContactSpace& space,
-                                const CommandedMotion& commanded, double period_s,
-                                double v_least) const noexcept {
-  const double v_before = dot(space.a_scaled, commanded.free->v_before);
-  return v_before + velocityShare(gains, period_s) * (v_least - v_before);
 }
 
 const ContactPointState& ContactController::follow(const Gains& gains,
@@ -275,8 +258,7 @@ void ContactController::passJointSpaceContact(const Gains& gains, const TaskKine
                                               Motion& motion) const noexcept {
   JointSpaceTransitionState& transition = state.joint_space_transition;
   const ContactSpace& space = contact.space;
-  const double x_free =
-      dot(space.a_task, motion.y, task_.size) + dot(space.a_scaled, motion.v_scaled);
+  const double x_free = speedAlong(space, motion, task_.size);
   PaddedTaskVector y_pull = kinematics.pseudoinverse.solve(pull(gains, kinematics.error));
   y_pull *=
       law_.speedShare(gains.force, kinematics.pseudoinverse.expand(y_pull), state.law.null_speed) *

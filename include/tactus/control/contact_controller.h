@@ -94,11 +94,12 @@ class ContactController {
   /// last one to v_least with k_v.
   double eased(const ForceGains& gains, const ContactSpace& space, const CommandedMotion& commanded,
                double period_s, double v_least) const noexcept;
-  /// The law of either level.
-  ControlLawOutput answer(const ForceGains& gains, const TaskKinematics& kinematics,
-                          const Contact& contact, const CommandedMotion& commanded,
-                          const ControlLawInput& input, double period_s, ControlLawState& state,
-                          Motion& motion) const noexcept;
+  /// The law of the acceleration level. p_BaseContact: m; F_Base: F^.
+  ControlLawOutput accelerate(const ForceGains& gains, const TaskKinematics& kinematics,
+                              const Vector3& p_BaseContact, const Vector3& F_Base,
+                              const ContactSpace& space, const CommandedMotion& commanded,
+                              const ControlLawInput& input, double period_s, ControlLawState& state,
+                              Motion& motion) const noexcept;
   /// beta_pull (w_d - w), which together with the correction of (2) stays within the return speeds.
   TaskVector pull(const Gains& gains, const PaddedTaskVector& error) const noexcept;
 
