@@ -85,7 +85,6 @@ void Controller::prepare(const Gains& gains, double t_s, ControllerState& state,
   prepared.push = state.contact.push;
   prepared.return_share = state.return_share;
   prepared.is_leaning = state.is_leaning;
-  prepared.speed_share = state.speed_share;
   prepared.task_gains = gains.task;
   prepared.limit_gains = gains.joint_limit_avoidance;
   computeMotion(gains, prepared.path_time_s, state, prepared);
@@ -97,8 +96,7 @@ void Controller::update(const RobotInput& input, const Gains& gains, double t_s,
   output.path_time_s = t_s - state.waited_s;
   if (prepared.path_time_s != output.path_time_s || prepared.q_desired != state.q_desired ||
       prepared.push != state.contact.push || prepared.return_share != state.return_share ||
-      prepared.is_leaning != state.is_leaning || prepared.speed_share != state.speed_share ||
-      !isSame(prepared.task_gains, gains.task) ||
+      prepared.is_leaning != state.is_leaning || !isSame(prepared.task_gains, gains.task) ||
       !isSame(prepared.limit_gains, gains.joint_limit_avoidance))
     computeMotion(gains, output.path_time_s, state, prepared);
   prepared.path_time_s = std::numeric_limits<double>::quiet_NaN();
@@ -121,6 +119,7 @@ void Controller::computeMotion(const Gains& gains, double path_time_s, Controlle
 void Controller::respond(const RobotInput& input, const Gains& gains, double period_s,
                          PreparedCycle& prepared, ControllerState& state,
                          ControllerOutput& output) const noexcept {
+  sense(input, gains, period_s, prepared, state, output);
   const TaskKinematics& kinematics = prepared.kinematics;
   Motion& motion = prepared.motion;
   const int task_size = config_.task.size;
@@ -131,7 +130,6 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   assign(kinematics.error, task_size, output.error);
   state.progress = prepared.progress;
   output.contact = {};
-  sense(input, gains, period_s, state, output);
   if (contact_controller_)
     contact_controller_->update(
         gains, kinematics, state.modules.front().contact,
@@ -160,7 +158,7 @@ void Controller::coast(int missed_cycles, double period_s, ControllerState& stat
 void Controller::limit(const Motion& motion, double period_s, ControllerState& state,
                        ControllerOutput& output) const noexcept {
   state.contact.cut_m_per_s = 0.0;
-  if (state.speed_share < 1.0 ||
+  if (output.speed_share < 1.0 ||
       !limiter_.admits(state.q_desired, state.velocity_before, period_s, output.velocity))
     cut(motion, period_s, state, output);
   output.fault = state.fault;
@@ -174,7 +172,7 @@ void Controller::limit(const Motion& motion, double period_s, ControllerState& s
 void Controller::cut(const Motion& motion, double period_s, ControllerState& state,
                      ControllerOutput& output) const noexcept {
   const JointVector wanted = output.velocity;
-  if (mayMove(state)) slowDown(state, output.velocity);
+  if (output.speed_share < 1.0 && mayMove(state)) boundSpeeds(output.speed_share, output.velocity);
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
   if (contact_controller_ && mayMove(state) && !isEqual(wanted, output.velocity))
@@ -223,7 +221,6 @@ void Controller::avoidJointLimits(const Gains& gains, const TaskKinematics& kine
     softenWayOut(state.return_share,
                  state.is_leaning ? state.way_out_before : ScaledVector(ScaledVector::Zero()),
                  state.way_out_added, motion.v_scaled);
-  if (state.speed_share < 1.0) motion.v_scaled *= state.speed_share;
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 
@@ -270,17 +267,12 @@ void Controller::computeTaskMotion(const TaskGains& gains, const ControllerState
   } else {
     prepared.progress = 1.0;
   }
-  if (state.speed_share < 1.0) {
-    prepared.progress *= state.speed_share;
-    prepared.w_d_dot *= state.speed_share;
-  }
   PaddedTaskVector correction = state.return_share * gains.drift_gain_per_s * kinematics.error;
   if (hasReturnSpeed(gains)) {
     TaskVector limited = correction.head(config_.task.size);
     limitReturnSpeed(gains, config_.task, state.contact.push, limited);
     correction = paddedTask(limited);
   }
-  if (state.speed_share < 1.0) correction *= state.speed_share;
   kinematics.y_eff =
       kinematics.pseudoinverse.solve(PaddedTaskVector(prepared.w_d_dot + correction));
 }
