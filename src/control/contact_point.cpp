@@ -34,12 +34,9 @@ void locateContact(const TactileSample& sample, const TactileModuleConfig& modul
 }
 
 double offCover_m(const TactileSample& sample, const TactileModuleConfig& config) noexcept {
-  const double F_y = flushed(sample.force_y_N);
-  const double F_z = flushed(sample.force_z_N);
-  const double force_squared = F_y * F_y + F_z * F_z;
-  const double telling_N = kTellingShare * config.max_force_N;
-  if (force_squared <= telling_N * telling_N) return 0.0;
-  const double x = (sample.moment_z_Nm * F_y - sample.moment_y_Nm * F_z) / force_squared;
+  const double F_y = sample.force_y_N;
+  const double F_z = sample.force_z_N;
+  const double x = (sample.moment_z_Nm * F_y - sample.moment_y_Nm * F_z) / (F_y * F_y + F_z * F_z);
   return std::max({0.0, -x, x - config.length_m});
 }
 

@@ -94,7 +94,6 @@ void Controller::prepare(const Gains& gains, double t_s, ControllerState& state,
   prepared.push = state.contact.push;
   prepared.return_share = state.return_share;
   prepared.is_leaning = state.is_leaning;
-  prepared.speed_share = state.speed_share;
   prepared.task_gains = gains.task;
   prepared.limit_gains = gains.joint_limit_avoidance;
   computeMotion(gains, prepared.path_time_s, state, prepared);
@@ -106,8 +105,7 @@ void Controller::update(const RobotInput& input, const Gains& gains, double t_s,
   output.path_time_s = t_s - state.waited_s;
   if (prepared.path_time_s != output.path_time_s || prepared.q_desired != state.q_desired ||
       prepared.push != state.contact.push || prepared.return_share != state.return_share ||
-      prepared.is_leaning != state.is_leaning || prepared.speed_share != state.speed_share ||
-      !isSame(prepared.task_gains, gains.task) ||
+      prepared.is_leaning != state.is_leaning || !isSame(prepared.task_gains, gains.task) ||
       !isSame(prepared.limit_gains, gains.joint_limit_avoidance))
     computeMotion(gains, output.path_time_s, state, prepared);
   prepared.path_time_s = std::numeric_limits<double>::quiet_NaN();
@@ -131,6 +129,7 @@ void Controller::computeMotion(const Gains& gains, double path_time_s, Controlle
 void Controller::respond(const RobotInput& input, const Gains& gains, double period_s,
                          PreparedCycle& prepared, ControllerState& state,
                          ControllerOutput& output) const noexcept {
+  sense(input, gains, period_s, prepared, state, output);
   const TaskKinematics& kinematics = prepared.kinematics;
   Motion& motion = prepared.motion;
   const int task_size = config_.task.size;
@@ -141,7 +140,6 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
   assign(kinematics.error, task_size, output.error);
   state.progress = prepared.progress;
   output.contact = {};
-  sense(input, gains, period_s, state, output);
   FreeAcceleration free;
   if (is_acceleration_level_)
     free = freeAcceleration(gains, output.path_time_s, period_s, prepared, state);
@@ -189,7 +187,7 @@ void Controller::coast(int missed_cycles, double period_s, ControllerState& stat
 void Controller::limit(const PreparedCycle& prepared, double period_s, ControllerState& state,
                        ControllerOutput& output) const noexcept {
   state.contact.cut_m_per_s = 0.0;
-  if (state.speed_share < 1.0 || !admits(prepared, period_s, state, output.velocity))
+  if (output.speed_share < 1.0 || !admits(prepared, period_s, state, output.velocity))
     cut(prepared, period_s, state, output);
   output.fault = state.fault;
   assign(state.q_desired, output.q_desired);
@@ -211,7 +209,7 @@ void Controller::cut(const PreparedCycle& prepared, double period_s, ControllerS
                      ControllerOutput& output) const noexcept {
   const Motion& motion = prepared.motion;
   const JointVector wanted = output.velocity;
-  if (mayMove(state)) slowDown(state, output.velocity);
+  if (output.speed_share < 1.0 && mayMove(state)) boundSpeeds(output.speed_share, output.velocity);
   const bool finite =
       limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
   if (gate_.clearance())
@@ -263,7 +261,6 @@ void Controller::avoidJointLimits(const Gains& gains, const TaskKinematics& kine
     softenWayOut(state.return_share,
                  state.is_leaning ? state.way_out_before : ScaledVector(ScaledVector::Zero()),
                  state.way_out_added, motion.v_scaled);
-  if (state.speed_share < 1.0) motion.v_scaled *= state.speed_share;
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 
@@ -310,17 +307,12 @@ void Controller::computeTaskMotion(const TaskGains& gains, const ControllerState
   } else {
     prepared.progress = 1.0;
   }
-  if (state.speed_share < 1.0) {
-    prepared.progress *= state.speed_share;
-    prepared.w_d_dot *= state.speed_share;
-  }
   PaddedTaskVector correction = state.return_share * gains.drift_gain_per_s * kinematics.error;
   if (hasReturnSpeed(gains)) {
     TaskVector limited = correction.head(config_.task.size);
     limitReturnSpeed(gains, config_.task, state.contact.push, limited);
     correction = paddedTask(limited);
   }
-  if (state.speed_share < 1.0) correction *= state.speed_share;
   kinematics.y_eff =
       kinematics.pseudoinverse.solve(PaddedTaskVector(prepared.w_d_dot + correction));
 }

@@ -64,7 +64,8 @@ void Controller::beginRetreat(const Gains& gains, ControllerState& state) const 
   // Where no push of late is left there is no contact; since then there may be.
   state.retreat.is_over = velocity.isZero(kStandstill);
   double longest_s = 0.0;
-  for (int i = 0; i < modules(); ++i) longest_s = std::max(longest_s, untold_s(i, state));
+  for (int i = 0; i < modules(); ++i)
+    if (!state.modules[i].is_lost) longest_s = std::max(longest_s, untold_s(i, state));
   startWayBack(std::min(kMaxWayBack_s, longest_s), state.retreat);
 }
 

@@ -41,47 +41,69 @@ bool Controller::goesOnWithout(int module, const Gains& gains,
 }
 
 /// The arm goes on without modules that have a fault now, as long as another is good.
-void Controller::goOnWithoutLost(const Gains& gains, double period_s,
-                                 std::array<Fault, kMaxTactileModules>& faults,
-                                 ControllerState& state) const noexcept {
+void Controller::goOnWithoutLost(const Gains& gains, double period_s, ModuleFaults& faults,
+                                 ControllerState& state, ControllerOutput& output) const noexcept {
   for (int i = 0; i < modules(); ++i)
     if (faults[i] == Fault::kNone) prove(period_s, state.modules[i]);
+  output.modules_lost = 0;
   for (int i = 0; i < modules(); ++i) {
     if (faults[i] == Fault::kNone || !goesOnWithout(i, gains, state)) continue;
     lose(state.modules[i]);
     faults[i] = Fault::kNone;
+    output.modules_lost |= std::uint64_t{1} << i;
+    output.sensed[i] = state.modules[i].contact;
   }
+  output.speed_share = state.speed_share;
   state.speed_share =
       nextSpeedShare(config_.module_loss->speed_share,
                      std::span(state.modules).first(static_cast<std::size_t>(modules())), period_s,
                      state.speed_share);
 }
 
+/// All of the motion without contact, which is linear in these.
+void Controller::slowDown(double speed_share, PreparedCycle& prepared) noexcept {
+  prepared.progress *= speed_share;
+  prepared.w_d_dot *= speed_share;
+  prepared.kinematics.y_eff *= speed_share;
+  prepared.motion.y *= speed_share;
+  prepared.motion.v_scaled *= speed_share;
+}
+
 /// The whole command, so that the arm keeps its direction.
-void Controller::slowDown(const ControllerState& state, JointVector& velocity) const noexcept {
+void Controller::boundSpeeds(double speed_share, JointVector& velocity) const noexcept {
   double largest = 0.0;
   for (int i = 0; i < velocity.size(); ++i)
     largest = std::max(largest, std::abs(velocity[i]) / config_.limits.max_velocity[i]);
-  if (largest > state.speed_share) velocity *= state.speed_share / largest;
+  if (largest > speed_share) velocity *= speed_share / largest;
+}
+
+void Controller::sense(const RobotInput& input, const Gains& gains, double period_s,
+                       PreparedCycle& prepared, ControllerState& state,
+                       ControllerOutput& output) const noexcept {
+  output.modules = modules();
+  ModuleFaults faults;
+  bool is_told_more = config_.module_loss.has_value();
+  for (int i = 0; i < output.modules; ++i) {
+    faults[i] = read(i, input, period_s, state.modules[i]);
+    is_told_more |= faults[i] != Fault::kNone;
+    output.sensed[i] = state.modules[i].contact;
+  }
+  if (is_told_more) judgeModules(gains, period_s, faults, prepared, state, output);
 }
 
 /// Of several modules with a fault the first one counts.
-void Controller::sense(const RobotInput& input, const Gains& gains, double period_s,
-                       ControllerState& state, ControllerOutput& output) const noexcept {
-  output.modules = modules();
-  output.speed_share = state.speed_share;
-  output.modules_lost = 0;
-  std::array<Fault, kMaxTactileModules> faults{};
-  for (int i = 0; i < output.modules; ++i) faults[i] = read(i, input, period_s, state.modules[i]);
-  if (config_.module_loss) goOnWithoutLost(gains, period_s, faults, state);
-  for (int i = 0; i < output.modules; ++i) {
-    const TactileReading& reading = state.modules[i];
-    output.sensed[i] = reading.contact;
-    if (reading.is_lost) output.modules_lost |= std::uint64_t{1} << i;
+void Controller::judgeModules(const Gains& gains, double period_s, ModuleFaults& faults,
+                              PreparedCycle& prepared, ControllerState& state,
+                              ControllerOutput& output) const noexcept {
+  if (config_.module_loss) {
+    slowDown(state.speed_share, prepared);
+    goOnWithoutLost(gains, period_s, faults, state, output);
+  }
+  for (int i = 0; i < modules(); ++i) {
     if (state.fault != Fault::kNone || faults[i] == Fault::kNone) continue;
     state.fault = faults[i];
     if (!state.is_stopping) state.retreat.velocity_at_fault = state.velocity_before;
-    output.fault_detail = reading.detail;
+    output.fault_detail = state.modules[i].detail;
     output.fault_detail.module = i;
   }
 }

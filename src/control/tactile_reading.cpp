@@ -23,6 +23,12 @@ double fadedShare(double filter_cutoff_hz, double interval_s) noexcept {
   return std::max(0.0, 1.0 - interval_s / fades_s);
 }
 
+void refuse(const FaultDetail& detail, TactileReading& reading) noexcept {
+  reading.fault = Fault::kTactileInvalid;
+  reading.detail = detail;
+  reading.has_excess = false;
+}
+
 }  // namespace
 
 Fault readSample(const TactileModuleConfig& module, const TactileSample& sample, double period_s,
@@ -38,19 +44,17 @@ Fault readSample(const TactileModuleConfig& module, const TactileSample& sample,
   const double interval_s = reading.age_s + period_s;
   reading.age_s = 0.0;
   reading.hardest.force_N *= fadedShare(module.filter_cutoff_hz, interval_s);
-  const bool is_in_range = isValid(sample, module);
-  const double off_m = is_in_range ? offCover_m(sample, module) : 0.0;
-  const bool is_valid = is_in_range && off_m <= module.length_m;
-  reading.fault = is_valid ? Fault::kNone : Fault::kTactileInvalid;
-  if (is_valid) {
+  if (!isValid(sample, module)) {
+    refuse({judgedForce_N(sample), module.max_force_N, "N"}, reading);
+    reading.has_excess = reading.detail.value < kMaxBelievable_N;
+    if (reading.has_excess) locateContact(sample, module, reading.excess);
+  } else if (tellsItsPlace(sample, module) && offCover_m(sample, module) > module.length_m) {
+    refuse({offCover_m(sample, module), module.length_m, "m"}, reading);
+  } else {
+    reading.fault = Fault::kNone;
     locateContact(sample, module, reading.contact);
     reading.contact.interval_s = interval_s;
     if (reading.contact.force_N >= reading.hardest.force_N) reading.hardest = reading.contact;
-  } else {
-    reading.detail = {judgedForce_N(sample), module.max_force_N, "N"};
-    reading.has_excess = !is_in_range && reading.detail.value < kMaxBelievable_N;
-    if (is_in_range) reading.detail = {off_m, module.length_m, "m"};
-    if (reading.has_excess) locateContact(sample, module, reading.excess);
   }
   return reading.fault;
 }

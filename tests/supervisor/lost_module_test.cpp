@@ -238,6 +238,29 @@ TEST(LostModule, LeavesAllElseToEndTheRunAsEver) {
   EXPECT_EQ(pressed.mode(), Mode::kFault);
 }
 
+/// It goes back to where the one that counts was last felt, not to where a lost one was.
+TEST(LostModule, DoesNotLengthenTheWayBack) {
+  SkinRun run(skinScene("go_on_slowly"));
+  run.cell.on_frame = kNoLink3;
+  run.step(2000);
+  run.cell.on_frame = [](int bus, CanFrame& frame) {
+    kNoLink3(bus, frame);
+    kNoLink4(bus, frame);
+    kNoLink6(bus, frame);
+  };
+  while (run.records.size() < 9000 && run.mode() == Mode::kRunning) run.step(1);
+  ASSERT_EQ(run.mode(), Mode::kRetreating);
+  const CycleRecord& running = run.records[run.records.size() - 2];
+  const Eigen::Map<const Eigen::VectorXd> velocity(running.dq, 9);
+  const Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(running.q, 9);
+  const double speed = velocity.norm();
+  run.step(600);
+  ASSERT_EQ(run.fault(), Fault::kTactileStale);
+  const double way_s = (Eigen::Map<const Eigen::VectorXd>(run.last().q, 9) - q).norm() / speed;
+  EXPECT_GT(way_s, 0.03) << "it does go back";
+  EXPECT_LT(way_s, 0.1);
+}
+
 TEST(LostModule, MayBeLostWhileTheArmHolds) {
   Scene scene = skinScene("go_on_slowly");
   scene.hardware->gpio.emplace();

@@ -34,11 +34,16 @@ void locateContact(const TactileSample& sample, const TactileModuleConfig& modul
                    ContactPointState& contact) noexcept;
 
 /// A force of so much of the module's range has a place on its cover, or a module length off it at
-/// most, as of two pushes from opposite sides: of others in proportion. Else no push explains it.
+/// most, as of two pushes from opposite sides. Of a weaker one noise may say anything.
 inline constexpr double kTellingShare = 0.1;
 
-/// How far off the cover the push is that would explain such a sample, m; 0: on it, or too weak to
-/// tell. More than the module's length contradicts itself.
+inline bool tellsItsPlace(const TactileSample& sample, const TactileModuleConfig& config) noexcept {
+  const double telling_N = kTellingShare * config.max_force_N;
+  return sample.force_y_N * sample.force_y_N + sample.force_z_N * sample.force_z_N >
+         telling_N * telling_N;
+}
+
+/// How far off the cover the push is that explains a sample with a force, m; 0: on it.
 double offCover_m(const TactileSample& sample, const TactileModuleConfig& config) noexcept;
 
 /// Finite and within the module's range?

@@ -66,7 +66,6 @@ struct PreparedCycle {
   TaskVector push;        ///< and this push of the law, see TaskConfig
   double return_share = 1.0;
   bool is_leaning = false;
-  double speed_share = 1.0;
   TaskGains task_gains;  ///< and these gains
   JointLimitAvoidanceGains limit_gains;
   TaskKinematics kinematics;
@@ -154,15 +153,19 @@ class Controller {
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
   Fault read(int module, const RobotInput& input, double period_s,
              TactileReading& reading) const noexcept;
-  void sense(const RobotInput& input, const Gains& gains, double period_s, ControllerState& state,
-             ControllerOutput& output) const noexcept;
+  void sense(const RobotInput& input, const Gains& gains, double period_s, PreparedCycle& prepared,
+             ControllerState& state, ControllerOutput& output) const noexcept;
   void answerContact(const Gains& gains, const TaskKinematics& kinematics,
                      const FreeAcceleration& free, double period_s, ControllerState& state,
                      ControllerOutput& output, Motion& motion) const noexcept;
-  void goOnWithoutLost(const Gains& gains, double period_s,
-                       std::array<Fault, kMaxTactileModules>& faults,
-                       ControllerState& state) const noexcept;
-  void slowDown(const ControllerState& state, JointVector& velocity) const noexcept;
+  using ModuleFaults = std::array<Fault, kMaxTactileModules>;
+  void goOnWithoutLost(const Gains& gains, double period_s, ModuleFaults& faults,
+                       ControllerState& state, ControllerOutput& output) const noexcept;
+  void judgeModules(const Gains& gains, double period_s, ModuleFaults& faults,
+                    PreparedCycle& prepared, ControllerState& state,
+                    ControllerOutput& output) const noexcept;
+  static void slowDown(double speed_share, PreparedCycle& prepared) noexcept;
+  void boundSpeeds(double speed_share, JointVector& velocity) const noexcept;
   double leastStiffness_N_per_m(const Gains& gains, int module,
                                 const ControllerState& state) const noexcept;
   double untold_s(int module, const ControllerState& state) const noexcept;
