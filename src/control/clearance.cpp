@@ -40,7 +40,8 @@ void Clearance::add(const NearBodies& near, const TaskKinematics& kinematics,
     row.a_task = kinematics.pseudoinverse.project(row.a_scaled);
     row.presence = std::min(1.0, (config_.influence_distance_m - body.distance_m) /
                                      (config_.influence_distance_m - config_.safe_distance_m));
-    row.v_max_m_per_s = rate_per_s * (body.distance_m - least_m) / row.presence;
+    const double speed = rate_per_s * (body.distance_m - least_m);
+    row.v_max_m_per_s = speed > 0.0 ? speed / row.presence : speed * row.presence;
     row.damping_N_s_per_m = kWallStiffness_N_per_m / kGamma_per_s;
   }
 }

@@ -14,25 +14,6 @@ namespace {
 /// All six components of a task: position or linear velocity, then rotation.
 using Twist = Eigen::Matrix<double, 6, 1>;
 
-bool mayMove(const ControllerState& state) {
-  return state.fault == Fault::kNone && !state.is_stopping;
-}
-
-/// a^T v; an array's dot product, without the choice of a way that costs as much.
-double retreat(const ScaledVector& a, const JointVector& velocity) noexcept {
-  double sum = 0.0;
-  const auto joints = static_cast<int>(velocity.size());
-  for (int i = 0; i < joints; ++i) sum += a.data()[i] * velocity.data()[i];
-  return sum;
-}
-
-bool isEqual(const JointVector& a, const JointVector& b) noexcept {
-  const auto joints = static_cast<int>(a.size());
-  for (int i = 0; i < joints; ++i)
-    if (a.data()[i] != b.data()[i]) return false;
-  return true;
-}
-
 /// The reference's rotation vector in place of a sum of two, which is no rotation.
 void replaceRotation(const TaskConfig& task, const Vector3& rotation_vector,
                      TaskVector& w) noexcept {
@@ -147,13 +128,14 @@ void Controller::respond(const RobotInput& input, const Gains& gains, double per
     answerContact(gains, kinematics, free, period_s, state, output, motion);
   const bool keeps_rows =
       config_.force_control && config_.force_control->variant == Variant::kNullLimit;
-  if (gate_.clearance() && !keeps_rows && mayMove(state))
-    state.contact.cut_by_rows_m_per_s = keepClear(kinematics, period_s, state, motion);
+  if (gate_.clearance() && !keeps_rows)
+    state.contact.cut_by_rows_m_per_s =
+        state.mayMove() ? keepClear(kinematics, period_s, state, motion) : 0.0;
 
   motion.v_scaled += kinematics.pseudoinverse.expand(motion.y);
   motion.v_scaled.array() *= inv_sqrt_weights_.array();
   output.velocity = motion.v_scaled.head(config_.chain.size());
-  if (!mayMove(state)) {
+  if (!state.mayMove()) {
     output.velocity.setZero();
     if (state.retreat.is_under_way)
       leaveContact(gains, kinematics, period_s, state, output.velocity);
@@ -165,7 +147,7 @@ void Controller::answerContact(const Gains& gains, const TaskKinematics& kinemat
                                const FreeAcceleration& free, double period_s,
                                ControllerState& state, ControllerOutput& output,
                                Motion& motion) const noexcept {
-  const CommandedMotion commanded{state.q_desired, state.velocity_before, mayMove(state),
+  const CommandedMotion commanded{state.q_desired, state.velocity_before, state.mayMove(),
                                   state.return_share, &free};
   if (several_contacts_) {
     several_contacts_->update(gains, kinematics, state.modules, commanded, gate_, period_s,
@@ -182,54 +164,6 @@ void Controller::coast(int missed_cycles, double period_s, ControllerState& stat
     state.modules[i].age_s += missed_cycles * period_s;
     state.modules[i].cover.missed_s += missed_cycles * period_s;
   }
-}
-
-void Controller::limit(const PreparedCycle& prepared, double period_s, ControllerState& state,
-                       ControllerOutput& output) const noexcept {
-  state.contact.cut_m_per_s = 0.0;
-  if (output.speed_share < 1.0 || !admits(prepared, period_s, state, output.velocity))
-    cut(prepared, period_s, state, output);
-  output.fault = state.fault;
-  assign(state.q_desired, output.q_desired);
-  assign(output.velocity, state.velocity_before);
-  passTime(period_s, state);
-}
-
-bool Controller::admits(const PreparedCycle& prepared, double period_s,
-                        const ControllerState& state, const JointVector& velocity) const noexcept {
-  return limiter_.admits(state.q_desired, state.velocity_before, period_s, velocity) &&
-         (!gate_.clearance() ||
-          gate_.clearance()->canStopAfter(prepared.kinematics.pose, prepared.kinematics.near,
-                                          state.q_desired, velocity, period_s));
-}
-
-/// What the limits cut from the contact point's motion is told to the law, which must not ask for
-/// more and more of it.
-void Controller::cut(const PreparedCycle& prepared, double period_s, ControllerState& state,
-                     ControllerOutput& output) const noexcept {
-  const Motion& motion = prepared.motion;
-  const JointVector wanted = output.velocity;
-  if (output.speed_share < 1.0 && mayMove(state)) boundSpeeds(output.speed_share, output.velocity);
-  const bool finite =
-      limiter_.apply(state.q_desired, state.velocity_before, period_s, output.velocity);
-  if (gate_.clearance())
-    gate_.clearance()->holdBack(prepared.kinematics.pose, prepared.kinematics.near, state.q_desired,
-                                state.velocity_before, period_s, output.velocity);
-  if (contact_controller_ && mayMove(state) && !isEqual(wanted, output.velocity))
-    state.contact.cut_m_per_s =
-        std::max(0.0, retreat(motion.a, wanted) - retreat(motion.a, output.velocity));
-  if (finite) return;
-  state.fault = Fault::kCommandNotFinite;
-  output.fault_detail = notFinite(motion);
-}
-
-FaultDetail Controller::notFinite(const Motion& motion) const noexcept {
-  for (int i = 0; i < config_.chain.size(); ++i) {
-    if (std::isfinite(motion.v_scaled[i])) continue;
-    const bool is_prismatic = config_.chain.type(i) == JointType::kPrismatic;
-    return {motion.v_scaled[i], config_.limits.max_velocity[i], is_prismatic ? "m/s" : "rad/s", i};
-  }
-  return {};
 }
 
 void Controller::passTime(double duration_s, ControllerState& state) const noexcept {

@@ -13,12 +13,7 @@ void Controller::restart(const Gains& gains, ControllerState& state) const noexc
                  state.way_out_before);
   }
   state.return_share = 0.0;
-  state.speed_share = 1.0;
-  for (TactileReading& reading : state.modules) {
-    reading.cover.has_started = false;
-    reading.is_lost = false;
-    reading.unproven_s = 0.0;
-  }
+  for (TactileReading& reading : state.modules) reading.cover.has_started = false;
   if (contact_controller_) state.contact = contact_controller_->initialState();
   if (several_contacts_) state.several = several_contacts_->initialState();
 }

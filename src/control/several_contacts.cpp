@@ -5,6 +5,8 @@
 namespace tactus {
 namespace {
 
+static_assert(4 * kMaxTactileModules <= kMaxRows, "room for the corners of all contacts");
+
 /// As gamma would be without an end: where the contact was, and still is felt.
 double nearness(const ForceGains& gains, const ModuleContactState& state) noexcept {
   const double force_N = state.approach.smoother.contact.force_N;
@@ -94,7 +96,10 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
   if (reading.contact.isNew())
     module.limit.follow(gains.force, reading.contact, framePose(kinematics.pose, module.link),
                         state.approach);
-  if (reading.is_lost) contact.force_N = 0.0;
+  if (reading.is_lost) {
+    contact.force_N = 0.0;
+    state.approach.position = {};  // else all of its absence were one way to its next sample
+  }
   locate(kinematics, module, contact, place);
   const double F_p_N = contactForce_N(gains.force, state);
   const double near = nearness(gains.force, state);
@@ -174,7 +179,9 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
   }
   const int contacts = null_rows.size;
   gate.add(commanded, kinematics, 1.0, period_s, null_rows);
-  for (int i = contacts; i < null_rows.size; ++i) rows.row[rows.size++] = null_rows.row[i];
+  // Corners of many contacts may leave no room: what has none is still kept by the last gate.
+  for (int i = contacts; i < null_rows.size && rows.size < kMaxRows; ++i)
+    rows.row[rows.size++] = null_rows.row[i];
   report.u_n = -holdInNullSpace(gains.force, null_rows, contacts, state.null_speed, motion);
   const RowVector l = keepSpeedRows(rows, task_size_, motion);
   for (int i = 0; i < static_cast<int>(modules_.size()); ++i) {

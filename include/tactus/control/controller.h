@@ -55,6 +55,8 @@ struct ControllerState {
   SeveralContactsState several;  ///< instead, with several modules
   JointLimitZones zones;         ///< of the last gains
   RetreatState retreat;
+
+  bool mayMove() const noexcept { return fault == Fault::kNone && !is_stopping; }
 };
 
 /// The part of a cycle that needs no sensor: kinematics, factorisation and joint-limit cost of the

@@ -18,7 +18,7 @@ bool isGood(const TactileReading& reading, const TactileModuleConfig& module) no
 
 /// Whether the arm may go on without this module, whatever it says next: nothing has pushed on it
 /// of late, nor does it tell of a push beyond its range; a module that is lost already may stay so.
-bool mayBeLost(const TactileReading& reading, double contact_threshold_N) noexcept;
+bool mayBeLost(const TactileReading& reading, double felt_N) noexcept;
 
 /// The module is lost, its contact forgotten.
 void lose(TactileReading& reading) noexcept;
