@@ -118,6 +118,7 @@ void addClearance(const Scene& scene, Json& json) {
 }
 
 std::string touchingCapsules(const Scene& scene, const std::string& proposed) {
+  constexpr double kTouching_m = 1e-6;
   const std::vector<NamedLinkCapsule> named = capsulesOf(withCapsules(scene, proposed));
   ClearanceConfig config;
   for (const NamedLinkCapsule& capsule : named) config.capsules.push_back(capsule.capsule);
