@@ -136,12 +136,12 @@ std::string touchingCapsules(const Scene& scene, const std::string& proposed) {
   std::string text;
   for (int i = 0; i < distances.size(); ++i) {
     const double distance_m = distances.distance_m(pose, i);
-    if (distance_m > 0.0) continue;
+    if (distance_m > kTouching_m) continue;
     text += fmt::format(
-        "# {} and {} touch at the start, {:.3g} mm deep: a scene's clearance "
+        "# {} and {} touch at the start, {:.1f} mm deep: a scene's clearance "
         "refuses that, unless they always do\n",
         escaped(named[config.pairs[i].capsule].link), escaped(named[config.pairs[i].other].link),
-        -1e3 * distance_m);
+        std::max(0.0, -1e3 * distance_m));
   }
   return text;
 }
