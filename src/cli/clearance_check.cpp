@@ -118,6 +118,7 @@ void addClearance(const Scene& scene, Json& json) {
 }
 
 std::string touchingCapsules(const Scene& scene, const std::string& proposed) {
+  constexpr double kTouching_m = 1e-6;
   const std::vector<NamedLinkCapsule> named = capsulesOf(withCapsules(scene, proposed));
   ClearanceConfig config;
   for (const NamedLinkCapsule& capsule : named) config.capsules.push_back(capsule.capsule);
@@ -135,12 +136,12 @@ std::string touchingCapsules(const Scene& scene, const std::string& proposed) {
   std::string text;
   for (int i = 0; i < distances.size(); ++i) {
     const double distance_m = distances.distance_m(pose, i);
-    if (distance_m > 0.0) continue;
+    if (distance_m > kTouching_m) continue;
     text += fmt::format(
-        "# {} and {} touch at the start, {:.3g} mm deep: a scene's clearance "
+        "# {} and {} touch at the start, {:.1f} mm deep: a scene's clearance "
         "refuses that, unless they always do\n",
         escaped(named[config.pairs[i].capsule].link), escaped(named[config.pairs[i].other].link),
-        -1e3 * distance_m);
+        std::max(0.0, -1e3 * distance_m));
   }
   return text;
 }
