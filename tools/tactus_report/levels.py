@@ -27,7 +27,7 @@ def figures(run):
     forces = [run.summary["peak_force_N"], run.summary["final_force_N"]]
     jerks = [float(np.sqrt(np.mean(np.square(run.joint_jerk)))), float(run.joint_jerk.max())]
     return (["" if force is None else f"{force:.2f}" for force in forces]
-            + [f"{jerk:.3g}" for jerk in jerks])
+            + [f"{jerk:.0f}" for jerk in jerks])
 
 
 def margins(scene, tactus):
