@@ -33,10 +33,10 @@ bool Controller::goesOnWithout(int module, const Gains& gains,
                                const ControllerState& state) const noexcept {
   const TactileReading& reading = state.modules[module];
   const bool may_lose = reading.is_lost || (state.fault == Fault::kNone && !state.is_stopping);
-  // A contact in the null space rests at the threshold.
-  const double felt_N =
-      std::min(gains.force.contact_threshold_N, gains.force.transition.release_force_N);
-  if (!config_.module_loss || !may_lose || !mayBeLost(reading, felt_N)) return false;
+  // A law may have brought a contact down to its threshold; below this it is over.
+  const double released_N =
+      std::min(gains.force.transition.release_force_N, gains.force.contact_threshold_N);
+  if (!config_.module_loss || !may_lose || !mayBeLost(reading, released_N)) return false;
   for (int i = 0; i < modules(); ++i)
     if (i != module && isGood(state.modules[i], config_.tactile_modules[i])) return true;
   return false;

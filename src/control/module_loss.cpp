@@ -16,10 +16,10 @@ bool isGood(const TactileReading& reading, const TactileModuleConfig& module) no
          reading.age_s <= module.max_sample_age_s;
 }
 
-bool mayBeLost(const TactileReading& reading, double felt_N) noexcept {
+bool mayBeLost(const TactileReading& reading, double released_N) noexcept {
   if (tellsOfExcess(reading)) return false;
   const double of_late_N = std::max(reading.hardest.force_N, reading.contact.force_N);
-  return reading.is_lost || of_late_N <= felt_N;
+  return reading.is_lost || of_late_N <= released_N;
 }
 
 void lose(TactileReading& reading) noexcept {

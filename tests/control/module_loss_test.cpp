@@ -54,7 +54,7 @@ class ChanceModule {
  private:
   void change() {
     samples_left_ = random_.integer(1, 120);
-    push_N_ = random_.chance(0.3) ? random_.uniform(2.0, 20.0) : 0.0;
+    push_N_ = random_.chance(0.3) ? random_.logUniform(0.05, 20.0) : 0.0;
     trouble_ = Trouble::kNone;
     if (random_.chance(0.15)) trouble_ = Trouble::kSilent;
     if (random_.chance(0.1)) trouble_ = Trouble::kNoNumber;
@@ -120,7 +120,7 @@ TEST(ModuleLoss, IsBorneExactlyWhereNothingPushesAndAnotherIsGood) {
           o.is_lost = false;
           continue;
         }
-        const bool is_calm = o.is_lost || o.of_late_N <= gains.force.contact_threshold_N;
+        const bool is_calm = o.is_lost || o.of_late_N <= gains.force.transition.release_force_N;
         o.is_lost = is_any_good && is_calm && !o.is_excess;
         if (o.is_lost) o.of_late_N = 0.0;
         is_fault = is_fault || !o.is_lost;

@@ -86,7 +86,7 @@ class Skin(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
-        cls.path = simulate(cls.folder.name, f"whole_arm/{SKIN}")
+        cls.path = simulate(cls.folder.name, f"whole_arm/{SKIN}", "controller.variant=none")
         simulate(cls.folder.name, "scenario1_null_space", "simulation.duration_s=1")
         cls.runs = runs.load_runs([pathlib.Path(cls.folder.name)], TACTUS)
         cls.run_of_skin = next(run for run in cls.runs if run.name == SKIN)

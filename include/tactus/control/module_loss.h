@@ -17,8 +17,9 @@ inline constexpr double kSpeedShareRise_s = 0.2;
 bool isGood(const TactileReading& reading, const TactileModuleConfig& module) noexcept;
 
 /// Whether the arm may go on without this module, whatever it says next: nothing has pushed on it
-/// of late, nor does it tell of a push beyond its range; a module that is lost already may stay so.
-bool mayBeLost(const TactileReading& reading, double felt_N) noexcept;
+/// of late by more than released_N, nor does it tell of a push beyond its range; a module that is
+/// lost already may stay so.
+bool mayBeLost(const TactileReading& reading, double released_N) noexcept;
 
 /// The module is lost, its contact forgotten.
 void lose(TactileReading& reading) noexcept;
