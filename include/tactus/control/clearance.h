@@ -12,8 +12,8 @@ namespace tactus {
 ///
 /// What is wanted is slowed down by rows, of what is nearer than d_i:
 ///   grad(d)^T q_dot >= -(d - d_min) min(gamma, 1 / time) / p,   D = m_w / gamma
-/// p = (d_i - d) / (d_i - d_s), at most 1, so that none begins with a step (times p for d < d_min); gamma = 5 / s, m_w =
-/// 1e7 N/m, time that of the StoppingWay of the velocity before, and
+/// p = (d_i - d) / (d_i - d_s), at most 1, so that none begins with a step (times p for d < d_min);
+/// gamma = 5 / s, m_w = 1e7 N/m, time that of the StoppingWay of the velocity before, and
 ///   d_min = d_s + min(1 mm, (d_i - d_s) / 10) + 1/2 acceleration time^2
 /// But rows are of first order, the nearest alone, may exclude each other, and the limiter may not
 /// be able to follow them. So a command passes only if the arm could still stop after it, all
