@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kSection = "clearance";
 
 /// A clearance on its way from its section.
-struct Loading {
+struct ClearanceLoading {
   const YamlNode& root;
   const ClearanceSection& section;
   const LoadedRobot& robot;
@@ -33,7 +33,7 @@ struct Loading {
   const std::string& name(int i) const { return named.names.capsules[i]; }
 };
 
-void loadDistances(Loading& l) {
+void loadDistances(ClearanceLoading& l) {
   const ClearanceSection& section = l.section;
   const double safe_m = section.safe_distance_m;
   if (section.influence_distance_m <= safe_m)
@@ -49,7 +49,7 @@ void loadDistances(Loading& l) {
   l.named.config.avoid = section.avoid;
 }
 
-void loadLinks(Loading& l) {
+void loadLinks(ClearanceLoading& l) {
   NamedCapsules links = loadCapsules(l.robot, false);
   if (links.capsules.empty())
     l.fail("", "the robot has no collision_capsules",
@@ -59,7 +59,7 @@ void loadLinks(Loading& l) {
   l.links = static_cast<int>(l.named.config.capsules.size());
 }
 
-void checkExcluded(const Loading& l) {
+void checkExcluded(const ClearanceLoading& l) {
   std::vector<std::string> known = l.named.names.capsules;
   for (std::size_t i = 0; i < l.section.exclude.size(); ++i) {
     const ExcludedPair& pair = l.section.exclude[i];
@@ -72,14 +72,14 @@ void checkExcluded(const Loading& l) {
   }
 }
 
-bool isExcluded(const Loading& l, int a, int b) {
+bool isExcluded(const ClearanceLoading& l, int a, int b) {
   return std::ranges::any_of(l.section.exclude, [&](const ExcludedPair& pair) {
     return (pair.link == l.name(a) && pair.other == l.name(b)) ||
            (pair.link == l.name(b) && pair.other == l.name(a));
   });
 }
 
-void addSelfCollision(Loading& l) {
+void addSelfCollision(ClearanceLoading& l) {
   for (int a = 0; l.section.self_collision && a < l.links; ++a) {
     for (int b = a + 1; b < l.links; ++b) {
       const int apart = std::abs(l.capsule(a).link.joint - l.capsule(b).link.joint);
@@ -88,13 +88,14 @@ void addSelfCollision(Loading& l) {
   }
 }
 
-void checkDirection(const Loading& l, const std::string& key, const Vector3& direction) {
+void checkDirection(const ClearanceLoading& l, const std::string& key, const Vector3& direction) {
   constexpr double kMinLength = 1e-6;
   if (direction.norm() < kMinLength) l.fail(key, "has no length", "a vector other than zero");
 }
 
 /// Of which links this body is kept clear.
-std::vector<int> keptLinks(const Loading& l, const KeepOutSection& body, const std::string& key) {
+std::vector<int> keptLinks(const ClearanceLoading& l, const KeepOutSection& body,
+                           const std::string& key) {
   const int tool = l.robot.chain.tip.joint;
   std::vector<int> kept;
   for (int i = 0; i < l.links; ++i) {
@@ -107,7 +108,7 @@ std::vector<int> keptLinks(const Loading& l, const KeepOutSection& body, const s
   return kept;
 }
 
-void addWall(Loading& l, const PlaneConfig& plane, const std::string& key,
+void addWall(ClearanceLoading& l, const PlaneConfig& plane, const std::string& key,
              const std::vector<int>& kept) {
   checkDirection(l, key + ".plane.normal", plane.normal);
   const auto wall = static_cast<int>(l.named.config.walls.size());
@@ -116,7 +117,7 @@ void addWall(Loading& l, const PlaneConfig& plane, const std::string& key,
   for (const int capsule : kept) l.named.config.wall_pairs.push_back({capsule, wall});
 }
 
-LinkCapsule bodyOf(const Loading& l, const KeepOutSection& body, const std::string& key) {
+LinkCapsule bodyOf(const ClearanceLoading& l, const KeepOutSection& body, const std::string& key) {
   if (body.sphere) return {{}, body.sphere->center_m, body.sphere->center_m, body.sphere->radius_m};
   checkDirection(l, key + ".post.axis", body.post->axis);
   return {{},
@@ -125,7 +126,7 @@ LinkCapsule bodyOf(const Loading& l, const KeepOutSection& body, const std::stri
           body.post->radius_m};
 }
 
-void addKeepOut(Loading& l) {
+void addKeepOut(ClearanceLoading& l) {
   for (std::size_t i = 0; i < l.section.keep_out.size(); ++i) {
     const KeepOutSection& body = l.section.keep_out[i];
     const std::string key = fmt::format("keep_out[{}]", i);
@@ -168,7 +169,7 @@ struct DistanceRange {
   double from_m = kNoLimit, to_m = -kNoLimit;
 };
 
-std::vector<DistanceRange> rangesOf(const Loading& l, const BodyDistances& distances) {
+std::vector<DistanceRange> rangesOf(const ClearanceLoading& l, const BodyDistances& distances) {
   constexpr int kDrawn = 200;
   const SerialChain chain(l.robot.chain.joints, l.robot.chain.tip);
   std::vector<DistanceRange> ranges(distances.size());
@@ -185,7 +186,7 @@ std::vector<DistanceRange> rangesOf(const Loading& l, const BodyDistances& dista
 }
 
 /// What no motion can change: links that always touch, bodies at the same distance everywhere.
-void leaveOutUnchanging(Loading& l) {
+void leaveOutUnchanging(ClearanceLoading& l) {
   constexpr double kSame_m = 1e-9;
   ClearanceConfig& config = l.named.config;
   const SerialChain chain(l.robot.chain.joints, l.robot.chain.tip);
@@ -209,7 +210,7 @@ std::string apartText(double distance_m) {
 }
 
 /// Of the pair that is least so.
-void checkClearAtStart(const Loading& l) {
+void checkClearAtStart(const ClearanceLoading& l) {
   const ClearanceConfig& config = l.named.config;
   const SerialChain chain(l.robot.chain.joints, l.robot.chain.tip);
   ChainPose pose;
@@ -240,7 +241,7 @@ std::string namesOfPair(const ClearanceConfig& config, const ClearanceNames& nam
 std::optional<NamedClearance> loadClearance(const YamlNode& root, const SceneConfig& scene,
                                             const LoadedRobot& robot, const JointVector& q_start) {
   if (!scene.clearance) return std::nullopt;
-  Loading l{root, *scene.clearance, robot, q_start};
+  ClearanceLoading l{root, *scene.clearance, robot, q_start};
   loadDistances(l);
   loadLinks(l);
   checkExcluded(l);
