@@ -86,28 +86,29 @@ EndWatch::EndWatch(const RunSetup& setup)
     : chain_(setup.controller.chain), modules_(setup.controller.tactile_modules) {
   for (std::size_t i = 0; i < modules_.size(); ++i)
     radii_m_.push_back(setup.plant.modules[i].cover_radius_m);
-  for (const ObstacleConfig& obstacle : setup.plant.obstacles) {
-    const std::vector<ObstacleShape> shapes(modules_.size(), ObstacleShape(obstacle));
-    posts_.push_back({shapes, shapes});
-  }
+  for (const ObstacleConfig& obstacle : setup.plant.obstacles)
+    for (std::size_t i = 0; i < modules_.size(); ++i)
+      posts_.push_back({i, ObstacleShape(obstacle), ObstacleShape(obstacle)});
 }
 
 bool EndWatch::isOut(const JointVector& q, bool is_start) {
   chain_.computePose(q, pose_);
+  bool is_out = false;
   for (Post& post : posts_) {
-    bool touches = false, touches_longer = false;
-    for (std::size_t i = 0; i < modules_.size(); ++i) {
-      const Pose X = framePose(pose_, modules_[i].link);
-      const Vector3 u = X.R_AB.col(0);
-      const double length_m = modules_[i].length_m;
-      const CoverAxis cover{X.p_AB, u, length_m, radii_m_[i]};
-      const CoverAxis longer{X.p_AB - kEnd_m * u, u, length_m + 2.0 * kEnd_m, radii_m_[i]};
-      touches |= post.at_cover[i].meet(cover, Vector3::Zero()).depth_m > 0.0;
-      touches_longer |= post.at_longer[i].meet(longer, Vector3::Zero()).depth_m > 0.0;
-    }
-    if (touches_longer && (is_start || !touches)) return true;
+    const Pose X = framePose(pose_, modules_[post.module].link);
+    const Vector3 u = X.R_AB.col(0);
+    const double length_m = modules_[post.module].length_m;
+    const double radius_m = radii_m_[post.module];
+    const CoverAxis cover{X.p_AB, u, length_m, radius_m};
+    const CoverAxis longer{X.p_AB - kEnd_m * u, u, length_m + 2.0 * kEnd_m, radius_m};
+    const bool touches = post.at_cover.meet(cover, Vector3::Zero()).depth_m > 0.0;
+    const bool touches_longer = post.at_longer.meet(longer, Vector3::Zero()).depth_m > 0.0;
+    is_out |= is_start ? touches_longer
+                       : touches_longer && post.touched_longer && touches != post.touched;
+    post.touched = touches;
+    post.touched_longer = touches_longer;
   }
-  return false;
+  return is_out;
 }
 
 }  // namespace tactus

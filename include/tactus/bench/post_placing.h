@@ -28,7 +28,7 @@ struct PostPlace {
 bool placePost(const RunSetup& setup, const std::vector<Pose>& path, std::size_t module,
                const PostPlace& place, ObstacleConfig& post);
 
-/// Whether a post comes over an end of a cover, and on no other.
+/// Whether a post comes over an end of a cover, onto it or off it: no module feels that force.
 class EndWatch {
  public:
   explicit EndWatch(const RunSetup& setup);
@@ -36,9 +36,11 @@ class EndWatch {
   bool isOut(const JointVector& q, bool is_start);
 
  private:
-  /// A post as each cover meets it, and as longer ones do.
+  /// A post as one cover meets it, and as a longer one does.
   struct Post {
-    std::vector<ObstacleShape> at_cover, at_longer;
+    std::size_t module;
+    ObstacleShape at_cover, at_longer;
+    bool touched = false, touched_longer = false;
   };
 
   SerialChain chain_;
