@@ -35,6 +35,8 @@ struct FirstTouch {
   Obstacle obstacle;
   double depth_m = 0.0;  ///< a cycle before
   double free_s = 0.0;
+  double unfelt_s = 0.0;  ///< what is left of the time in which no answer can come
+  double before_N = 0.0;  ///< what the module felt then
   bool is_over = false;
 };
 
@@ -58,21 +60,27 @@ class TouchWatch {
                                  .force_N;
       touch.free_s = depth_m > 0.0 ? 0.0 : touch.free_s + setup_.period_s;
       if (touch.free_s > kFree_s) touch.is_over = false;
-      if (!touch.is_over && touch.depth_m > 0.0 && depth_m > touch.depth_m)
-        note(touch, (depth_m - touch.depth_m) / setup_.period_s,
-             output.sensed[touch.module].force_N, run.modules[touch.module]);
+      const double speed_m_per_s = (depth_m - touch.depth_m) / setup_.period_s;
+      if (!touch.is_over && touch.depth_m > 0.0 && speed_m_per_s > 0.0) {
+        touch.is_over = true;
+        touch.unfelt_s = feedbackDelay_s(setup_.plant);
+        touch.before_N = output.sensed[touch.module].force_N;
+      }
+      touch.unfelt_s -= setup_.period_s;
+      if (touch.unfelt_s > 0.0) note(touch, speed_m_per_s, run.modules[touch.module]);
       touch.depth_m = depth_m;
     }
   }
 
  private:
-  void note(FirstTouch& touch, double speed_m_per_s, double before_N, SeveralRun::Module& module) {
+  /// What others feel may turn the arm towards a post that nobody feels yet.
+  void note(const FirstTouch& touch, double speed_m_per_s, SeveralRun::Module& module) {
     const ForceGains& force = setup_.controller.gains.force;
     const double unseen_N = touch.stiffness_N_per_m * speed_m_per_s * feedbackDelay_s(setup_.plant);
     const double limit_N = force.activation_force_N + force.contact_threshold_N;
     module.scale_N = std::max(
-        {module.scale_N, limit_N, std::max(before_N, force.contact_threshold_N) + unseen_N});
-    module.was_touched = touch.is_over = true;
+        {module.scale_N, limit_N, std::max(touch.before_N, force.contact_threshold_N) + unseen_N});
+    module.was_touched = true;
   }
 
   RunSetup setup_;
