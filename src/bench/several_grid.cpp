@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "tactus/bench/post_placing.h"
 #include "tactus/bench/random.h"

@@ -16,12 +16,6 @@ double approach(const ScaledVector& a, int joints, const ScaledVector& from,
   return way;
 }
 
-/// m in contact.
-double stiffnessInContact(const ForceGains& gains,
-                          const ApproachEstimatorState& estimator) noexcept {
-  return std::max(estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
-}
-
 }  // namespace
 
 ApproachLimit::ApproachLimit(const ControllerConfig& config, const TactileModuleConfig& module)

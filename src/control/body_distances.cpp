@@ -24,10 +24,6 @@ Segment axisInJoint(const LinkCapsule& capsule) {
   return {X.p_AB + X.R_AB * capsule.p_LinkFrom, direction, length_m};
 }
 
-Straight straightOf(const Segment& segment) noexcept {
-  return {segment.p_Start, segment.direction, 0.0, segment.length_m};
-}
-
 Vector3 middleOf(const Segment& segment) noexcept {
   return segment.p_Start + 0.5 * segment.length_m * segment.direction;
 }
@@ -46,9 +42,11 @@ inline void store(Coordinates v, Vector3& vector) {
 }
 
 /// R v, R by columns.
-inline Coordinates turned(const double* R, const Vector3& v) {
-  const auto column = [R](int i) { return Coordinates{pairAt(R + 3 * i), R[3 * i + 2]}; };
-  return v[0] * column(0) + v[1] * column(1) + v[2] * column(2);
+template <typename TwiceInPairs>
+inline Coordinates turned(const double* R, const TwiceInPairs& v) {
+  return {alignedPairAt(v.xx) * pairAt(R) + alignedPairAt(v.yy) * pairAt(R + 3) +
+              alignedPairAt(v.zz) * pairAt(R + 6),
+          v.xx[0] * R[2] + v.yy[0] * R[5] + v.zz[0] * R[8]};
 }
 
 inline Coordinates at(const JointPoints& points, int joint) {
@@ -94,6 +92,13 @@ BodyDistances::BodyDistances(const SerialChain& chain, const ClearanceConfig& co
     }
     if (moves) moving_ = static_cast<int>(capsules_.size());
   }
+  const auto twice = [](const Vector3& v) {
+    return TwiceInPairs{{v[0], v[0]}, {v[1], v[1]}, {v[2], v[2]}};
+  };
+  for (int i = 0; i < moving_; ++i) {
+    directions_.push_back(twice(capsules_[i].axis.direction));
+    starts_.push_back(twice(capsules_[i].axis.p_Start));
+  }
   if (moving_ > kMaxMovingCapsules || static_cast<int>(capsules_.size()) > kMaxCapsules)
     throw std::invalid_argument("too many capsules");
   for (const CapsulePair& pair : config.pairs) {
@@ -102,9 +107,17 @@ BodyDistances::BodyDistances(const SerialChain& chain, const ClearanceConfig& co
     if (capsules_[a].joint == capsules_[b].joint)
       throw std::invalid_argument("nothing moves between two capsules");
     if (capsules_[a].joint < capsules_[b].joint) std::swap(a, b);
-    const double radii_m = capsules_[a].radius_m + capsules_[b].radius_m;
-    const double halves_m = 0.5 * (capsules_[a].axis.length_m + capsules_[b].axis.length_m);
-    pairs_.push_back({a, b, halves_m + radii_m, radii_m});
+    pairs_.push_back({a, b, capsules_[a].radius_m + capsules_[b].radius_m});
+  }
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const CapsulesApart& pair = pairs_[i];
+    const double lengths_m =
+        capsules_[pair.capsule].axis.length_m + capsules_[pair.other].axis.length_m;
+    if (i % 2 == 0) balls_.push_back({{}, {}, {-kNoLimit, -kNoLimit}});
+    BallsApart& balls = balls_.back();
+    balls.capsule[i % 2] = pair.capsule;
+    balls.other[i % 2] = pair.other;
+    balls.radii_m[i % 2] = 0.5 * lengths_m + pair.radii_m;
   }
   for (const WallPair& pair : config.wall_pairs) {
     const int capsule = places[pair.capsule];
@@ -123,69 +136,82 @@ double BodyDistances::distance_m(const ChainPose& pose, int index) const noexcep
   if (index < pairs) {
     const CapsulesApart& pair = pairs_[index];
     const Segment other = place(capsules_[pair.other], pose);
-    return closestPoints(place(capsules_[pair.capsule], pose), straightOf(other)).distance_m -
-           pair.radii_m;
+    return closestPoints(place(capsules_[pair.capsule], pose), other).distance_m - pair.radii_m;
   }
   const CapsuleAtWall& wall = walls_[index - pairs];
   const Capsule& capsule = capsules_[wall.capsule];
   return closestPoints(place(capsule, pose), wall.half_space).distance_m - capsule.radius_m;
 }
 
-void BodyDistances::findNear(const ChainPose& pose, double reach_m,
-                             NearBodies& near) const noexcept {
-  Placed placed;
+void BodyDistances::placeAll(const ChainPose& pose, Placed& placed) const noexcept {
   for (int i = 0; i < moving_; ++i) {
     const Capsule& capsule = capsules_[i];
     const double* const R = pose.R_BaseJoint[capsule.joint].data();
-    const Coordinates direction = turned(R, capsule.axis.direction);
-    const Coordinates start = turned(R, capsule.axis.p_Start) + at(pose.p_BaseJoint, capsule.joint);
+    const Coordinates direction = turned(R, directions_[i]);
+    const Coordinates start = turned(R, starts_[i]) + at(pose.p_BaseJoint, capsule.joint);
+    const Coordinates middle = start + 0.5 * capsule.axis.length_m * direction;
     placed.axis[i].length_m = capsule.axis.length_m;
     store(direction, placed.axis[i].direction);
     store(start, placed.axis[i].p_Start);
-    store(start + 0.5 * capsule.axis.length_m * direction, placed.p_Middle[i]);
+    placed.x_Middle[i] = middle.xy[0];
+    placed.y_Middle[i] = middle.xy[1];
+    placed.z_Middle[i] = middle.z;
   }
-  for (int i = moving_; i < static_cast<int>(capsules_.size()); ++i)
-    placed.p_Middle[i] = capsules_[i].p_Middle;
-  near.size = 0;
-  near.beyond_m = kNoLimit;
-  double beyond_m = kNoLimit;
-  int index = 0;
-  for (const CapsulesApart& pair : pairs_) {
-    const Vector3& p = placed.p_Middle[pair.capsule];
-    const Vector3& p_Other = placed.p_Middle[pair.other];
-    const double x = p[0] - p_Other[0], y = p[1] - p_Other[1], z = p[2] - p_Other[2];
-    const double at_least_m = std::sqrt(x * x + y * y + z * z) - pair.bounds_m;
-    if (at_least_m <= reach_m) {
-      tellOfPair(pose, reach_m, placed, index, near);
-    } else {
-      beyond_m = std::min(beyond_m, at_least_m);
-    }
-    ++index;
+  for (int i = moving_; i < static_cast<int>(capsules_.size()); ++i) {
+    const Vector3& p_Middle = capsules_[i].p_Middle;
+    placed.x_Middle[i] = p_Middle[0];
+    placed.y_Middle[i] = p_Middle[1];
+    placed.z_Middle[i] = p_Middle[2];
   }
-  near.beyond_m = std::min(near.beyond_m, beyond_m);
-  for (int i = 0; i < static_cast<int>(walls_.size()); ++i)
-    tellOfWall(pose, reach_m, placed, i, near);
 }
 
-void BodyDistances::tellOfPair(const ChainPose& pose, double reach_m, const Placed& placed,
-                               int index, NearBodies& near) const noexcept {
+void BodyDistances::findNear(const ChainPose& pose, double reach_m,
+                             NearBodies& near) const noexcept {
+  Placed placed;
+  placeAll(pose, placed);
+  near.size = 0;
+  near.beyond_m = kNoLimit;
+  Pair beyond_m = {kNoLimit, kNoLimit};
+  int index = 0;
+  for (const BallsApart& balls : balls_) {
+    const auto between = [&balls](const std::array<double, kMaxCapsules>& middle) {
+      return Pair{middle[balls.capsule[0]], middle[balls.capsule[1]]} -
+             Pair{middle[balls.other[0]], middle[balls.other[1]]};
+    };
+    const Pair x = between(placed.x_Middle), y = between(placed.y_Middle),
+               z = between(placed.z_Middle);
+    Pair at_least_m = squareRoot(x * x + y * y + z * z) - alignedPairAt(balls.radii_m);
+    const PairMask is_near = at_least_m <= reach_m;
+    if (isAny(is_near)) {
+      for (int k = 0; k < 2; ++k)
+        if (is_near[k] != 0) tellOfPair(reach_m, placed, index + k, near);
+      at_least_m = is_near ? Pair{kNoLimit, kNoLimit} : at_least_m;
+    }
+    beyond_m = smaller(beyond_m, at_least_m);
+    index += 2;
+  }
+  near.beyond_m = std::min({near.beyond_m, beyond_m[0], beyond_m[1]});
+  for (int i = 0; i < static_cast<int>(walls_.size()); ++i) tellOfWall(reach_m, placed, i, near);
+}
+
+void BodyDistances::tellOfPair(double reach_m, const Placed& placed, int index,
+                               NearBodies& near) const noexcept {
   const CapsulesApart& pair = pairs_[index];
   const Segment& axis = placed.axis[pair.capsule];
   const Segment& other =
       pair.other < moving_ ? placed.axis[pair.other] : capsules_[pair.other].axis;
-  const ClosestPoints closest = closestPoints(axis, straightOf(other));
+  const ClosestPoints closest = closestPoints(axis, other);
   const double distance_m = closest.distance_m - pair.radii_m;
   NearBody* const body = placeFor(distance_m, reach_m, near);
   if (!body) return;
   body->index = index;
   body->distance_m = distance_m;
   body->normal = closest.normal;
-  computeGradient(pose, capsules_[pair.capsule].joint, capsules_[pair.other].joint,
-                  closest.p_Segment, *body);
+  body->p_Body = closest.p_Segment;
 }
 
-void BodyDistances::tellOfWall(const ChainPose& pose, double reach_m, const Placed& placed,
-                               int index, NearBodies& near) const noexcept {
+void BodyDistances::tellOfWall(double reach_m, const Placed& placed, int index,
+                               NearBodies& near) const noexcept {
   const CapsuleAtWall& wall = walls_[index];
   const Capsule& capsule = capsules_[wall.capsule];
   const Segment& axis = placed.axis[wall.capsule];
@@ -200,71 +226,8 @@ void BodyDistances::tellOfWall(const ChainPose& pose, double reach_m, const Plac
     body->index = static_cast<int>(pairs_.size()) + index;
     body->distance_m = distance_m;
     body->normal = normal;
-    computeGradient(pose, capsule.joint, -1, axis.p_Start + way_m * axis.direction, *body);
+    body->p_Body = axis.p_Start + way_m * axis.direction;
   }
-}
-
-/// z^T (r x n) of a revolute joint's axis z, r from the joint to the point; two joints at a time.
-/// The joints before both capsules move neither against the other.
-void BodyDistances::computeGradient(const ChainPose& pose, int joint, int other_joint,
-                                    const Vector3& p_Base, NearBody& near) const noexcept {
-  double* const gradient = near.gradient.data();
-  for (int i = 0; i < kMaxJoints; i += 2) storePair(Pair{0.0, 0.0}, gradient + i);
-  const double n_x = near.normal[0], n_y = near.normal[1], n_z = near.normal[2];
-  const double p_x = p_Base[0], p_y = p_Base[1], p_z = p_Base[2];
-  const int begin = (other_joint + 1) / 2 * 2;
-  for (int i = begin; i <= joint; i += 2) {
-    const Pair r_x = p_x - alignedPairAt(pose.p_BaseJoint.x + i);
-    const Pair r_y = p_y - alignedPairAt(pose.p_BaseJoint.y + i);
-    const Pair r_z = p_z - alignedPairAt(pose.p_BaseJoint.z + i);
-    storePair(alignedPairAt(pose.axis_Base.x + i) * (r_y * n_z - r_z * n_y) +
-                  alignedPairAt(pose.axis_Base.y + i) * (r_z * n_x - r_x * n_z) +
-                  alignedPairAt(pose.axis_Base.z + i) * (r_x * n_y - r_y * n_x),
-              gradient + i);
-  }
-  for (const int i : chain_.prismaticJoints()) {
-    if (i > joint) break;
-    if (i > other_joint) gradient[i] = pose.axis_Base[i].dot(near.normal);
-  }
-  // What the first and the last pair had too many.
-  if (begin == other_joint) gradient[begin] = 0.0;
-  if (joint + 1 < kMaxJoints) gradient[joint + 1] = 0.0;
-}
-
-/// A point p of the capsule moves by turn x p + shift against the other.
-double BodyDistances::leftAfter_m(const ChainPose& pose, const NearBody& near,
-                                  const ScaledVector& step) const noexcept {
-  const auto pairs = static_cast<int>(pairs_.size());
-  const bool is_wall = near.index >= pairs;
-  const int place_of = is_wall ? walls_[near.index - pairs].capsule : pairs_[near.index].capsule;
-  const Capsule& capsule = capsules_[place_of];
-  const Segment axis = place(capsule, pose);
-  double level_m = capsule.radius_m;
-  int other_joint = -1;
-  if (is_wall) {
-    level_m += near.normal.dot(walls_[near.index - pairs].half_space.p_Surface);
-  } else {
-    const Capsule& other = capsules_[pairs_[near.index].other];
-    const Segment other_axis = place(other, pose);
-    const double rise = other_axis.length_m * near.normal.dot(other_axis.direction);
-    level_m += other.radius_m + near.normal.dot(other_axis.p_Start) + std::max(0.0, rise);
-    other_joint = other.joint;
-  }
-  Vector3 turn = Vector3::Zero();
-  Vector3 shift = Vector3::Zero();
-  for (int i = other_joint + 1; i <= capsule.joint; ++i) {
-    const Vector3 moved = step[i] * pose.axis_Base[i];
-    if (chain_.type(i) == JointType::kPrismatic) {
-      shift += moved;
-    } else {
-      turn += moved;
-      shift += pose.p_BaseJoint[i].cross(moved);
-    }
-  }
-  const Vector3 p_End = axis.p_Start + axis.length_m * axis.direction;
-  return std::min(near.normal.dot(axis.p_Start + turn.cross(axis.p_Start) + shift),
-                  near.normal.dot(p_End + turn.cross(p_End) + shift)) -
-         level_m;
 }
 
 }  // namespace tactus

@@ -18,7 +18,7 @@ ControlLawOutput ContactController::accelerate(
       velocityProduct(chain_, kinematics.pose, link_.joint, p_BaseContact, commanded.velocity);
   acceleration_law_->update(gains, input, F_Base.dot(curvature.linear), *commanded.free, kinematics,
                             space, period_s, state, motion, u);
-  u.u_n *= law_.speedShare(gains, u.u_n * space.a_scaled, state.null_speed);
+  u.u_n *= law_.nullSpeedLimit().share(gains, u.u_n * space.a_scaled, state.null_speed);
   return u;
 }
 

@@ -209,11 +209,9 @@ ContactController::Contact ContactController::locate(const TaskKinematics& kinem
                                                      const ContactPointState& point,
                                                      ScaledVector& a) const noexcept {
   Contact contact(a);
-  const Pose& X_JointModule = link_.X_JointFrame;
-  const Vector3 p_JointContact = X_JointModule.p_AB + point.position_m * X_JointModule.R_AB.col(0);
-  const Vector3 F_Joint = X_JointModule.R_AB.lazyProduct(point.direction);
-  contact.p_Base = pointInBase(kinematics.pose, link_.joint, p_JointContact);
-  contact.F_Base = vectorInBase(kinematics.pose, link_.joint, F_Joint);
+  const PlacedContact at = placed(kinematics.pose, link_, point);
+  contact.p_Base = at.p_Base;
+  contact.F_Base = at.F_Base;
   applyPointJacobianTranspose(chain_, kinematics.pose, link_.joint, contact.p_Base, contact.F_Base,
                               a);
   computeContactSpace(kinematics.pseudoinverse, a, inv_sqrt_weights_, kinematics.y_eff,
@@ -260,9 +258,9 @@ void ContactController::passJointSpaceContact(const Gains& gains, const TaskKine
   const ContactSpace& space = contact.space;
   const double x_free = speedAlong(space, motion, task_.size);
   PaddedTaskVector y_pull = kinematics.pseudoinverse.solve(pull(gains, kinematics.error));
-  y_pull *=
-      law_.speedShare(gains.force, kinematics.pseudoinverse.expand(y_pull), state.law.null_speed) *
-      (1.0 - motion.limit_nearness * motion.limit_nearness) * return_share;
+  y_pull *= law_.nullSpeedLimit().share(gains.force, kinematics.pseudoinverse.expand(y_pull),
+                                        state.law.null_speed) *
+            (1.0 - motion.limit_nearness * motion.limit_nearness) * return_share;
   const double x_pull = dot(space.a_task, y_pull, task_.size);
   const IntegralShare integral =
       passTransition(gains.force, {input.F_p_N, contact.p_Base, x_free}, period_s, transition);

@@ -36,8 +36,7 @@ double ContactController::limitRows(const ForceGains& gains, const TaskKinematic
     v_max = -eased(gains, space, commanded, period_s, -v_max);
   }
   const int corners = rows.size;
-  const double in_contact =
-      std::max(state.approach.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
+  const double in_contact = stiffnessInContact(gains, state.approach.estimator);
   const auto retreat = [&] {
     return dot(space.a_scaled, motion.v_scaled) + dot(space.a_task, motion.y, task_.size);
   };

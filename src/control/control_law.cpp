@@ -35,32 +35,12 @@ ControlLaw::ControlLaw(const ForceControlConfig& config, const SerialChain& chai
                       config.variant != Variant::kTaskSpace),
       has_second_space_(config.variant == Variant::kNullTask ||
                         config.variant == Variant::kNullJoint),
-      inv_sqrt_weights_(inv_sqrt_weights) {
-  for (int i = 0; i < chain.size(); ++i) is_prismatic_[i] = chain.type(i) == JointType::kPrismatic;
-}
-
-NullSpeedLimits ControlLaw::limits(const ForceGains& gains) const noexcept {
-  NullSpeedLimits limits{gains.max_null_speed_m_per_s, gains.max_null_speed_rad_per_s};
-  for (int i = 0; i < kMaxJoints; ++i) {
-    limits.inverse[i] = inv_sqrt_weights_[i] /
-                        (is_prismatic_[i] ? limits.max_speed_m_per_s : limits.max_speed_rad_per_s);
-  }
-  return limits;
-}
+      null_speed_limit_(chain, inv_sqrt_weights) {}
 
 double ControlLaw::proportionalGain(const ForceGains& gains,
                                     double stiffness_N_per_m) const noexcept {
   const double gain = order_ == 2 ? 2.0 * gains.damping : 1.0;
   return gain / (gains.time_constant_s * stiffness_N_per_m);
-}
-
-double ControlLaw::speedShare(const ForceGains& gains, const ScaledVector& v_scaled,
-                              NullSpeedLimits& limits) const noexcept {
-  if (limits.max_speed_m_per_s != gains.max_null_speed_m_per_s ||
-      limits.max_speed_rad_per_s != gains.max_null_speed_rad_per_s)
-    limits = this->limits(gains);
-  const double excess = v_scaled.cwiseAbs().cwiseProduct(limits.inverse).maxCoeff();
-  return excess > 1.0 ? 1.0 / excess : 1.0;
 }
 
 void ControlLaw::update(const ForceGains& gains, const ControlLawInput& input,
@@ -96,7 +76,8 @@ void ControlLaw::update(const ForceGains& gains, const ControlLawInput& input,
   }
   if (has_null_space_) {
     output.u_n = single * invertRegularised(space.k_n, space.k_j);
-    const double share = speedShare(gains, output.u_n * space.a_scaled, state.null_speed);
+    const double share =
+        null_speed_limit_.share(gains, output.u_n * space.a_scaled, state.null_speed);
     output.u_n *= share;
     limited = share < 1.0;
   }

@@ -12,7 +12,8 @@ void Controller::lookAround(const ControllerState& state, PreparedCycle& prepare
   const std::optional<ClearanceAvoidance>& avoid = config_.clearance->avoid;
   if (!avoid || kinematics.near.size == 0) return;
   const ScaledVector cost =
-      state.return_share * clearanceCost(*avoid, kinematics.near, inv_sqrt_weights_);
+      state.return_share * clearanceCost(*avoid, gate_.clearance()->distances(), kinematics.pose,
+                                         kinematics.near, inv_sqrt_weights_);
   prepared.motion.v_scaled -= cost;
   prepared.motion.y += kinematics.pseudoinverse.project(cost);
 }

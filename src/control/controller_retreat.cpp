@@ -90,14 +90,9 @@ void Controller::takePush(const Gains& gains, ControllerState& state) const noex
 /// it was.
 void Controller::computeRow(const ChainPose& pose, RetreatState& retreat) const noexcept {
   const AttachedFrame& link = config_.tactile_modules[retreat.module].link;
-  const Pose& X_JointModule = link.X_JointFrame;
-  if (!retreat.is_placed)
-    retreat.direction_Base =
-        vectorInBase(pose, link.joint, X_JointModule.R_AB * retreat.push.direction);
-  const Vector3 p_JointContact =
-      X_JointModule.p_AB + retreat.push.position_m * X_JointModule.R_AB.col(0);
-  applyPointJacobianTranspose(config_.chain, pose, link.joint,
-                              pointInBase(pose, link.joint, p_JointContact), retreat.direction_Base,
+  const PlacedContact at = placed(pose, link, retreat.push);
+  if (!retreat.is_placed) retreat.direction_Base = at.F_Base;
+  applyPointJacobianTranspose(config_.chain, pose, link.joint, at.p_Base, retreat.direction_Base,
                               retreat.row);
   if (retreat.is_placed) return;
   retreat.is_placed = true;

@@ -17,6 +17,20 @@ MotionGate::MotionGate(const ControllerConfig& config, const ScaledVector& inv_s
   if (config.clearance) clearance_.emplace(config);
 }
 
+/// Without the rows, whose parts in the task space cost as much as all else. A motion that keeps
+/// all rows is the solution, whatever they yield.
+bool MotionGate::isKept(const CommandedMotion& commanded, const TaskKinematics& kinematics,
+                        double period_s, const SpeedRows& rows,
+                        const Motion& motion) const noexcept {
+  for (int i = 0; i < rows.size; ++i)
+    if (!(speedAlong(rows.row[i], task_size_, motion) >= -rows.row[i].v_max_m_per_s)) return false;
+  const ScaledVector velocity =
+      inv_sqrt_weights_.cwiseProduct(motion.v_scaled + kinematics.pseudoinverse.expand(motion.y));
+  return clearance_->isKept(kinematics.pose, kinematics.near, velocity, commanded.q,
+                            commanded.velocity, period_s) &&
+         joint_limits_.isKept(commanded.q, velocity, 1.0);
+}
+
 void MotionGate::add(const CommandedMotion& commanded, const TaskKinematics& kinematics,
                      double joint_share, double period_s, SpeedRows& rows) const noexcept {
   if (clearance_)
@@ -29,6 +43,8 @@ void MotionGate::add(const CommandedMotion& commanded, const TaskKinematics& kin
 RowVector MotionGate::keep(const CommandedMotion& commanded, const TaskKinematics& kinematics,
                            double joint_share, double period_s, SpeedRows& rows,
                            Motion& motion) const noexcept {
+  if (clearance_ && isKept(commanded, kinematics, period_s, rows, motion))
+    return RowVector::Zero(rows.size);
   add(commanded, kinematics, joint_share, period_s, rows);
   return keepSpeedRows(rows, task_size_, motion);
 }

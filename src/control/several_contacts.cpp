@@ -5,7 +5,8 @@
 namespace tactus {
 namespace {
 
-static_assert(4 * kMaxTactileModules <= kMaxRows, "room for the corners of all contacts");
+static_assert(4 * kMaxTactileModules + kMaxNearBodies + kMaxJoints <= kMaxRows,
+              "room for the corners of all contacts, and for what is kept beside them");
 
 /// As gamma would be without an end: where the contact was, and still is felt.
 double nearness(const ForceGains& gains, const ModuleContactState& state) noexcept {
@@ -19,9 +20,7 @@ double contactForce_N(const ForceGains& gains, const ModuleContactState& state) 
 
 /// 1 in contact, then less and less.
 double presence(const ForceGains& gains, const ApproachLimitState& state) noexcept {
-  const double in_contact =
-      std::max(state.estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
-  return std::min(1.0, state.memory_N_per_m / in_contact);
+  return std::min(1.0, state.memory_N_per_m / stiffnessInContact(gains, state.estimator));
 }
 
 /// Of the first level.
@@ -46,9 +45,8 @@ void tell(const ForceGains& gains, const ModuleContactState& state,
 
 /// A contact as the joints see it.
 struct SeveralContacts::Place {
-  Vector3 p_Base;
+  PlacedContact at;
   ScaledVector a;  ///< J_p^T F^
-  SpeedRow row;    ///< without speed and damping; set where there is a contact
 };
 
 SeveralContacts::SeveralContacts(const ControllerConfig& config,
@@ -56,7 +54,7 @@ SeveralContacts::SeveralContacts(const ControllerConfig& config,
     : chain_(config.chain),
       task_size_(config.task.size),
       inv_sqrt_weights_(inv_sqrt_weights),
-      law_(*config.force_control, config.chain, inv_sqrt_weights) {
+      null_speed_limit_(config.chain, inv_sqrt_weights) {
   const double mu = config.force_control->friction_coefficient;
   for (const TactileModuleConfig& module : config.tactile_modules) {
     modules_.push_back({module.link, ApproachLimit(config, module), std::nullopt});
@@ -73,18 +71,16 @@ SeveralContactsState SeveralContacts::initialState() const noexcept {
 
 void SeveralContacts::locate(const TaskKinematics& kinematics, const Module& module,
                              const ContactPointState& point, Place& place) const noexcept {
-  const Pose& X_JointModule = module.link.X_JointFrame;
-  const Vector3 p_JointContact = X_JointModule.p_AB + point.position_m * X_JointModule.R_AB.col(0);
-  const Vector3 F_Joint = X_JointModule.R_AB.lazyProduct(point.direction);
-  place.p_Base = pointInBase(kinematics.pose, module.link.joint, p_JointContact);
-  const Vector3 F_Base = vectorInBase(kinematics.pose, module.link.joint, F_Joint);
-  applyPointJacobianTranspose(chain_, kinematics.pose, module.link.joint, place.p_Base, F_Base,
-                              place.a);
+  place.at = placed(kinematics.pose, module.link, point);
+  applyPointJacobianTranspose(chain_, kinematics.pose, module.link.joint, place.at.p_Base,
+                              place.at.F_Base, place.a);
 }
 
-void SeveralContacts::project(const TaskKinematics& kinematics, Place& place) const noexcept {
-  place.row.a_scaled = inv_sqrt_weights_.cwiseProduct(place.a);
-  place.row.a_task = kinematics.pseudoinverse.project(place.row.a_scaled);
+/// Without speed, damping and presence.
+void SeveralContacts::project(const TaskKinematics& kinematics, const Place& place,
+                              SpeedRow& row) const noexcept {
+  row.a_scaled = inv_sqrt_weights_.cwiseProduct(place.a);
+  row.a_task = kinematics.pseudoinverse.project(row.a_scaled);
 }
 
 void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics,
@@ -105,22 +101,21 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
   const double near = nearness(gains.force, state);
   module.limit.observe(gains.force, place.a, {F_p_N, near, 1.0 - near}, commanded.q, period_s,
                        state.approach);
-  passTransition(gains.force.transition, F_p_N, place.p_Base, period_s, state.transition);
+  passTransition(gains.force.transition, F_p_N, place.at.p_Base, period_s, state.transition);
   if (!commanded.is_followed) state.approach.obstacle.high_s = 0.0;
-  if (state.approach.memory_N_per_m > 0.0) project(kinematics, place);
 }
 
 /// The second level's.
 void SeveralContacts::addRow(const ForceGains& gains, const TaskKinematics& kinematics,
                              const Module& module, const ModuleContactState& state,
-                             const Place& place, SpeedRows& rows) const noexcept {
+                             const SpeedRow& row, SpeedRows& rows) const noexcept {
   const int first = rows.size;
   double cosine = 1.0;
   if (module.cone) {
     module.cone->add(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_, rows);
     cosine = module.cone->cosine();
   } else {
-    rows.row[rows.size++] = place.row;
+    rows.row[rows.size++] = row;
   }
   module.limit.limitRows(gains, contactForce_N(gains, state), cosine, state.approach, first, rows);
   for (int i = first; i < rows.size; ++i) rows.row[i].presence = presence(gains, state.approach);
@@ -133,9 +128,10 @@ void SeveralContacts::addRows(const ForceGains& gains, const TaskKinematics& kin
     const ApproachLimitState& approach = state.modules[i].approach;
     if (i == without_module || approach.memory_N_per_m == 0.0) continue;
     Place place;
+    SpeedRow row;
     locate(kinematics, modules_[i], approach.smoother.contact, place);
-    project(kinematics, place);
-    addRow(gains, kinematics, modules_[i], state.modules[i], place, rows);
+    project(kinematics, place, row);
+    addRow(gains, kinematics, modules_[i], state.modules[i], row, rows);
   }
 }
 
@@ -147,7 +143,7 @@ double SeveralContacts::holdInNullSpace(const ForceGains& gains, const SpeedRows
   RowVector l = findMultipliers(rows, kNullSpaceAlone, task_size_, motion).l;
   ScaledVector v_scaled = ScaledVector::Zero();
   for (int i = 0; i < rows.size; ++i) v_scaled += l[i] * rows.row[i].a_scaled;
-  l *= law_.speedShare(gains, v_scaled, limits);
+  l *= null_speed_limit_.share(gains, v_scaled, limits);
   tactus::addRows(rows, l, kNullSpaceAlone, motion);
   return l.head(contacts).sum();
 }
@@ -167,9 +163,10 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
     const ApproachLimitState& approach = contact.approach;
     sense(gains, kinematics, readings[i], commanded, period_s, modules_[i], contact, place);
     if (approach.memory_N_per_m > 0.0) {
-      null_rows.row[null_rows.size] = place.row;
-      holdRow(gains.force, approach, null_rows.row[null_rows.size++]);
-      addRow(gains.force, kinematics, modules_[i], contact, place, rows);
+      SpeedRow& row = null_rows.row[null_rows.size++];
+      project(kinematics, place, row);
+      holdRow(gains.force, approach, row);
+      addRow(gains.force, kinematics, modules_[i], contact, row, rows);
     }
     first[i + 1] = rows.size;
     if (approach.smoother.contact.force_N <= most_N) continue;
@@ -179,9 +176,7 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
   }
   const int contacts = null_rows.size;
   gate.add(commanded, kinematics, 1.0, period_s, null_rows);
-  // Corners of many contacts may leave no room: what has none is still kept by the last gate.
-  for (int i = contacts; i < null_rows.size && rows.size < kMaxRows; ++i)
-    rows.row[rows.size++] = null_rows.row[i];
+  for (int i = contacts; i < null_rows.size; ++i) rows.row[rows.size++] = null_rows.row[i];
   report.u_n = -holdInNullSpace(gains.force, null_rows, contacts, state.null_speed, motion);
   const RowVector l = keepSpeedRows(rows, task_size_, motion);
   for (int i = 0; i < static_cast<int>(modules_.size()); ++i) {

@@ -13,12 +13,16 @@ RowMatrix responses(const SpeedRows& rows, const RowSpace& space, int task_size)
   RowMatrix K(rows.size, rows.size);
   for (int i = 0; i < rows.size; ++i) {
     const SpeedRow& a = rows.row[i];
-    for (int j = 0; j <= i; ++j) {
+    const double length_squared = dot(a.a_scaled, a.a_scaled);
+    const double difference = space.task - space.null_space;
+    for (int j = 0; j < i; ++j) {
       const SpeedRow& b = rows.row[j];
       K(i, j) = K(j, i) = space.null_space * dot(a.a_scaled, b.a_scaled) +
-                          (space.task - space.null_space) * dot(a.a_task, b.a_task, task_size);
+                          difference * dot(a.a_task, b.a_task, task_size);
     }
-    K(i, i) = std::max({K(i, i), 1e-3 * dot(a.a_scaled, a.a_scaled), 1e-4});
+    const double own =
+        space.null_space * length_squared + difference * dot(a.a_task, a.a_task, task_size);
+    K(i, i) = std::max({own, 1e-3 * length_squared, 1e-4});
   }
   return K;
 }
@@ -28,21 +32,20 @@ RowVector yielding(const SpeedRows& rows, const RowSpace& space, const RowMatrix
   RowVector delta(rows.size);
   for (int i = 0; i < rows.size; ++i) {
     const SpeedRow& row = rows.row[i];
+    const double K_ii = K(i, i);
     double opposition = 0.0;
     for (int j = 0; j < rows.size; ++j) {
-      const double against = std::min(0.0, K(i, j));
-      opposition += row.presence * rows.row[j].presence * (against * against / (K(i, i) * K(j, j)));
+      const double against = K(j, i);
+      if (against >= 0.0) continue;
+      opposition += row.presence * rows.row[j].presence * (against * against / (K_ii * K(j, j)));
     }
+    delta[i] = kProximal * K_ii;
+    if (opposition == 0.0) continue;
     const double most =
-        std::min(kYielding_N_s_m / row.damping_N_s_per_m, space.max_yielding * K(i, i));
-    delta[i] = most * std::min(1.0, opposition) + kProximal * K(i, i);
+        std::min(kYielding_N_s_m / row.damping_N_s_per_m, space.max_yielding * K_ii);
+    delta[i] += most * std::min(1.0, opposition);
   }
   return delta;
-}
-
-/// a^T q_dot
-double speedAlong(const SpeedRow& row, int task_size, const Motion& motion) {
-  return dot(row.a_scaled, motion.v_scaled) + dot(row.a_task, motion.y, task_size);
 }
 
 /// The motion as a whole, until it keeps the rows that standing still keeps.
@@ -67,22 +70,24 @@ RowMultipliers findMultipliers(const SpeedRows& rows, const RowSpace& space, int
     lacking[i] = -row.v_max_m_per_s - dot(row.a_scaled, motion.v_scaled) -
                  dot(row.a_task, motion.y, task_size);
   }
-  RowMultipliers found{RowVector::Zero(rows.size)};
-  if ((lacking.array() <= 0.0).all()) return found;
+  if ((lacking.array() <= 0.0).all()) return {RowVector::Zero(rows.size)};
   RowMatrix K = responses(rows, space, task_size);
   const RowVector delta = yielding(rows, space, K);
-  K.diagonal() += delta;
-  RowVector& l = found.l;
-  for (int i = 0; i < kRepetitions && found.is_whole; ++i) {
-    const RowVector d = lacking + delta.cwiseProduct(l);
-    found.is_whole = solveComplementarity(K, d, l, steps);
+  for (int i = 0; i < rows.size; ++i) K(i, i) += delta[i];
+  Complementarity problem(K);
+  RowVector d = lacking;
+  bool is_whole = problem.solve(d, steps);
+  for (int i = 1; i < kRepetitions && is_whole; ++i) {
+    for (int row = 0; row < rows.size; ++row) d[row] = lacking[row] + delta[row] * problem.l()[row];
+    is_whole = problem.solve(d, steps);
   }
-  return found;
+  return {problem.l(), is_whole};
 }
 
 void addRows(const SpeedRows& rows, const RowVector& l, const RowSpace& space,
              Motion& motion) noexcept {
   for (int i = 0; i < rows.size; ++i) {
+    if (l[i] == 0.0) continue;
     motion.v_scaled += space.null_space * l[i] * rows.row[i].a_scaled;
     motion.y += (space.task - space.null_space) * l[i] * rows.row[i].a_task;
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/math/pair.h"
+
 namespace tactus {
 
 StoppingWays::StoppingWays(const ControllerConfig& config, const std::vector<LinkCapsule>& capsules)
@@ -31,10 +33,14 @@ StoppingWays::StoppingWays(const ControllerConfig& config, const std::vector<Lin
 }
 
 double StoppingWays::ramp_s(const JointVector& velocity) const noexcept {
-  double ramp_s = 0.0;
-  for (int i = 0; i < chain_.size(); ++i)
-    ramp_s = std::max(ramp_s, std::abs(velocity.data()[i]) * inv_acceleration_[i]);
-  return ramp_s;
+  const int joints = chain_.size();
+  Pair ramps_s = {0.0, 0.0};
+  int i = 0;
+  for (; i + 1 < joints; i += 2)
+    ramps_s =
+        larger(ramps_s, magnitude(pairAt(velocity.data() + i)) * pairAt(&inv_acceleration_[i]));
+  const double ramp_s = std::max(ramps_s[0], ramps_s[1]);
+  return i == joints ? ramp_s : std::max(ramp_s, std::abs(velocity[i]) * inv_acceleration_[i]);
 }
 
 StoppingWays::PerJoint StoppingWays::levers_m(const JointVector& q, const JointVector& velocity,
@@ -48,6 +54,18 @@ StoppingWays::PerJoint StoppingWays::levers_m(const JointVector& q, const JointV
       reach_m += std::abs(q[i] - q_measured_[i]) + time_s * std::abs(velocity[i]);
   }
   return levers_m;
+}
+
+SpeedSums StoppingWays::speedSums(const JointVector& q,
+                                  const ScaledVector& velocity) const noexcept {
+  const int joints = chain_.size();
+  PerJoint changed_m;
+  if (lengthens_) changed_m = levers_m(q, velocity.head(joints), 0.0);
+  const double* const lever_m = lengthens_ ? changed_m.data() : lever_m_.data();
+  SpeedSums sums;
+  sums[0] = 0.0;
+  for (int i = 0; i < joints; ++i) sums[i + 1] = sums[i] + std::abs(velocity[i]) * lever_m[i];
+  return sums;
 }
 
 StoppingWay StoppingWays::of(const JointVector& q, const JointVector& velocity,

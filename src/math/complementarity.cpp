@@ -1,92 +1,120 @@
 #include "tactus/math/complementarity.h"
 
-#include <Eigen/Cholesky>
-#include <array>
+#include <algorithm>
+#include <cmath>
 
 namespace tactus {
 namespace {
 
 constexpr double kTolerance = 1e-12;
+constexpr double kLeastPivot = 1e-15;  ///< of K_ii: rounding must not make K indefinite
 
-/// The rows that are held with equality.
-struct ActiveRows {
-  std::array<int, kMaxRows> index{};
-  int size = 0;
+/// Where a row of a triangle begins.
+constexpr int rowAt(int i) noexcept { return i * (i + 1) / 2; }
 
-  void add(int row) { index[size++] = row; }
-  bool has(int row) const {
-    for (int i = 0; i < size; ++i)
-      if (index[i] == row) return true;
-    return false;
-  }
-  template <typename Predicate>
-  void removeIf(const Predicate& isGone) {
-    int kept = 0;
-    for (int i = 0; i < size; ++i)
-      if (!isGone(index[i])) index[kept++] = index[i];
-    size = kept;
-  }
-};
-
-/// z of K z = d, of the active rows alone.
-RowVector solveActive(const RowMatrix& K, const RowVector& d, const ActiveRows& active) {
-  RowMatrix K_active(active.size, active.size);
-  RowVector z(active.size);
-  for (int i = 0; i < active.size; ++i) {
-    z[i] = d[active.index[i]];
-    for (int j = 0; j < active.size; ++j) K_active(i, j) = K(active.index[i], active.index[j]);
-  }
-  K_active.llt().solveInPlace(z);
-  return z;
+double sumOfProducts(const double* a, const double* b, int size) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < size; ++i) sum += a[i] * b[i];
+  return sum;
 }
 
-/// The inactive row that lacks most; -1: none.
-int neediest(const RowMatrix& K, const RowVector& d, const RowVector& l, const ActiveRows& active) {
+}  // namespace
+
+Complementarity::Complementarity(const RowMatrix& K) noexcept
+    : K_(K), l_(RowVector::Zero(K.rows())) {}
+
+/// L of K = L L^T gets one row more.
+void Complementarity::hold(int row) noexcept {
+  double* const l = L_.data() + rowAt(size_);
+  for (int j = 0; j < size_; ++j) {
+    const double* const other = L_.data() + rowAt(j);
+    l[j] = (K_(row, held_[j]) - sumOfProducts(l, other, j)) / other[j];
+  }
+  const double K_ii = K_(row, row);
+  l[size_] = std::sqrt(std::max(K_ii - sumOfProducts(l, l, size_), kLeastPivot * K_ii));
+  held_[size_++] = row;
+}
+
+/// Those without a multiplier. What was held before the first of them stays as it is.
+void Complementarity::letGo() noexcept {
+  const int before = size_;
+  size_ = 0;
+  while (size_ < before && l_[held_[size_]] > 0.0) ++size_;
+  for (int i = size_; i < before; ++i)
+    if (l_[held_[i]] > 0.0) hold(held_[i]);
+}
+
+/// z of K z = d, of the rows that are held alone.
+void Complementarity::solveHeld(const RowVector& d) noexcept {
+  for (int i = 0; i < size_; ++i) {
+    const double* const l = L_.data() + rowAt(i);
+    double left = d[held_[i]];
+    for (int j = 0; j < i; ++j) left -= l[j] * z_[j];
+    z_[i] = left / l[i];
+  }
+  for (int i = size_ - 1; i >= 0; --i) {
+    double sum = 0.0;
+    for (int j = i + 1; j < size_; ++j) sum += L_[rowAt(j) + i] * z_[j];
+    z_[i] = (z_[i] - sum) / L_[rowAt(i) + i];
+  }
+}
+
+/// From l towards z as far as no multiplier becomes negative; false if that was not all the way.
+bool Complementarity::goToZ() noexcept {
+  double share = 1.0;
+  bool is_whole = true;
+  for (int i = 0; i < size_; ++i) {
+    if (z_[i] > 0.0) continue;
+    is_whole = false;
+    const double from = l_[held_[i]];
+    share = std::min(share, from / (from - z_[i]));
+  }
+  for (int i = 0; i < size_; ++i) {
+    double& from = l_[held_[i]];
+    from = is_whole ? z_[i] : from + share * (z_[i] - from);
+    if (!is_whole && z_[i] <= 0.0 && from <= kTolerance * std::abs(z_[i])) from = 0.0;
+  }
+  return is_whole;
+}
+
+/// Until all that are held have multipliers.
+bool Complementarity::settle(const RowVector& d, int& steps) noexcept {
+  while (size_ > 0) {
+    if (steps-- <= 0) return false;
+    solveHeld(d);
+    if (goToZ()) return true;
+    letGo();
+  }
+  return true;
+}
+
+/// The row that lacks most of those that are not held; -1: none.
+inline int Complementarity::neediest(const RowVector& d) const noexcept {
   int found = -1;
   double most = 0.0;
-  for (int i = 0; i < d.size(); ++i) {
-    const double has = K.row(i).dot(l);
+  const auto rows = static_cast<int>(l_.size());
+  const double* const l = l_.data();
+  const double* K_row = K_.data();
+  for (int i = 0; i < rows; ++i, K_row += rows) {
+    if (l[i] > 0.0) continue;
+    double has = 0.0;
+    for (int j = 0; j < size_; ++j) has += K_row[held_[j]] * l[held_[j]];
     const double lack = d[i] - has;
-    if (active.has(i) || lack <= kTolerance * (std::abs(d[i]) + std::abs(has)) || lack <= most)
-      continue;
+    if (lack <= most || lack <= kTolerance * (std::abs(d[i]) + std::abs(has))) continue;
     most = lack;
     found = i;
   }
   return found;
 }
 
-/// From l towards z as far as no multiplier becomes negative; false if that was not all the way.
-bool goTo(const RowVector& z, ActiveRows& active, RowVector& l) {
-  double share = 1.0;
-  for (int i = 0; i < active.size; ++i) {
-    const double from = l[active.index[i]];
-    if (z[i] <= 0.0) share = std::min(share, from / (from - z[i]));
-  }
-  const bool is_whole = share == 1.0 && (z.array() > 0.0).all();
-  for (int i = 0; i < active.size; ++i) {
-    double& from = l[active.index[i]];
-    from = is_whole ? z[i] : from + share * (z[i] - from);
-    if (!is_whole && z[i] <= 0.0 && from <= kTolerance * std::abs(z[i])) from = 0.0;
-  }
-  return is_whole;
-}
-
-}  // namespace
-
-bool solveComplementarity(const RowMatrix& K, const RowVector& d, RowVector& l,
-                          int steps) noexcept {
-  const auto rows = static_cast<int>(d.size());
-  l.setZero(rows);
-  ActiveRows active;
-  int left = steps * rows;
-  for (int row = neediest(K, d, l, active); row >= 0; row = neediest(K, d, l, active)) {
-    active.add(row);
-    while (true) {
-      if (left-- <= 0) return false;
-      if (goTo(solveActive(K, d, active), active, l)) break;
-      active.removeIf([&l](int i) { return l[i] <= 0.0; });
-      if (active.size == 0) break;
-    }
+bool Complementarity::solve(const RowVector& d, int steps_each_row) noexcept {
+  int steps = steps_each_row * static_cast<int>(l_.size());
+  if (!settle(d, steps)) return false;
+  while (size_ < static_cast<int>(l_.size())) {
+    const int row = neediest(d);
+    if (row < 0) break;
+    hold(row);
+    if (!settle(d, steps)) return false;
   }
   return true;
 }

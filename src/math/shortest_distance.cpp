@@ -21,13 +21,14 @@ Vector3 pointAt(const Segment& segment, double position_m) noexcept {
 
 bool isBetween(double x, double low, double high) noexcept { return x > low && x < high; }
 
-/// `across`: the normal where the points are one.
+/// `across`: gives the normal where the points are one.
+template <typename Across>
 ClosestPoints pairOf(const Segment& segment, double position_m, const Vector3& p_Other,
-                     const Vector3& across) noexcept {
+                     const Across& across) noexcept {
   const Vector3 p_Segment = pointAt(segment, position_m);
   const Vector3 between = p_Segment - p_Other;
   const double distance_m = between.norm();
-  const Vector3 normal = distance_m < kTouching_m ? across : Vector3(between / distance_m);
+  const Vector3 normal = distance_m < kTouching_m ? across() : Vector3(between / distance_m);
   return {position_m, p_Segment, distance_m, normal, isBetween(position_m, 0.0, segment.length_m)};
 }
 
@@ -36,8 +37,8 @@ struct Positions {
   double s, t;
 };
 
-Positions nearestOfSkew(const Segment& a, const Straight& b, double cosine,
-                        double sine_squared) noexcept {
+[[gnu::always_inline]] inline Positions nearestOfSkew(const Segment& a, const Straight& b,
+                                                      double cosine, double sine_squared) noexcept {
   const Vector3 between = a.p_Start - b.p;
   const double along_a = a.direction.dot(between);
   const double along_b = b.direction.dot(between);
@@ -60,15 +61,8 @@ Positions middleOfParallels(const Segment& a, const Straight& b, double cosine) 
   return {s, std::clamp(sign * (s - start), b.from_m, b.to_m)};
 }
 
-}  // namespace
-
-ClosestPoints closestPoints(const Segment& segment, const Vector3& point) noexcept {
-  const double along = segment.direction.dot(point - segment.p_Start);
-  return pairOf(segment, std::clamp(along, 0.0, segment.length_m), point,
-                anyVectorAcross(segment.direction));
-}
-
-ClosestPoints closestPoints(const Segment& segment, const Straight& straight) noexcept {
+[[gnu::always_inline]] inline ClosestPoints closestTo(const Straight& straight,
+                                                      const Segment& segment) noexcept {
   const Vector3 across = segment.direction.cross(straight.direction);
   const double sine = across.norm();
   const double cosine = segment.direction.dot(straight.direction);
@@ -76,10 +70,27 @@ ClosestPoints closestPoints(const Segment& segment, const Straight& straight) no
   const Positions at = is_parallel ? middleOfParallels(segment, straight, cosine)
                                    : nearestOfSkew(segment, straight, cosine, sine * sine);
   ClosestPoints closest =
-      pairOf(segment, at.s, straight.p + at.t * straight.direction,
-             is_parallel ? anyVectorAcross(segment.direction) : Vector3(across / sine));
+      pairOf(segment, at.s, straight.p + at.t * straight.direction, [&]() -> Vector3 {
+        return is_parallel ? anyVectorAcross(segment.direction) : Vector3(across / sine);
+      });
   closest.is_beside &= isBetween(at.t, straight.from_m, straight.to_m);
   return closest;
+}
+
+}  // namespace
+
+ClosestPoints closestPoints(const Segment& segment, const Vector3& point) noexcept {
+  const double along = segment.direction.dot(point - segment.p_Start);
+  return pairOf(segment, std::clamp(along, 0.0, segment.length_m), point,
+                [&] { return anyVectorAcross(segment.direction); });
+}
+
+ClosestPoints closestPoints(const Segment& segment, const Segment& other) noexcept {
+  return closestTo({other.p_Start, other.direction, 0.0, other.length_m}, segment);
+}
+
+ClosestPoints closestPoints(const Segment& segment, const Straight& straight) noexcept {
+  return closestTo(straight, segment);
 }
 
 ClosestPoints closestPoints(const Segment& segment, const HalfSpace& half_space) noexcept {

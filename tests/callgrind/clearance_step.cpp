@@ -4,12 +4,13 @@
 #include <cstring>
 
 #include "support/crops9.h"
-#include "tactus/control/clearance.h"
 #include "tactus/control/controller.h"
+#include "tactus/control/motion_gate.h"
 
 /// Lets callgrind collect, in each cycle of the nine-joint arm's task, what 28 pairs of capsules
-/// cost: what is near, its rows, and whether the arm can stop. With the argument `near` as many as
-/// there can be are near. Prints how many cycles it collected.
+/// cost: what is near, that the motion keeps it and the joints' limits, and whether the arm can
+/// stop. With the argument `near` as many as there can be are near. Prints how many cycles it
+/// collected.
 int main(int argc, char** argv) {
   using namespace tactus;
   constexpr double kPeriod_s = 0.001;
@@ -23,20 +24,22 @@ int main(int argc, char** argv) {
   for (int a = 0; a < 9; ++a)
     for (int b = a + 2; b < 9; ++b) bodies.pairs.push_back({a, b});
   if (argc > 1 && std::strcmp(argv[1], "near") == 0) bodies.influence_distance_m = 10.0;
-  const Clearance clearance(config);
+  const ScaledVector inv_sqrt_weights =
+      scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones());
+  const MotionGate gate(config, inv_sqrt_weights);
   ControllerState state = controller.initialState();
   ControllerOutput output;
   for (int cycle = 0; cycle < kCycles; ++cycle) {
     PreparedCycle prepared;
     controller.prepare(config.gains, cycle * kPeriod_s, state, prepared);
-    SpeedRows rows;
-    NearBodies near;
+    TaskKinematics& kinematics = prepared.kinematics;
+    const CommandedMotion commanded{state.q_desired, state.velocity_before, true};
     CALLGRIND_TOGGLE_COLLECT;
-    clearance.findNear(prepared.kinematics.pose, near);
-    clearance.add(near, prepared.kinematics, ScaledVector::Ones(), state.q_desired,
-                  state.velocity_before, kPeriod_s, rows);
-    clearance.canStopAfter(prepared.kinematics.pose, near, state.q_desired, state.velocity_before,
-                           kPeriod_s);
+    gate.clearance()->findNear(kinematics.pose, kinematics.near);
+    SpeedRows rows;
+    gate.keep(commanded, kinematics, 1.0, kPeriod_s, rows, prepared.motion);
+    gate.clearance()->canStopAfter(kinematics.pose, kinematics.near, state.q_desired,
+                                   state.velocity_before, kPeriod_s);
     CALLGRIND_TOGGLE_COLLECT;
     controller.update({state.q_desired, {}}, config.gains, cycle * kPeriod_s, kPeriod_s, state,
                       output);

@@ -89,7 +89,9 @@ TEST(BodyDistances, HaveTheGradientOfFiniteDifferences) {
       const double backward = (distance_m - behind_m) / kStep;
       if (std::abs(forward - backward) > 1e-3) continue;
       ++compared;
-      ASSERT_NEAR(0.5 * (forward + backward), body.gradient.head(c.n).dot(way), 1e-4) << i;
+      ASSERT_NEAR(0.5 * (forward + backward), c.distances.gradient(c.pose, body).head(c.n).dot(way),
+                  1e-4)
+          << i;
     }
   }
   EXPECT_GT(compared, 10000);
@@ -107,14 +109,13 @@ TEST(BodyDistances, BoundFromBelowWhatAMotionLeaves) {
     double bend_m = 0.0;  // coarse: 16 joints, none of whose points is 16 m away
     for (int j = 0; j < c.n; ++j) bend_m += std::abs(way[j]);
     bend_m *= 16.0 * bend_m;
-    const ScaledVector step = scaled(way, ScaledVector::Ones());
     for (int k = 0; k < near.size; ++k) {
       const NearBody& body = near.body[k];
       if (body.distance_m < 0.0) continue;
       ASSERT_GE(c.distanceAt(c.q + way, body.index),
-                c.distances.leftAfter_m(c.pose, body, step) - bend_m)
+                c.distances.leftAfter_m(c.pose, body, 1.0, way) - bend_m)
           << i;
-      const double left_m = c.distances.leftAfter_m(c.pose, body, ScaledVector::Zero());
+      const double left_m = c.distances.leftAfter_m(c.pose, body, 0.0, way);
       ASSERT_NEAR(left_m, c.distances.distance_m(c.pose, body.index), 1e-12) << i;
       ++compared;
     }

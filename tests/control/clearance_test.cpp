@@ -125,7 +125,9 @@ TEST(Clearance, LetsAnArmGoWhereItIsClear) {
     arm.step(JointVector::Zero(arm.n), false);
     if (arm.near.size == 0) continue;
     JointVector away = JointVector::Zero(arm.n);
-    for (int k = 0; k < arm.near.size; ++k) away += arm.near.body[k].gradient.head(arm.n);
+    for (int k = 0; k < arm.near.size; ++k)
+      away +=
+          arm.clearance->distances().gradient(arm.kinematics.pose, arm.near.body[k]).head(arm.n);
     away *= 0.05;
     JointVector passed = away;
     arm.clearance->holdBack(arm.kinematics.pose, arm.near, arm.q, arm.v, arm.period_s, passed);

@@ -48,8 +48,9 @@ TEST(Complementarity, FindsTheOneSolution) {
   int with_active = 0;
   for (int i = 0; i < 500; ++i) {
     const Problem p(random, random.integer(1, 6), random.chance(0.5) ? 0.0 : 0.9);
-    RowVector l;
-    ASSERT_TRUE(solveComplementarity(p.K, p.d, l));
+    Complementarity problem(p.K);
+    ASSERT_TRUE(problem.solve(p.d));
+    const RowVector& l = problem.l();
     const auto expected = bruteForce(p);
     ASSERT_TRUE(expected);
     ASSERT_LT((l - *expected).norm(), 1e-6 * (1.0 + expected->norm())) << i;
@@ -62,8 +63,9 @@ TEST(Complementarity, KeepsItsConditionsForAnyNumberOfRows) {
   test::Random random(302);
   for (int i = 0; i < 3000; ++i) {
     const Problem p(random, random.integer(1, kMaxRows), random.uniform(0.0, 0.999));
-    RowVector l;
-    ASSERT_TRUE(solveComplementarity(p.K, p.d, l)) << i;
+    Complementarity problem(p.K);
+    ASSERT_TRUE(problem.solve(p.d)) << i;
+    const RowVector& l = problem.l();
     const Eigen::VectorXd lack = p.d - p.K * l;
     const double scale = p.d.norm() + p.K.norm() * l.norm();
     ASSERT_GE(l.minCoeff(), 0.0);
@@ -72,13 +74,36 @@ TEST(Complementarity, KeepsItsConditionsForAnyNumberOfRows) {
   }
 }
 
+/// Whatever was solved before, as there is one solution.
+TEST(Complementarity, GoesOnFromItsLastSolution) {
+  test::Random random(304);
+  int changed = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Problem p(random, random.integer(1, 20), random.uniform(0.0, 0.9));
+    Complementarity going_on(p.K);
+    RowVector d = p.d;
+    for (int k = 0; k < 10; ++k) {
+      const RowVector before = going_on.l();
+      ASSERT_TRUE(going_on.solve(d));
+      Complementarity fresh(p.K);
+      ASSERT_TRUE(fresh.solve(d));
+      const double scale = 1.0 + fresh.l().norm();
+      ASSERT_LT((going_on.l() - fresh.l()).norm(), 1e-6 * scale) << i << " " << k;
+      changed += ((before.array() > 0.0) != (fresh.l().array() > 0.0)).any() ? 1 : 0;
+      const double size = random.logUniform(1e-3, 2.0);
+      for (double& entry : d) entry += random.uniform(-size, size);
+    }
+  }
+  EXPECT_GT(changed, 1000);
+}
+
 TEST(Complementarity, AsksForNothingWhereNothingLacks) {
   test::Random random(303);
   Problem p(random, 5, 0.0);
   p.d = -p.d.cwiseAbs();
-  RowVector l;
-  ASSERT_TRUE(solveComplementarity(p.K, p.d, l));
-  EXPECT_TRUE(l.isZero(0.0));
+  Complementarity problem(p.K);
+  ASSERT_TRUE(problem.solve(p.d));
+  EXPECT_TRUE(problem.l().isZero(0.0));
 }
 
 }  // namespace

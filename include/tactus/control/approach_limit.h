@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "tactus/control/approach_estimator.h"
 #include "tactus/control/contact_smoother.h"
 #include "tactus/control/obstacle_speed.h"
@@ -18,6 +20,12 @@ struct ApproachLimitState {
   bool is_limiting = false;     ///< the residual motion was cut in the last cycle
   KnownLagShare fade;           ///< of m
 };
+
+/// m in contact.
+inline double stiffnessInContact(const ForceGains& gains,
+                                 const ApproachEstimatorState& estimator) noexcept {
+  return std::max(estimator.stiffness_N_per_m, gains.min_approach_stiffness_N_per_m);
+}
 
 struct FeltForce {
   double F_p_N = 0.0;  ///< >= 0

@@ -14,10 +14,15 @@ inline constexpr int kMaxCapsules = 136;       ///< with those that are fixed
 
 /// A capsule that is near to another one, or an end of a capsule near to a wall.
 struct NearBody {
-  int index;              ///< of BodyDistances
-  double distance_m;      ///< < 0: they overlap
-  Vector3 normal;         ///< from the other to it, base frame
-  ScaledVector gradient;  ///< of the distance, m/m or m/rad, not scaled
+  int index;          ///< of BodyDistances
+  double distance_m;  ///< < 0: they overlap
+  Vector3 normal;     ///< from the other to it, base frame
+  Vector3 p_Body;     ///< the point of its axis that is nearest
+};
+
+/// Those joints alone, from the first one to the one before the end, change a distance.
+struct MovingJoints {
+  int begin, end;
 };
 
 /// The nearest ones, in no order.
@@ -40,10 +45,15 @@ class BodyDistances {
   /// What is nearer than reach_m.
   void findNear(const ChainPose& pose, double reach_m, NearBodies& near) const noexcept;
 
-  /// To first order in a step of the joints from this pose, at least what is left of a distance:
-  /// that along the normal, taken as fixed to the other, of the end that is lower then.
-  double leftAfter_m(const ChainPose& pose, const NearBody& near,
-                     const ScaledVector& step) const noexcept;
+  MovingJoints movingJoints(const NearBody& near) const noexcept;
+
+  /// Of its distance, m/m or m/rad, not scaled.
+  ScaledVector gradient(const ChainPose& pose, const NearBody& near) const noexcept;
+
+  /// To first order in the joints' step time_s velocity from this pose, at least what is left of a
+  /// distance: that along the normal, taken as fixed to the other, of the end that is lower then.
+  double leftAfter_m(const ChainPose& pose, const NearBody& near, double time_s,
+                     const JointVector& velocity) const noexcept;
 
  private:
   struct Capsule {
@@ -54,31 +64,39 @@ class BodyDistances {
   };
   struct CapsulesApart {
     int capsule, other;  ///< the first one moves with a later joint
-    double bounds_m;     ///< sum of the radii of balls around both
     double radii_m;
+  };
+  /// Two that follow each other, as one instruction takes both. After an odd one comes one that is
+  /// never near.
+  struct BallsApart {
+    int capsule[2], other[2];
+    alignas(16) double radii_m[2];  ///< sum of the radii of balls around both
   };
   struct CapsuleAtWall {
     int capsule;
     HalfSpace half_space;
   };
+  /// A vector with each component in both halves of a pair.
+  struct TwiceInPairs {
+    alignas(16) double xx[2], yy[2], zz[2];
+  };
   /// All capsules in one pose, as far as they move.
   struct Placed {
-    std::array<Vector3, kMaxCapsules> p_Middle;
+    std::array<double, kMaxCapsules> x_Middle, y_Middle, z_Middle;
     std::array<Segment, kMaxMovingCapsules> axis;
   };
 
   static Segment place(const Capsule& capsule, const ChainPose& pose) noexcept;
-  void tellOfPair(const ChainPose& pose, double reach_m, const Placed& placed, int index,
-                  NearBodies& near) const noexcept;
-  void tellOfWall(const ChainPose& pose, double reach_m, const Placed& placed, int index,
-                  NearBodies& near) const noexcept;
-  void computeGradient(const ChainPose& pose, int joint, int other_joint, const Vector3& p_Base,
-                       NearBody& near) const noexcept;
+  void placeAll(const ChainPose& pose, Placed& placed) const noexcept;
+  void tellOfPair(double reach_m, const Placed& placed, int index, NearBodies& near) const noexcept;
+  void tellOfWall(double reach_m, const Placed& placed, int index, NearBodies& near) const noexcept;
 
   SerialChain chain_;
   std::vector<Capsule> capsules_;  ///< those that move first
   int moving_ = 0;
+  std::vector<TwiceInPairs> directions_, starts_;  ///< of the axes of those
   std::vector<CapsulesApart> pairs_;
+  std::vector<BallsApart> balls_;  ///< of two pairs each
   std::vector<CapsuleAtWall> walls_;
 };
 

@@ -43,6 +43,11 @@ class Clearance {
            const ScaledVector& inv_sqrt_weights, const JointVector& q,
            const JointVector& velocity_before, double period_s, SpeedRows& rows) const noexcept;
 
+  /// Whether a motion with this velocity keeps all of add().
+  bool isKept(const ChainPose& pose, const NearBodies& near, const ScaledVector& velocity,
+              const JointVector& q, const JointVector& velocity_before,
+              double period_s) const noexcept;
+
   /// Whether the arm could still stop after a cycle with this velocity, at q with this pose.
   bool canStopAfter(const ChainPose& pose, const NearBodies& near, const JointVector& q,
                     const JointVector& velocity, double period_s) const noexcept;
@@ -53,6 +58,19 @@ class Clearance {
                 JointVector& velocity) const noexcept;
 
  private:
+  /// Of all that is near: where it shall be at least, and 1 / time to it.
+  struct Pace {
+    double least_m, rate_per_s;
+  };
+  struct ApproachRange {
+    double v_max_m_per_s, presence;
+  };
+  Pace pace(const JointVector& q, const JointVector& velocity_before,
+            double period_s) const noexcept;
+  bool staysWithinLimits(const JointVector& q, const JointVector& velocity,
+                         double time_s) const noexcept;
+  ApproachRange range(const NearBody& body, const Pace& pace) const noexcept;
+
   ClearanceConfig config_;
   JointLimits limits_;
   BodyDistances distances_;

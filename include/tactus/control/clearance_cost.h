@@ -11,7 +11,8 @@ namespace tactus {
 /// levers of l grows by alpha (d_a - d). Steepest in the metric of W, so where it comes to rest
 /// does not depend on W.
 // clang-format on
-ScaledVector clearanceCost(const ClearanceAvoidance& avoid, const NearBodies& near,
+ScaledVector clearanceCost(const ClearanceAvoidance& avoid, const BodyDistances& distances,
+                           const ChainPose& pose, const NearBodies& near,
                            const ScaledVector& inv_sqrt_weights) noexcept;
 
 }  // namespace tactus

@@ -2,6 +2,7 @@
 
 #include "tactus/control/controller_config.h"
 #include "tactus/control/robot.h"
+#include "tactus/math/serial_chain.h"
 
 namespace tactus {
 
@@ -15,6 +16,20 @@ struct ContactPointState {
 
   bool isNew() const noexcept { return interval_s > 0.0; }
 };
+
+/// A contact in the base frame.
+struct PlacedContact {
+  Vector3 p_Base;  ///< m
+  Vector3 F_Base;  ///< F^
+};
+
+inline PlacedContact placed(const ChainPose& pose, const AttachedFrame& link,
+                            const ContactPointState& contact) noexcept {
+  const Pose& X_JointModule = link.X_JointFrame;
+  const Vector3 p_Joint = X_JointModule.p_AB + contact.position_m * X_JointModule.R_AB.col(0);
+  const Vector3 F_Joint = X_JointModule.R_AB.lazyProduct(contact.direction);
+  return {pointInBase(pose, link.joint, p_Joint), vectorInBase(pose, link.joint, F_Joint)};
+}
 
 /// Force below which point and direction of contact are noise; the last ones stay.
 inline constexpr double kMinForceForDirection_N = 0.05;

@@ -1,20 +1,10 @@
 #pragma once
 
-#include <array>
-#include <limits>
-
 #include "tactus/control/controller_config.h"
+#include "tactus/control/null_speed_limit.h"
 #include "tactus/math/contact_space.h"
 
 namespace tactus {
-
-/// 1 / (W^1/2 limit) of each joint, for a_scaled u_n; zero beyond the robot's joints.
-struct NullSpeedLimits {
-  /// That this follows from; NaN: from none yet.
-  double max_speed_m_per_s = std::numeric_limits<double>::quiet_NaN();
-  double max_speed_rad_per_s = std::numeric_limits<double>::quiet_NaN();
-  ScaledVector inverse = ScaledVector::Zero();
-};
 
 struct ControlLawState {
   double V_m_per_s = 0.0;  ///< integral of (5), stored as int F_p / (T^2 c) dt
@@ -67,21 +57,16 @@ class ControlLaw {
   void update(const ForceGains& gains, const ControlLawInput& input, const ContactSpace& space,
               double period_s, ControlLawState& state, ControlLawOutput& output) const noexcept;
 
-  /// The factor of at most 1 that keeps every component of a scaled velocity within the null-space
-  /// speed limits.
-  double speedShare(const ForceGains& gains, const ScaledVector& v_scaled,
-                    NullSpeedLimits& limits) const noexcept;
+  const NullSpeedLimit& nullSpeedLimit() const noexcept { return null_speed_limit_; }
 
  private:
-  NullSpeedLimits limits(const ForceGains& gains) const noexcept;
   double proportionalGain(const ForceGains& gains, double stiffness_N_per_m) const noexcept;
 
   Variant variant_;
   int order_;
   bool has_null_space_;
   bool has_second_space_;
-  ScaledVector inv_sqrt_weights_;
-  std::array<bool, kMaxJoints> is_prismatic_{};
+  NullSpeedLimit null_speed_limit_;
 };
 
 }  // namespace tactus

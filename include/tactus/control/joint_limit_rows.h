@@ -24,7 +24,18 @@ class JointLimitRows {
   void add(const JointVector& q, const TaskKinematics& kinematics,
            const ScaledVector& inv_sqrt_weights, double share, SpeedRows& rows) const noexcept;
 
+  /// Whether a motion with this velocity keeps all of them.
+  bool isKept(const JointVector& q, const ScaledVector& velocity, double share) const noexcept;
+
  private:
+  struct Limit {
+    double sign;   ///< of a motion away from it
+    double speed;  ///< that is allowed towards it
+    double presence;
+  };
+  /// Of joint i; false: it has no row.
+  bool find(const JointVector& q, int i, double share, Limit& limit) const noexcept;
+
   JointLimits limits_;
   bool fades_;
 };

@@ -23,12 +23,16 @@ class MotionGate {
   void add(const CommandedMotion& commanded, const TaskKinematics& kinematics, double joint_share,
            double period_s, SpeedRows& rows) const noexcept;
 
-  /// Keeps these rows and those of add(). Returns l, in that order.
+  /// Keeps these rows and those of add(), which it adds if there is one that the motion breaks.
+  /// Returns l, in that order.
   RowVector keep(const CommandedMotion& commanded, const TaskKinematics& kinematics,
                  double joint_share, double period_s, SpeedRows& rows,
                  Motion& motion) const noexcept;
 
  private:
+  bool isKept(const CommandedMotion& commanded, const TaskKinematics& kinematics, double period_s,
+              const SpeedRows& rows, const Motion& motion) const noexcept;
+
   int task_size_;
   ScaledVector inv_sqrt_weights_;
   std::optional<Clearance> clearance_;

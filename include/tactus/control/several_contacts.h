@@ -7,9 +7,9 @@
 #include "tactus/control/approach_limit.h"
 #include "tactus/control/contact_controller.h"
 #include "tactus/control/contact_transition.h"
-#include "tactus/control/control_law.h"
 #include "tactus/control/friction_cone.h"
 #include "tactus/control/motion_gate.h"
+#include "tactus/control/null_speed_limit.h"
 #include "tactus/control/tactile_reading.h"
 
 namespace tactus {
@@ -62,19 +62,19 @@ class SeveralContacts {
 
   void locate(const TaskKinematics& kinematics, const Module& module,
               const ContactPointState& point, Place& place) const noexcept;
-  void project(const TaskKinematics& kinematics, Place& place) const noexcept;
+  void project(const TaskKinematics& kinematics, const Place& place, SpeedRow& row) const noexcept;
   void sense(const Gains& gains, const TaskKinematics& kinematics, const TactileReading& reading,
              const CommandedMotion& commanded, double period_s, const Module& module,
              ModuleContactState& state, Place& place) const noexcept;
   void addRow(const ForceGains& gains, const TaskKinematics& kinematics, const Module& module,
-              const ModuleContactState& state, const Place& place, SpeedRows& rows) const noexcept;
+              const ModuleContactState& state, const SpeedRow& row, SpeedRows& rows) const noexcept;
   double holdInNullSpace(const ForceGains& gains, const SpeedRows& rows, int contacts,
                          NullSpeedLimits& limits, Motion& motion) const noexcept;
 
   SerialChain chain_;
   int task_size_;
   ScaledVector inv_sqrt_weights_;
-  ControlLaw law_;
+  NullSpeedLimit null_speed_limit_;
   std::vector<Module> modules_;
 };
 

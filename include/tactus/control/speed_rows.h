@@ -17,6 +17,11 @@ struct SpeedRow {
   double presence;           ///< p: from 0 where a row begins to exist, so that it makes no step
 };
 
+/// a^T q_dot
+inline double speedAlong(const SpeedRow& row, int task_size, const Motion& motion) noexcept {
+  return dot(row.a_scaled, motion.v_scaled) + dot(row.a_task, motion.y, task_size);
+}
+
 /// So many of them, without memory of more.
 struct SpeedRows {
   std::array<SpeedRow, kMaxRows> row;

@@ -14,6 +14,10 @@ struct StoppingWay {
   double acceleration_m_per_s2 = 0.0;  ///< nor bends its way more, at any tau
 };
 
+/// Of joints' speeds times their levers, of all before each joint, m/s: no point moves faster
+/// against another one than the joints between them make it.
+using SpeedSums = std::array<double, kMaxJoints + 1>;
+
 // clang-format off: equations
 /// With the joints' accelerations a_j, T = max_j |v_j| / a_j and x = T / dt, m = floor(x): the
 /// cycles of a ramp dt v (1 - i / x) add up to
@@ -28,6 +32,8 @@ class StoppingWays {
   StoppingWays(const ControllerConfig& config, const std::vector<LinkCapsule>& capsules);
 
   StoppingWay of(const JointVector& q, const JointVector& velocity, double period_s) const noexcept;
+
+  SpeedSums speedSums(const JointVector& q, const ScaledVector& velocity) const noexcept;
 
   /// T: until it stands.
   double ramp_s(const JointVector& velocity) const noexcept;

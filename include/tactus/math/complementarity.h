@@ -1,10 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 namespace tactus {
 
-inline constexpr int kMaxRows = 48;  ///< that one motion has to keep
+inline constexpr int kMaxRows = 60;  ///< that one motion has to keep
 
 inline constexpr int kStepsEachRow = 3;
 
@@ -12,14 +13,38 @@ using RowVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMax
 using RowMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, kMaxRows>;
 
-/// The linear complementarity problem
+/// Linear complementarity problems
 ///   l >= 0,   K l >= d,   l^T (K l - d) = 0
-/// for a symmetric positive definite K: its one solution, with relative errors of about 1e-12 times
-/// the condition of K. These are the multipliers of the least squares min 1/2 l^T K l - d^T l,
-/// l >= 0, found as by Lawson and Hanson (Solving Least Squares Problems, 1974, chapter 23): one
-/// factorisation for each row that enters or leaves. False if steps * n of them were not enough; l
-/// >= 0 then keeps the rows that it holds.
-bool solveComplementarity(const RowMatrix& K, const RowVector& d, RowVector& l,
-                          int steps = kStepsEachRow) noexcept;
+/// for one symmetric positive definite K: the one solution of each, with relative errors of about
+/// 1e-12 times the condition of K. These are the multipliers of the least squares
+/// min 1/2 l^T K l - d^T l, l >= 0, found as by Lawson and Hanson (Solving Least Squares Problems,
+/// 1974, chapter 23), from the last solution: one row more of a factorisation for each row that
+/// enters, a factorisation for each that leaves.
+class Complementarity {
+ public:
+  /// K must outlive it.
+  explicit Complementarity(const RowMatrix& K) noexcept;
+
+  /// False if steps_each_row of these, times the rows, were not enough; l >= 0 then keeps the rows
+  /// that it holds, and that was the last solution.
+  bool solve(const RowVector& d, int steps_each_row = kStepsEachRow) noexcept;
+
+  const RowVector& l() const noexcept { return l_; }  ///< zero before the first solution
+
+ private:
+  void hold(int row) noexcept;
+  void letGo() noexcept;
+  void solveHeld(const RowVector& d) noexcept;
+  bool goToZ() noexcept;
+  bool settle(const RowVector& d, int& steps) noexcept;
+  int neediest(const RowVector& d) const noexcept;
+
+  const RowMatrix& K_;
+  RowVector l_;
+  int size_ = 0;                                       ///< rows that are held with equality
+  std::array<int, kMaxRows> held_;                     ///< they
+  std::array<double, kMaxRows> z_;                     ///< theirs, if none were to be positive
+  std::array<double, kMaxRows*(kMaxRows + 1) / 2> L_;  ///< K = L L^T of them, a row after another
+};
 
 }  // namespace tactus

@@ -1,8 +1,13 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <memory>
+
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 namespace tactus {
 
@@ -29,6 +34,27 @@ using PairMask = decltype(Pair{} < Pair{});
 
 /// As std::min().
 inline Pair smaller(Pair a, Pair b) noexcept { return b < a ? b : a; }
+
+/// As std::max().
+inline Pair larger(Pair a, Pair b) noexcept { return a < b ? b : a; }
+
+/// Without asking for negative numbers, as std::sqrt() does.
+inline Pair squareRoot(Pair pair) noexcept {
+#ifdef __SSE2__
+  return std::bit_cast<Pair>(_mm_sqrt_pd(std::bit_cast<__m128d>(pair)));
+#else
+  return {std::sqrt(pair[0]), std::sqrt(pair[1])};
+#endif
+}
+
+/// Whether that holds of one of them.
+inline bool isAny(PairMask mask) noexcept {
+#ifdef __SSE2__
+  return _mm_movemask_pd(std::bit_cast<__m128d>(mask)) != 0;
+#else
+  return (mask[0] | mask[1]) != 0;
+#endif
+}
 
 inline Pair magnitude(Pair pair) noexcept {
   constexpr long long kSign = 1LL << 63;

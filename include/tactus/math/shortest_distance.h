@@ -39,6 +39,7 @@ struct ClosestPoints {
 
 /// Where several pairs of points are equally near, as with parallel lines, the middle one.
 ClosestPoints closestPoints(const Segment& segment, const Vector3& point) noexcept;
+ClosestPoints closestPoints(const Segment& segment, const Segment& other) noexcept;
 ClosestPoints closestPoints(const Segment& segment, const Straight& straight) noexcept;
 ClosestPoints closestPoints(const Segment& segment, const HalfSpace& half_space) noexcept;
 

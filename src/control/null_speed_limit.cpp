@@ -1,0 +1,28 @@
+#include "tactus/control/null_speed_limit.h"
+
+namespace tactus {
+
+NullSpeedLimit::NullSpeedLimit(const SerialChain& chain, const ScaledVector& inv_sqrt_weights)
+    : inv_sqrt_weights_(inv_sqrt_weights) {
+  for (int i = 0; i < chain.size(); ++i) is_prismatic_[i] = chain.type(i) == JointType::kPrismatic;
+}
+
+NullSpeedLimits NullSpeedLimit::limits(const ForceGains& gains) const noexcept {
+  NullSpeedLimits limits{gains.max_null_speed_m_per_s, gains.max_null_speed_rad_per_s};
+  for (int i = 0; i < kMaxJoints; ++i) {
+    limits.inverse[i] = inv_sqrt_weights_[i] /
+                        (is_prismatic_[i] ? limits.max_speed_m_per_s : limits.max_speed_rad_per_s);
+  }
+  return limits;
+}
+
+double NullSpeedLimit::share(const ForceGains& gains, const ScaledVector& v_scaled,
+                             NullSpeedLimits& limits) const noexcept {
+  if (limits.max_speed_m_per_s != gains.max_null_speed_m_per_s ||
+      limits.max_speed_rad_per_s != gains.max_null_speed_rad_per_s)
+    limits = this->limits(gains);
+  const double excess = v_scaled.cwiseAbs().cwiseProduct(limits.inverse).maxCoeff();
+  return excess > 1.0 ? 1.0 / excess : 1.0;
+}
+
+}  // namespace tactus
