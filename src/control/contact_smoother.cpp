@@ -17,8 +17,15 @@ constexpr double kLearning = 0.01;    ///< a sample: settles within half a secon
 constexpr double kMaxRebound = 0.35;
 constexpr double kRinging = 1.5;
 constexpr double kGrowth = 1.2;                ///< of force from sample to sample in an impact
+constexpr double kSureGrowth = 2.0;            ///< of s
 constexpr double kMedianOfNoise = 0.48;        ///< of |d2| / s: sqrt(2 ln 2) sqrt(6) / 6
 constexpr double kMaxSignificantRatio = 10.0;  ///< s / s_min; more would be no sensor
+
+/// That says anything of point and direction.
+double leastForce_N(const ForceGains& gains, bool is_one_of_several) {
+  return is_one_of_several ? 0.5 * (gains.transition.release_force_N + gains.contact_threshold_N)
+                           : gains.contact_threshold_N;
+}
 
 void normalise(Vector3& direction) {
   const double length = direction.norm();
@@ -48,12 +55,14 @@ void learnNoise(double min_significant_N, const Vector3& force_N, ContactSmoothe
 
 }  // namespace
 
-ContactSmoother::ContactSmoother(const TactileModuleConfig& module, double friction_coefficient)
+ContactSmoother::ContactSmoother(const TactileModuleConfig& module, double friction_coefficient,
+                                 bool is_one_of_several)
     : half_length_m_(0.5 * module.length_m),
       radius_m_(module.cover_radius_m),
       ringing_s_(kRinging / module.filter_cutoff_hz),
       max_turn_(2.0 * friction_coefficient / std::hypot(1.0, friction_coefficient)),
-      max_shift_m_(2.0 * friction_coefficient * module.cover_radius_m) {}
+      max_shift_m_(2.0 * friction_coefficient * module.cover_radius_m),
+      is_one_of_several_(is_one_of_several) {}
 
 ContactSmootherState ContactSmoother::initialState() const noexcept {
   ContactSmootherState state;
@@ -66,6 +75,12 @@ ContactSmootherState ContactSmoother::initialState() const noexcept {
 bool ContactSmoother::isOfBlow(const ContactPointState& sensor,
                                const ContactSmootherState& state) const noexcept {
   return max_turn_ > 0.0 && sensor.force_N < kMaxRebound * state.peak_N;
+}
+
+bool ContactSmoother::isImpact(double force_N, const ContactSmootherState& state) const noexcept {
+  const double before_N = state.force_before_N.norm();
+  const double noise_N = is_one_of_several_ ? kSureGrowth * state.significant_N : 0.0;
+  return force_N > kGrowth * before_N && force_N - before_N > noise_N;
 }
 
 bool ContactSmoother::isRebound(const ContactPointState& sensor,
@@ -85,13 +100,14 @@ void ContactSmoother::update(const ForceGains& gains, const ContactPointState& s
   state.X_BaseModule = X_BaseModule;
   const bool is_rebound = isRebound(sensor, state);
   contact.force_N = is_rebound ? 0.0 : sensor.force_N;
-  const bool grows = sensor.force_N > kGrowth * state.force_before_N.norm();
+  const bool grows = isImpact(sensor.force_N, state);
   learnNoise(gains.estimator.min_force_change_N, sensor.force_N * sensor.direction, state);
   const double weight = sensor.force_N * sensor.force_N;
   state.weight =
       flushed(state.weight * (1.0 - state.smoothing.of(sensor.interval_s, kSmoothing_s)) /
               (1.0 + axis_turn / kTurn));
-  if (is_rebound || sensor.force_N <= gains.contact_threshold_N || weight == 0.0) return;
+  if (is_rebound || sensor.force_N <= leastForce_N(gains, is_one_of_several_) || weight == 0.0)
+    return;
   if (isOfBlow(sensor, state)) return;
   const Vector3 turn = sensor.direction - contact.direction;
   const double shift_m = sensor.position_m - contact.position_m;

@@ -8,10 +8,14 @@ namespace {
 static_assert(4 * kMaxTactileModules + kMaxNearBodies + kMaxJoints <= kMaxRows,
               "room for the corners of all contacts, and for what is kept beside them");
 
-/// As gamma would be without an end: where the contact was, and still is felt.
-double nearness(const ForceGains& gains, const ModuleContactState& state) noexcept {
-  const double force_N = state.approach.smoother.contact.force_N;
-  return force_N > gains.transition.release_force_N ? state.transition.gamma : 0.0;
+/// Of T, in which m is forgotten. As fast as T, a link that an overshoot has sent away would come
+/// back before it is slow enough, and bounce: the way back takes T for each F_th of overshoot.
+constexpr double kFading = 0.2;
+
+/// How fast m fades: not where the contact was, and still is felt.
+double fading(const ForceGains& gains, const ModuleContactState& state) noexcept {
+  const bool is_felt = state.approach.smoother.contact.force_N > gains.transition.release_force_N;
+  return kFading * (is_felt ? 1.0 - state.transition.gamma : 1.0);
 }
 
 double contactForce_N(const ForceGains& gains, const ModuleContactState& state) noexcept {
@@ -23,14 +27,17 @@ double presence(const ForceGains& gains, const ApproachLimitState& state) noexce
   return std::min(1.0, state.memory_N_per_m / stiffnessInContact(gains, state.estimator));
 }
 
-/// Of the first level.
-void holdRow(const ForceGains& gains, const ApproachLimitState& state, SpeedRow& row) noexcept {
+/// The rows of a contact of the second level as the first has them.
+void addHoldRows(const ForceGains& gains, const ApproachLimitState& state, double cosine, int first,
+                 const SpeedRows& rows, SpeedRows& null_rows) noexcept {
   const double m = state.memory_N_per_m;
-  const double Tm = gains.time_constant_s * m;
-  row.v_max_m_per_s =
-      (gains.contact_threshold_N - state.smoother.contact.force_N - m * state.way_ahead_m) / Tm;
-  row.damping_N_s_per_m = Tm;
-  row.presence = presence(gains, state);
+  const double F_left_N =
+      gains.contact_threshold_N - state.smoother.contact.force_N - m * state.way_ahead_m;
+  for (int i = first; i < rows.size; ++i) {
+    SpeedRow& row = null_rows.row[null_rows.size++];
+    row = rows.row[i];
+    row.v_max_m_per_s = cosine * (F_left_N / row.damping_N_s_per_m);
+  }
 }
 
 void tell(const ForceGains& gains, const ModuleContactState& state,
@@ -98,9 +105,9 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
   }
   locate(kinematics, module, contact, place);
   const double F_p_N = contactForce_N(gains.force, state);
-  const double near = nearness(gains.force, state);
-  module.limit.observe(gains.force, place.a, {F_p_N, near, 1.0 - near}, commanded.q, period_s,
-                       state.approach);
+  module.limit.observe(gains.force, place.a,
+                       {F_p_N, state.transition.gamma, fading(gains.force, state)}, commanded.q,
+                       period_s, state.approach);
   passTransition(gains.force.transition, F_p_N, place.at.p_Base, period_s, state.transition);
   if (!commanded.is_followed) state.approach.obstacle.high_s = 0.0;
 }
@@ -108,16 +115,14 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
 /// The second level's.
 void SeveralContacts::addRow(const ForceGains& gains, const TaskKinematics& kinematics,
                              const Module& module, const ModuleContactState& state,
-                             const SpeedRow& row, SpeedRows& rows) const noexcept {
+                             const Place& place, SpeedRows& rows) const noexcept {
   const int first = rows.size;
-  double cosine = 1.0;
-  if (module.cone) {
+  if (module.cone)
     module.cone->add(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_, rows);
-    cosine = module.cone->cosine();
-  } else {
-    rows.row[rows.size++] = row;
-  }
-  module.limit.limitRows(gains, contactForce_N(gains, state), cosine, state.approach, first, rows);
+  else
+    project(kinematics, place, rows.row[rows.size++]);
+  module.limit.limitRows(gains, contactForce_N(gains, state), module.cosine(), state.approach,
+                         first, rows);
   for (int i = first; i < rows.size; ++i) rows.row[i].presence = presence(gains, state.approach);
 }
 
@@ -128,10 +133,8 @@ void SeveralContacts::addRows(const ForceGains& gains, const TaskKinematics& kin
     const ApproachLimitState& approach = state.modules[i].approach;
     if (i == without_module || approach.memory_N_per_m == 0.0) continue;
     Place place;
-    SpeedRow row;
     locate(kinematics, modules_[i], approach.smoother.contact, place);
-    project(kinematics, place, row);
-    addRow(gains, kinematics, modules_[i], state.modules[i], row, rows);
+    addRow(gains, kinematics, modules_[i], state.modules[i], place, rows);
   }
 }
 
@@ -163,10 +166,8 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
     const ApproachLimitState& approach = contact.approach;
     sense(gains, kinematics, readings[i], commanded, period_s, modules_[i], contact, place);
     if (approach.memory_N_per_m > 0.0) {
-      SpeedRow& row = null_rows.row[null_rows.size++];
-      project(kinematics, place, row);
-      holdRow(gains.force, approach, row);
-      addRow(gains.force, kinematics, modules_[i], contact, row, rows);
+      addRow(gains.force, kinematics, modules_[i], contact, place, rows);
+      addHoldRows(gains.force, approach, modules_[i].cosine(), first[i], rows, null_rows);
     }
     first[i + 1] = rows.size;
     if (approach.smoother.contact.force_N <= most_N) continue;

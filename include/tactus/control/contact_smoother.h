@@ -39,6 +39,9 @@ struct ContactSmootherState {
 ///   |dF^| < 2 sin atan mu,  |dx| < 2 mu r
 /// is no other contact, hence averaged however large, in an impact, too. A law that followed it
 /// would answer its own sliding, late by the filter.
+/// One of several contacts rests where its force is F_th, so noise takes it below that at any time:
+/// all above the mean of F_rel and F_th counts there, and an impact is what also grows by more than
+/// 2 s. For one contact alone:
 /// A force up to F_th says nothing of either. After a blow the module's filter swings through and
 /// shows up to 12 % of it from the other side: such a reading counts as no force. So does all from
 /// the other side that is below 0.35 of the highest force, which is forgotten with 1.5 / f_c. With
@@ -47,7 +50,8 @@ struct ContactSmootherState {
 class ContactSmoother {
  public:
   /// friction_coefficient: mu, 0 for none.
-  ContactSmoother(const TactileModuleConfig& module, double friction_coefficient);
+  ContactSmoother(const TactileModuleConfig& module, double friction_coefficient,
+                  bool is_one_of_several = false);
 
   ContactSmootherState initialState() const noexcept;
 
@@ -62,10 +66,13 @@ class ContactSmoother {
 
   bool isOfBlow(const ContactPointState& sensor, const ContactSmootherState& state) const noexcept;
 
+  bool isImpact(double force_N, const ContactSmootherState& state) const noexcept;
+
   double half_length_m_, radius_m_;
   double ringing_s_;
   double max_turn_;  ///< of the unit force, by sliding
   double max_shift_m_;
+  bool is_one_of_several_;
 };
 
 }  // namespace tactus

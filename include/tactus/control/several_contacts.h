@@ -28,7 +28,7 @@ struct SeveralContactsState {
 // clang-format off: equations
 /// null_limit for robots with several tactile modules, each with a contact of its own: rows of two
 /// levels, with the force F_i, stiffness m_i and way ahead e_i of each as in approach_limit.h.
-///   level 1, null space alone:  a_i^T q_dot >= (F_i - F_th + m_i e_i) / (T m_i)
+///   level 1, null space alone:  a_ij^T q_dot >= (F_i - F_th + m_i e_i) / (T m_i)
 ///            holds contacts at F_th, from above and below; limited to the null-space speed
 ///   level 2, task, too:         a_ij^T q_dot >= -v_max,i,   the approach limit of each
 ///            a_ij: a_i, or the corners of the friction cone
@@ -57,6 +57,8 @@ class SeveralContacts {
     AttachedFrame link;
     ApproachLimit limit;
     std::optional<FrictionCone> cone;
+
+    double cosine() const { return cone ? cone->cosine() : 1.0; }
   };
   struct Place;
 
@@ -67,7 +69,7 @@ class SeveralContacts {
              const CommandedMotion& commanded, double period_s, const Module& module,
              ModuleContactState& state, Place& place) const noexcept;
   void addRow(const ForceGains& gains, const TaskKinematics& kinematics, const Module& module,
-              const ModuleContactState& state, const SpeedRow& row, SpeedRows& rows) const noexcept;
+              const ModuleContactState& state, const Place& place, SpeedRows& rows) const noexcept;
   double holdInNullSpace(const ForceGains& gains, const SpeedRows& rows, int contacts,
                          NullSpeedLimits& limits, Motion& motion) const noexcept;
 
