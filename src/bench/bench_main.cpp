@@ -177,6 +177,9 @@ void parse(CLI::App& app, Options& options, int argc, char** argv) {
       "--several", [&options] { options.names.push_back("several"); },
       "null_limit on contacts of several modules: --study several; SCENE: their base");
   app.add_flag_callback(
+      "--clutter", [&options] { options.names.push_back("clutter"); },
+      "Reaching among many posts: --study clutter; SCENE: the arm and its gains");
+  app.add_flag_callback(
       "--physics", [&options] { options.names.push_back("physics"); },
       "The simulated arm beside MuJoCo: --study physics; some ten minutes");
   app.add_flag("--quick", options.is_quick, "A look: few repetitions, short sweeps");

@@ -29,6 +29,7 @@ double stiffestSlope(const ObstacleConfig& obstacle, double robot_stiffness_N_pe
 MujocoPost postOf(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m, double step_s) {
   if (obstacle.appears_s > 0.0 || obstacle.vanishes_s != kNoLimit)
     throw std::invalid_argument("obstacles have to be there all the time");
+  if (obstacle.slide_force_N) throw std::invalid_argument("obstacles have to stand");
   const double mass_kg =
       stiffestSlope(obstacle, robot_stiffness_N_per_m) * std::pow(step_s / kPostPhase_rad, 2);
   return mujocoPost(obstacle, mass_kg);

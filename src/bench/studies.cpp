@@ -14,6 +14,8 @@ const std::vector<Study>& studies() {
        false, studyLaw},
       {"contact", "null_limit on contacts that rub", false, false, studyContact},
       {"several", "null_limit on contacts of several modules", false, false, studySeveral},
+      {"clutter", "reaching among many posts, with modules on all links", false, false,
+       studyClutter},
       {"physics", "the simulated arm beside MuJoCo", false, false, studyPhysics},
   };
   return list;

@@ -133,12 +133,22 @@ std::string unsensedWarning(const Scene& scene, const CapsuleTouch& touch) {
                      touch.t_s, force);
 }
 
+/// Whether it is on its path while this obstacle is there: one that has given way to another no
+/// longer is.
+bool isOnPath(const Scene& scene, const PathContacts& contacts, const ObstacleConfig& obstacle) {
+  if (!scene.controller.force_control) return true;
+  return std::ranges::none_of(contacts.touches, [&](const std::optional<PathTouch>& touch) {
+    return touch && touch->t_s < obstacle.appears_s;
+  });
+}
+
 std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& contacts,
                                     const std::optional<PeakReport>& peak) {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < contacts.touches.size(); ++i) {
     const std::optional<PathTouch>& touch = contacts.touches[i];
-    if (!touch && contacts.is_complete && !scene.controller.tactile_modules.empty()) {
+    if (!touch && contacts.is_complete && !scene.controller.tactile_modules.empty() &&
+        isOnPath(scene, contacts, scene.plant.obstacles[i])) {
       warnings.push_back(
           fmt::format("obstacle {} is never touched: no cover comes to it on the scene's path", i));
     }

@@ -93,7 +93,19 @@ void Controller::sense(const RobotInput& input, const Gains& gains, double perio
   if (is_told_more) judgeModules(gains, period_s, faults, prepared, state, output);
 }
 
-/// Of several modules with a fault the first one counts.
+/// Of several modules with a fault the first one counts that was not lost already, which is what is
+/// new; -1: none has one.
+int Controller::newlyFaulty(const ModuleFaults& faults,
+                            const ControllerState& state) const noexcept {
+  int first = -1;
+  for (int i = 0; i < modules(); ++i) {
+    if (faults[i] == Fault::kNone) continue;
+    if (!state.modules[i].is_lost) return i;
+    if (first < 0) first = i;
+  }
+  return first;
+}
+
 void Controller::judgeModules(const Gains& gains, double period_s, ModuleFaults& faults,
                               PreparedCycle& prepared, ControllerState& state,
                               ControllerOutput& output) const noexcept {
@@ -101,13 +113,12 @@ void Controller::judgeModules(const Gains& gains, double period_s, ModuleFaults&
     slowDown(state.speed_share, prepared);
     goOnWithoutLost(gains, period_s, faults, state, output);
   }
-  for (int i = 0; i < modules(); ++i) {
-    if (state.fault != Fault::kNone || faults[i] == Fault::kNone) continue;
-    state.fault = faults[i];
-    if (!state.is_stopping) state.retreat.velocity_at_fault = state.velocity_before;
-    output.fault_detail = state.modules[i].detail;
-    output.fault_detail.module = i;
-  }
+  const int culprit = newlyFaulty(faults, state);
+  if (state.fault != Fault::kNone || culprit < 0) return;
+  state.fault = faults[culprit];
+  if (!state.is_stopping) state.retreat.velocity_at_fault = state.velocity_before;
+  output.fault_detail = state.modules[culprit].detail;
+  output.fault_detail.module = culprit;
 }
 
 }  // namespace tactus

@@ -57,6 +57,10 @@ Table<ObstacleConfig> springKeys() {
                       &Config::vanishes_s)),
       number("friction_coefficient", "", within(0, 10), "mu of the cover on it; 0: slides freely",
              &Config::friction_coefficient),
+      optional(number("slide_force_N", "N", above(0, 1e5),
+                      "largest force that it bears: beyond it its foot slides away; absent: it "
+                      "stands",
+                      &Config::slide_force_N)),
       optional(number("shear_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
                       "along the cover while it sticks; absent: stiffness_N_per_m",
                       &Config::shear_stiffness_N_per_m)),

@@ -49,7 +49,7 @@ LinkContacts::LinkContacts(const PlantConfig& plant, const ChainPose& pose)
 }
 
 void LinkContacts::touch(const SerialChain& chain, const ChainPose& pose, double t_s,
-                         ScaledVector& torque) noexcept {
+                         ScaledVector& torque, std::span<Vector3> slid_m) noexcept {
   for (int i = 0; i < capsules(); ++i) {
     Link& link = links_[i];
     const Pose X_BaseLink = framePose(pose, link.frame);
@@ -57,7 +57,8 @@ void LinkContacts::touch(const SerialChain& chain, const ChainPose& pose, double
     const CoverAxis axis{X_BaseLink.p_AB, X_BaseLink.R_AB.col(0), link.length_m, link.radius_m};
     for (int k = 0; k < obstacles_; ++k) {
       Contact& contact = link.contacts[k];
-      const ObstacleContact normal = contact.obstacle.touch(axis, t_s);
+      const ObstacleContact normal =
+          contact.obstacle.touch(axis, t_s, slid_m.empty() ? nullptr : &slid_m[k]);
       ObstacleFriction friction;
       if (contact.obstacle.hasFriction()) friction = contact.obstacle.rub(step, axis, normal);
       contact.force_N = (normal.force_Base + friction.force_Base).norm();

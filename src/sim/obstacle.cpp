@@ -39,6 +39,12 @@ double ContactSpring::force_N(double penetration_m) const noexcept {
   return piece->start_N + piece->stiffness_N_per_m * (penetration_m - piece->start_m);
 }
 
+double ContactSpring::penetration_m(double force_N) const noexcept {
+  auto piece = pieces_.rbegin();
+  while (force_N < piece->start_N) ++piece;
+  return piece->start_m + (force_N - piece->start_N) / piece->stiffness_N_per_m;
+}
+
 Obstacle::Obstacle(const ObstacleConfig& config, double robot_stiffness_N_per_m)
     : config_(config),
       shape_(config),
@@ -55,15 +61,22 @@ void Obstacle::moveTo(double t_s) noexcept {
   swing_share_ = swingShare(config_.swing, t_s - config_.appears_s);
 }
 
-ObstacleContact Obstacle::touch(const CoverAxis& axis, double t_s) noexcept {
+ObstacleContact Obstacle::touch(const CoverAxis& axis, double t_s, Vector3* slid_m) noexcept {
   ObstacleContact contact;
   if (t_s < config_.appears_s || t_s >= config_.vanishes_s) {
     swing_share_ = 0.0;
     return contact;
   }
   moveTo(t_s);
-  const Meeting meeting = shape_.meet(axis, swing_share_ * way_m_);
+  const bool slides = slid_m && config_.slide_force_N;
+  Vector3 shift_m = swing_share_ * way_m_;
+  if (slides) shift_m += *slid_m;
+  const Meeting meeting = shape_.meet(axis, shift_m);
   contact.force_N = spring_.force_N(meeting.depth_m);
+  if (slides && contact.force_N > *config_.slide_force_N) {
+    contact.force_N = *config_.slide_force_N;
+    *slid_m -= (meeting.depth_m - spring_.penetration_m(contact.force_N)) * meeting.normal_Base;
+  }
   contact.position_m = meeting.position_m;
   contact.force_Base = contact.force_N * meeting.normal_Base;
   return contact;

@@ -45,6 +45,7 @@ SimulatedRobot::SimulatedRobot(const ControllerConfig& robot, const PlantConfig&
       steps_a_cycle_(wholeRatio(period_s, step_s_)),
       drive_share_(lagShare(step_s_, plant.drive_lag_s)),
       reports_links_(plant.drives.reports_links),
+      slid_m_(plant.obstacles.size(), Vector3::Zero()),
       q_commanded_(robot.q_start),
       q_(robot.q_start) {
   chain_.computePose(q_, pose_);
@@ -130,8 +131,11 @@ void SimulatedRobot::touch(double t_s, Module& module) noexcept {
                        module.cover_radius_m};
   module.force_Base.setZero();
   module.wrench.setZero();
-  for (Obstacle& obstacle : module.obstacles) {
-    const ObstacleContact contact = obstacle.touch(axis, t_s);
+  module.hardest_N = 0.0;
+  for (std::size_t k = 0; k < module.obstacles.size(); ++k) {
+    Obstacle& obstacle = module.obstacles[k];
+    const ObstacleContact contact = obstacle.touch(axis, t_s, &slid_m_[k]);
+    module.hardest_N = std::max(module.hardest_N, contact.force_N);
     if (obstacle.hasFriction()) {
       const ObstacleFriction friction = obstacle.rub(step, axis, contact);
       push(friction.p_ModuleSurface, friction.force_Base, module);
@@ -144,7 +148,7 @@ void SimulatedRobot::touch(double t_s, Module& module) noexcept {
 
 void SimulatedRobot::touchLinks(double t_s) noexcept {
   ScaledVector torque = ScaledVector::Zero();
-  links_->touch(chain_, pose_, t_s, torque);
+  links_->touch(chain_, pose_, t_s, torque, slid_m_);
   if (dynamics_) torque_ += torque.head(chain_.size());
 }
 

@@ -91,10 +91,12 @@ Fault ControlCycle::judgeTactile() noexcept {
   return Fault::kNone;
 }
 
-/// A push beyond what channels can tell is no loss.
+/// A push beyond what channels can tell is no loss. One that is lost already stays left out when
+/// the last good one fails, too: that one is what is new.
 bool ControlCycle::isLeftOut(int module, Fault fault) const noexcept {
   const bool is_loss = fault == Fault::kTactileStale || fault == Fault::kTactileCableBreak;
-  return is_loss && isCommanding(mode_.mode) && controller_.goesOnWithout(module, gains_, state_);
+  if (!is_loss || !isCommanding(mode_.mode)) return false;
+  return state_.modules[module].is_lost || controller_.goesOnWithout(module, gains_, state_);
 }
 
 /// A cable that breaks now and then is broken, until it has been good for a while: the controller,

@@ -167,6 +167,23 @@ TEST(TouchCheck, WarnsOfObstaclesThatNothingTouches) {
             Warnings{"obstacle 0 is never touched: no cover comes to it on the scene's path"});
 }
 
+/// Where an arm is that has given way, its path does not say.
+TEST(TouchCheck, SaysNothingOfWhatAppearsWhenTheArmHasGivenWay) {
+  const auto warnings = [](const std::string& appears_s, const std::string& variant) {
+    return expectedOf("scenario1_null_space",
+                      {{"controller.variant", variant},
+                       {"simulation.obstacles",
+                        "[{x_m: 0.70771, y_m: 0.00265, stiffness_N_per_m: 60}, {x_m: -2, y_m: -2, "
+                        "stiffness_N_per_m: 60, appears_s: " +
+                            appears_s + "}]"}})
+        .warnings;
+  };
+  const Warnings never{"obstacle 1 is never touched: no cover comes to it on the scene's path"};
+  EXPECT_EQ(warnings("12", "null_space"), Warnings{});
+  EXPECT_EQ(warnings("0.1", "null_space"), never) << "before anything is touched";
+  EXPECT_EQ(warnings("12", "none"), never) << "nothing gives way";
+}
+
 TEST(TouchCheck, WarnsOfObstaclesInTheArmAtItsStart) {
   const Scene scene = test::shippedScene("scenario1_null_space");
   ChainPose pose;

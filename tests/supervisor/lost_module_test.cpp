@@ -194,6 +194,46 @@ TEST(LostModule, IsAFaultWhenNoOtherIsGood) {
   run.expectReplay();
 }
 
+/// The first two channels of a module, far apart: a force that no arm bears.
+void push(CanFrame& frame) {
+  const bool is_first = frame.id % 4 == 0;
+  for (int i = 2; is_first && i < 8; ++i) frame.data[i] = 0;
+  if (!is_first) return;
+  frame.data[4] = 0x70;  // 7.3e6 counts
+  frame.data[7] = 0x90;  // and as many below 0
+}
+
+/// Whatever is wrong with the last good one: what was lost before is no news.
+TEST(LostModule, IsNotNamedWhenTheLastGoodOneFails) {
+  struct Failing {
+    std::function<void(CanFrame& frame)> spoil;
+    Fault fault;
+  };
+  const Failing ways[] = {{silence, Fault::kTactileStale},
+                          {breakCable, Fault::kTactileCableBreak},
+                          {saturate, Fault::kTactileSaturated},
+                          {push, Fault::kTactileInvalid}};
+  for (const Failing& failing : ways) {
+    SkinRun run(skinScene("go_on_slowly"));
+    run.cell.on_frame = [](int bus, CanFrame& frame) {
+      kNoLink3(bus, frame);
+      kNoLink4(bus, frame);
+    };
+    run.step(500);
+    ASSERT_EQ(run.last().modules_lost, kLink3 | kLink4);
+    run.cell.on_frame = [&failing](int bus, CanFrame& frame) {
+      kNoLink3(bus, frame);
+      kNoLink4(bus, frame);
+      onModule(4, 0x100, failing.spoil)(bus, frame);
+    };
+    run.step(40);
+    EXPECT_EQ(faultName(run.fault()), std::string(faultName(failing.fault)));
+    EXPECT_EQ(run.cell.cycle.report().detail.module, 2) << faultName(failing.fault);
+    EXPECT_NE(run.mode(), Mode::kRunning);
+    run.expectReplay();
+  }
+}
+
 TEST(LostModule, AllAtOnceAreAFault) {
   SkinRun run(skinScene("go_on_slowly"));
   run.cell.on_frame = [](int bus, CanFrame& frame) {

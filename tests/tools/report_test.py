@@ -503,6 +503,17 @@ class Comparison(unittest.TestCase):
             self.assertTrue((ROOT / f"config/scenes/{scene}.yaml").is_file(), scene)
 
 
+class Demo(unittest.TestCase):
+    def test_simulates_the_scenes_of_every_folder(self):
+        scenes = ROOT / "config/scenes"
+        folders = {file.parent.relative_to(ROOT) for file in scenes.rglob("*.yaml")}
+        folders.remove(pathlib.Path("config/scenes/base"))  # which only others extend
+        self.assertGreater(len(folders), 3)
+        said = (ROOT / "tools/demo").read_text(encoding="utf-8")
+        for folder in folders:
+            self.assertIn(f" {folder}/*.yaml", said)
+
+
 class Drawing(unittest.TestCase):
     def test_thinning_keeps_extremes_and_ends(self):
         x = np.arange(100000.0)

@@ -100,6 +100,7 @@ simulation:
       vanishes_s: 10
       friction_coefficient: 0.3
       shear_stiffness_N_per_m: 3000
+      slide_force_N: 20
       swing: {x_m: 0, y_m: 0.01, z_m: 0, frequency_hz: 1}
   troubles:
     - {kind: delay, from_s: 1, until_s: 2, interface: can0, id: 0x181, delay_s: 0.01}

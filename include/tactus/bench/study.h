@@ -54,5 +54,6 @@ StudyResult studyLaw(const BenchOptions& options);
 StudyResult studyContact(const BenchOptions& options);
 StudyResult studyPhysics(const BenchOptions& options);
 StudyResult studySeveral(const BenchOptions& options);
+StudyResult studyClutter(const BenchOptions& options);
 
 }  // namespace tactus

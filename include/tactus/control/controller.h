@@ -166,6 +166,7 @@ class Controller {
   void judgeModules(const Gains& gains, double period_s, ModuleFaults& faults,
                     PreparedCycle& prepared, ControllerState& state,
                     ControllerOutput& output) const noexcept;
+  int newlyFaulty(const ModuleFaults& faults, const ControllerState& state) const noexcept;
   static void slowDown(double speed_share, PreparedCycle& prepared) noexcept;
   void boundSpeeds(double speed_share, JointVector& velocity) const noexcept;
   double leastStiffness_N_per_m(const Gains& gains, int module,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "tactus/math/serial_chain.h"
@@ -23,9 +24,10 @@ class LinkContacts {
  public:
   LinkContacts(const PlantConfig& plant, const ChainPose& pose);
 
-  /// At the next step; adds to `torque` what contacts are to the joints, N or Nm.
-  void touch(const SerialChain& chain, const ChainPose& pose, double t_s,
-             ScaledVector& torque) noexcept;
+  /// At the next step; adds to `torque` what contacts are to the joints, N or Nm. slid_m: of each
+  /// obstacle, see Obstacle::touch(); empty: none slides.
+  void touch(const SerialChain& chain, const ChainPose& pose, double t_s, ScaledVector& torque,
+             std::span<Vector3> slid_m = {}) noexcept;
 
   int capsules() const noexcept { return static_cast<int>(links_.size()); }
   int obstacles() const noexcept { return obstacles_; }

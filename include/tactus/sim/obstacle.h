@@ -18,6 +18,8 @@ class ContactSpring {
   ContactSpring(const ObstacleConfig& obstacle, double robot_stiffness_N_per_m);
 
   double force_N(double penetration_m) const noexcept;
+  /// The other way round, for a force > 0.
+  double penetration_m(double force_N) const noexcept;
 
  private:
   struct Piece {
@@ -49,7 +51,8 @@ class Obstacle {
  public:
   Obstacle(const ObstacleConfig& config, double robot_stiffness_N_per_m);
 
-  ObstacleContact touch(const CoverAxis& axis, double t_s) noexcept;
+  /// slid_m: how far its foot has slid, base frame, one for all covers; null: nothing slides.
+  ObstacleContact touch(const CoverAxis& axis, double t_s, Vector3* slid_m = nullptr) noexcept;
 
   bool hasFriction() const noexcept { return friction_.has_value(); }
   /// After each touch(), with what that returned, if there is friction.

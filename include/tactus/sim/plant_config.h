@@ -41,6 +41,9 @@ struct ObstacleConfig {
   double vanishes_s = kNoLimit;
   Swing swing{};
   double friction_coefficient = 0.0;  ///< mu of the cover on it
+  /// The largest force that it bears: beyond it its foot slides away, whichever cover pushes, and
+  /// stays where it came to. Absent: it stands.
+  std::optional<double> slide_force_N{};
   /// Of the bristle that sticks, in series with the robot; as the solid part if not given.
   std::optional<double> shear_stiffness_N_per_m{};
   std::optional<SphereConfig> sphere{};  ///< at most one of these

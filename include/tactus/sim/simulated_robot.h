@@ -36,6 +36,9 @@ class SimulatedRobot final : public Robot {
   double trueForce_N(int module = 0) const noexcept {
     return modules_.empty() ? 0.0 : modules_[module].true_force_N;
   }
+  /// The strongest that one obstacle pushes on a module's cover, which the sum above may hide, N;
+  /// without friction.
+  double hardestContact_N(int module) const noexcept { return modules_[module].hardest_N; }
   /// What pushes where no module feels it; null unless the plant has capsules.
   const LinkContacts* linkContacts() const noexcept { return links_ ? &*links_ : nullptr; }
   /// Obstacles appear and vanish by a time that counts from now.
@@ -54,6 +57,7 @@ class SimulatedRobot final : public Robot {
     std::optional<MovingCover> cover;
     int steps_a_filter_step = 1;
     double true_force_N = 0.0;
+    double hardest_N = 0.0;                ///< of one obstacle alone
     Vector3 force_Base = Vector3::Zero();  ///< of all contacts, and what they are to the module
     Wrench5 wrench = Wrench5::Zero();
   };
@@ -76,7 +80,8 @@ class SimulatedRobot final : public Robot {
   std::optional<DriveSetpoints> setpoints_;
   std::optional<VelocityLoop> loop_;
   std::optional<ArmDynamics> dynamics_;
-  JointVector torque_;  ///< of all contacts; only where the arm has mass
+  std::vector<Vector3> slid_m_;  ///< of each obstacle's foot
+  JointVector torque_;           ///< of all contacts; only where the arm has mass
   long step_ = 0;
   JointVector q_commanded_;
   JointVector q_;   ///< of the arm
