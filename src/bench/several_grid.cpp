@@ -1,6 +1,7 @@
 #include "tactus/bench/several_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tactus/bench/post_placing.h"
@@ -93,27 +94,27 @@ bool drawSeveralPosts(BenchRandom& draw, SeveralCase& drawn) {
 
 struct Figures {
   double runs = 0, both = 0, high = 0, highest = 0.0, restless = 0, most_restless = 0.0, rests = 0,
-         largest_rest = 0.0, largest_tcp = 0.0, step = 0.0;
+         largest_rest = 0.0, largest_tcp = 0.0, steps = 0.0, step = 0.0, intrusion = 0.0;
 
-  void add(const SeveralCase& drawn, const SeveralRun& run) {
-    const ForceGains& force = drawn.setup.controller.gains.force;
-    const double limit_N = force.activation_force_N + force.contact_threshold_N;
+  void add(const SeveralRun& run) {
     runs += 1;
     both += run.touched_modules > 1;
     high += run.largest_peak_to_scale > 1.15;
     highest = std::max(highest, run.largest_peak_to_scale);
     restless += !(run.restlessness_N <= JudgedRun::kMaxRestlessness_N);
     most_restless = std::max(most_restless, run.restlessness_N);
-    rests += !(run.peak_at_rest_N <= 1.02 * limit_N);
-    largest_rest = std::max(largest_rest, run.peak_at_rest_N / limit_N);
+    rests += !(run.peak_at_rest_N <= 1.02 * run.limit_N);
+    largest_rest = std::max(largest_rest, run.peak_at_rest_N / run.limit_N);
     largest_tcp = std::max(largest_tcp, run.tcp_error_final_m);
+    steps += run.step_between_samples > 0.02;
     step = std::max(step, run.step_between_samples);
+    intrusion = std::max(intrusion, -run.clearance_left_m);
   }
 };
 
 void addRow(const std::string& trial, const std::string& kind, const Figures& f, Table& table) {
   table.rows.push_back({trial, kind, f.runs, f.both, f.high, f.highest, f.restless, f.most_restless,
-                        f.rests, f.largest_rest, f.largest_tcp, f.step});
+                        f.rests, f.largest_rest, f.largest_tcp, f.steps, f.step, f.intrusion});
 }
 
 }  // namespace
@@ -128,14 +129,17 @@ std::vector<SeveralCase> drawSeveral(const RunSetup& base, std::uint64_t seed, i
   BenchRandom draw(seed);
   std::vector<SeveralCase> cases;
   for (int i = 0; i < count; ++i) {
-    SeveralCase drawn{static_cast<SeveralKind>(i % kSeveralKinds), 0, base};
-    // Limits would spread a step over several cycles.
-    drawn.setup.controller.limits.max_acceleration.setConstant(kNoLimit);
+    SeveralCase drawn{static_cast<SeveralKind>(i % kSeveralKinds),
+                      static_cast<Surroundings>(i / kSeveralKinds % kSurroundings), 0, base};
+    // Limits would spread a step over several cycles; a way to stop has to know them.
+    if (!base.controller.clearance || drawn.surroundings < Surroundings::kBodies)
+      drawn.setup.controller.limits.max_acceleration.setConstant(kNoLimit);
     for (TactileModuleConfig& module : drawn.setup.controller.tactile_modules)
       module.max_force_N = kNoLimit;
     for (SimulatedModuleConfig& module : drawn.setup.plant.modules) module.quantised = false;
     drawPath(draw, drawn.setup);
-    if (drawSeveralPosts(draw, drawn)) cases.push_back(std::move(drawn));
+    if (surround(draw, drawn.surroundings, drawn.setup) && drawSeveralPosts(draw, drawn))
+      cases.push_back(std::move(drawn));
   }
   return cases;
 }
@@ -144,22 +148,29 @@ Table emptySeveralTable(const std::string& name) {
   return {name,
           {"trial", "kind", "runs", "with_several_contacts", "peaks_above_1_15",
            "largest_peak_to_scale", "restless", "largest_restlessness_N", "rests_above_1_02",
-           "largest_rest_to_limit", "largest_tcp_error_m", "largest_step_between_samples"},
+           "largest_rest_to_limit", "largest_tcp_error_m", "steps_above_0_02",
+           "largest_step_between_samples", "largest_intrusion_m"},
           {}};
 }
 
 void addSeveralRows(const std::string& trial, const std::vector<SeveralCase>& cases,
                     const std::vector<SeveralRun>& runs, Table& table) {
   Figures all;
-  for (int kind = 0; kind < kSeveralKinds; ++kind) {
-    Figures figures;
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      if (runs[i].is_out || cases[i].kind != static_cast<SeveralKind>(kind)) continue;
-      figures.add(cases[i], runs[i]);
-      all.add(cases[i], runs[i]);
-    }
-    addRow(trial, severalKindName(static_cast<SeveralKind>(kind)), figures, table);
+  std::array<Figures, kSeveralKinds> of_kind;
+  std::array<Figures, kSurroundings> of_surroundings;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (runs[i].is_out) continue;
+    of_kind[static_cast<std::size_t>(cases[i].kind)].add(runs[i]);
+    if (cases[i].kind != SeveralKind::kMoving)
+      of_surroundings[static_cast<std::size_t>(cases[i].surroundings)].add(runs[i]);
+    all.add(runs[i]);
   }
+  for (int kind = 0; kind < kSeveralKinds; ++kind)
+    addRow(trial, severalKindName(static_cast<SeveralKind>(kind)),
+           of_kind[static_cast<std::size_t>(kind)], table);
+  for (int kind = 0; kind < kSurroundings; ++kind)
+    addRow(trial, surroundingsName(static_cast<Surroundings>(kind)),
+           of_surroundings[static_cast<std::size_t>(kind)], table);
   addRow(trial, "all", all, table);
 }
 

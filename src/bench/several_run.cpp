@@ -6,6 +6,7 @@
 
 #include "tactus/bench/post_placing.h"
 #include "tactus/bench/spread.h"
+#include "tactus/bench/surroundings.h"
 #include "tactus/control/controller.h"
 #include "tactus/sim/obstacle.h"
 #include "tactus/sim/simulated_robot.h"
@@ -20,6 +21,7 @@ constexpr double kFree_s = 1.0;
 struct FirstTouch {
   FirstTouch(const RunSetup& setup, std::size_t on_module, ObstacleConfig config)
       : module(on_module),
+        friction(std::hypot(1.0, config.friction_coefficient)),
         stiffness_N_per_m(inSeries(config.stiffness_N_per_m, setup.plant.robot_stiffness_N_per_m)),
         obstacle(withUnitSpring(std::move(config)), kNoLimit) {}
 
@@ -31,6 +33,7 @@ struct FirstTouch {
   }
 
   std::size_t module;
+  double friction;  ///< the largest force over that along the normal
   double stiffness_N_per_m;
   Obstacle obstacle;
   double depth_m = 0.0;  ///< a cycle before
@@ -78,8 +81,9 @@ class TouchWatch {
     const ForceGains& force = setup_.controller.gains.force;
     const double unseen_N = touch.stiffness_N_per_m * speed_m_per_s * feedbackDelay_s(setup_.plant);
     const double limit_N = force.activation_force_N + force.contact_threshold_N;
-    module.scale_N = std::max(
-        {module.scale_N, limit_N, std::max(touch.before_N, force.contact_threshold_N) + unseen_N});
+    const double felt_N = std::max(touch.before_N, force.contact_threshold_N);
+    module.scale_N =
+        std::max(module.scale_N, touch.friction * std::max(limit_N, felt_N + unseen_N));
     module.was_touched = true;
   }
 
@@ -87,6 +91,14 @@ class TouchWatch {
   std::vector<FirstTouch> touches_;
   ChainPose pose_;
 };
+
+double restLimit_N(const RunSetup& setup) {
+  const ForceGains& force = setup.controller.gains.force;
+  double friction = 0.0;
+  for (const ObstacleConfig& obstacle : setup.plant.obstacles)
+    friction = std::max(friction, obstacle.friction_coefficient);
+  return (force.activation_force_N + force.contact_threshold_N) * std::hypot(1.0, friction);
+}
 
 double largestStep(const JointVector& a, const JointVector& b) {
   return (a - b).cwiseAbs().maxCoeff();
@@ -112,10 +124,12 @@ SeveralRun runSeveral(const RunSetup& setup) {
   SimulatedRobot robot(setup.controller, setup.plant, setup.period_s);
   TouchWatch touches(setup);
   EndWatch ends(setup);
+  ClearanceWatch clearance(setup.controller);
   ControllerState state = controller.initialState();
   RobotInput input;
   ControllerOutput output;
   SeveralRun run;
+  run.limit_N = restLimit_N(setup);
   std::vector<Spread> rest(setup.controller.tactile_modules.size());
   JointVector before = JointVector::Zero(setup.controller.chain.size());
   const long cycles = std::lround(setup.duration_s / setup.period_s);
@@ -140,6 +154,7 @@ SeveralRun runSeveral(const RunSetup& setup) {
       run.step_between_samples =
           std::max(run.step_between_samples, largestStep(output.velocity, before));
     before = output.velocity;
+    run.clearance_left_m = std::min(run.clearance_left_m, clearance.left_m(output.q_desired));
     touches.update(input.q_measured, t_s, run, output);
     run.is_out = run.is_out || ends.isOut(input.q_measured, cycle == 0);
   }

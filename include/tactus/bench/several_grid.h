@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tactus/bench/several_run.h"
+#include "tactus/bench/surroundings.h"
 #include "tactus/bench/table.h"
 
 namespace tactus {
@@ -23,16 +24,18 @@ const char* severalKindName(SeveralKind kind);
 
 struct SeveralCase {
   SeveralKind kind;
+  Surroundings surroundings = Surroundings::kOpen;
   int modules = 0;  ///< that have a post of their own
   RunSetup setup;
 };
 
 /// Environments for a robot with several modules: starts and paths as drawEnvironments(), two or
-/// three posts of 100 to 1e6 N/m before their links. Draws whose links do not come to their posts
-/// are left out. mu: of all posts; bearable_mu: what the controller is told.
+/// three posts of 100 to 1e6 N/m before their links, each kind in each surroundings in turn. Draws
+/// whose links do not come to their posts, or that do not start clear, are left out.
 std::vector<SeveralCase> drawSeveral(const RunSetup& base, std::uint64_t seed, int count);
 
-/// A row of the table for each kind, over the runs that say something, and one of all.
+/// A row of the table for each kind and for each surroundings, over the runs that say something,
+/// and one of all. Those of surroundings are without posts that move.
 Table emptySeveralTable(const std::string& name);
 void addSeveralRows(const std::string& trial, const std::vector<SeveralCase>& cases,
                     const std::vector<SeveralRun>& runs, Table& table);
