@@ -4,13 +4,12 @@
 #include <cstring>
 
 #include "support/crops9.h"
+#include "tactus/control/clearance.h"
 #include "tactus/control/controller.h"
-#include "tactus/control/motion_gate.h"
 
 /// Lets callgrind collect, in each cycle of the nine-joint arm's task, what 28 pairs of capsules
-/// cost: what is near, that the motion keeps it and the joints' limits, and whether the arm can
-/// stop. With the argument `near` as many as there can be are near. Prints how many cycles it
-/// collected.
+/// cost: what is near, whether the motion keeps it, and whether the arm can stop. With the argument
+/// `near` as many as there can be are near. Prints how many cycles it collected.
 int main(int argc, char** argv) {
   using namespace tactus;
   constexpr double kPeriod_s = 0.001;
@@ -24,22 +23,21 @@ int main(int argc, char** argv) {
   for (int a = 0; a < 9; ++a)
     for (int b = a + 2; b < 9; ++b) bodies.pairs.push_back({a, b});
   if (argc > 1 && std::strcmp(argv[1], "near") == 0) bodies.influence_distance_m = 10.0;
-  const ScaledVector inv_sqrt_weights =
-      scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones());
-  const MotionGate gate(config, inv_sqrt_weights);
+  const Clearance clearance(config);
   ControllerState state = controller.initialState();
   ControllerOutput output;
   for (int cycle = 0; cycle < kCycles; ++cycle) {
     PreparedCycle prepared;
     controller.prepare(config.gains, cycle * kPeriod_s, state, prepared);
     TaskKinematics& kinematics = prepared.kinematics;
-    const CommandedMotion commanded{state.q_desired, state.velocity_before, true};
+    const ScaledVector velocity =
+        prepared.motion.v_scaled + kinematics.pseudoinverse.expand(prepared.motion.y);
     CALLGRIND_TOGGLE_COLLECT;
-    gate.clearance()->findNear(kinematics.pose, kinematics.near);
-    SpeedRows rows;
-    gate.keep(commanded, kinematics, 1.0, kPeriod_s, rows, prepared.motion);
-    gate.clearance()->canStopAfter(kinematics.pose, kinematics.near, state.q_desired,
-                                   state.velocity_before, kPeriod_s);
+    clearance.findNear(kinematics.pose, kinematics.near);
+    clearance.isKept(kinematics.pose, kinematics.near, velocity, state.q_desired,
+                     state.velocity_before, kPeriod_s);
+    clearance.canStopAfter(kinematics.pose, kinematics.near, state.q_desired, state.velocity_before,
+                           kPeriod_s);
     CALLGRIND_TOGGLE_COLLECT;
     controller.update({state.q_desired, {}}, config.gains, cycle * kPeriod_s, kPeriod_s, state,
                       output);

@@ -5,10 +5,6 @@
 #include <cstring>
 #include <memory>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 namespace tactus {
 
 /// Two numbers that one instruction adds or multiplies, each rounded as it would be alone. Where
@@ -40,8 +36,8 @@ inline Pair larger(Pair a, Pair b) noexcept { return a < b ? b : a; }
 
 /// Without asking for negative numbers, as std::sqrt() does.
 inline Pair squareRoot(Pair pair) noexcept {
-#ifdef __SSE2__
-  return std::bit_cast<Pair>(_mm_sqrt_pd(std::bit_cast<__m128d>(pair)));
+#if __has_builtin(__builtin_ia32_sqrtpd)
+  return __builtin_ia32_sqrtpd(pair);
 #else
   return {std::sqrt(pair[0]), std::sqrt(pair[1])};
 #endif
@@ -49,8 +45,8 @@ inline Pair squareRoot(Pair pair) noexcept {
 
 /// Whether that holds of one of them.
 inline bool isAny(PairMask mask) noexcept {
-#ifdef __SSE2__
-  return _mm_movemask_pd(std::bit_cast<__m128d>(mask)) != 0;
+#if __has_builtin(__builtin_ia32_movmskpd)
+  return __builtin_ia32_movmskpd(std::bit_cast<Pair>(mask)) != 0;
 #else
   return (mask[0] | mask[1]) != 0;
 #endif
