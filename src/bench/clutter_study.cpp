@@ -15,7 +15,7 @@ constexpr int kClutterDraws = 40;
 std::vector<Cell> clutterRow(ClutterKind kind, int posts, ClutterLaw law,
                              const std::vector<ClutterRun>& runs) {
   double reached = 0, touching = 0, contact_s = 0, high_s = 0, largest_N = 0, low = 0, restless = 0,
-         rest_N = 0;
+         rest_N = 0, felt_N = 0;
   for (const ClutterRun& run : runs) {
     reached += run.isReached();
     touching += run.contact_s > 0.0;
@@ -25,6 +25,7 @@ std::vector<Cell> clutterRow(ClutterKind kind, int posts, ClutterLaw law,
     largest_N = std::max(largest_N, run.largest_N);
     restless += !(run.restlessness_N <= JudgedRun::kMaxRestlessness_N);
     rest_N = std::max(rest_N, run.largest_at_rest_N);
+    felt_N = std::max(felt_N, run.largest_felt_at_rest_N);
   }
   const double high_share = contact_s > 0.0 ? high_s / contact_s : 0.0;
   return {std::string(clutterKindName(kind)),
@@ -37,13 +38,15 @@ std::vector<Cell> clutterRow(ClutterKind kind, int posts, ClutterLaw law,
           high_share,
           largest_N,
           rest_N,
+          felt_N,
           restless};
 }
 
 Table emptyClutterTable() {
   return {"clutter",
           {"kind", "posts", "law", "runs", "with_contact", "reached", "reached_with_low_forces",
-           "high_share_of_contact_time", "largest_force_N", "largest_force_at_rest_N", "restless"},
+           "high_share_of_contact_time", "largest_force_N", "largest_force_at_rest_N",
+           "largest_felt_at_rest_N", "restless"},
           {}};
 }
 
