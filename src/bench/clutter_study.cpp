@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <string>
 
 #include "tactus/bench/clutter_grid.h"
 #include "tactus/bench/parallel.h"
@@ -50,12 +51,13 @@ Table emptyClutterTable() {
           {}};
 }
 
-/// Over all rows of null_limit with all modules.
-double largestOf(const Table& table, const char* column) {
+/// Of null_limit, among posts that give way: what stands may hold a link from both sides.
+double largestHighShare(const Table& table) {
   double largest = 0.0;
   for (std::size_t row = 0; row < table.rows.size(); ++row)
-    if (table.word(row, "law") == clutterLawName(ClutterLaw::kNullLimit))
-      largest = std::max(largest, table.number(row, column));
+    if (table.word(row, "law") == clutterLawName(ClutterLaw::kNullLimit) &&
+        table.word(row, "kind") != clutterKindName(ClutterKind::kHard))
+      largest = std::max(largest, table.number(row, "high_share_of_contact_time"));
   return largest;
 }
 
@@ -90,8 +92,9 @@ StudyResult studyClutter(const BenchOptions& options) {
         table.rows.push_back(clutterRow(kind, posts, law, runs));
       }
     }
-  result.goals = {{"reaching in clutter: largest share of contact time with a high force", 0.01,
-                   largestOf(table, "high_share_of_contact_time")}};
+  result.goals = {
+      {"reaching in clutter that gives way: largest share of contact time with a high force", 0.01,
+       largestHighShare(table)}};
   result.tables = {std::move(table)};
   return result;
 }
