@@ -47,13 +47,12 @@ ClutterRun runClutter(const RunSetup& setup) {
     run.largest_N = std::max(run.largest_N, contact_N);
     if (contact_N > 0.0) run.contact_s += setup.period_s;
     if (contact_N > high_N) run.high_s += setup.period_s;
-    double sum_N = 0.0;
-    for (int i = 0; i < robot.modules(); ++i) sum_N = std::max(sum_N, robot.trueForce_N(i));
-    run.largest_sum_N = std::max(run.largest_sum_N, sum_N);
     if (cycle < rest_from) continue;
     run.largest_at_rest_N = std::max(run.largest_at_rest_N, contact_N);
-    run.largest_sum_at_rest_N = std::max(run.largest_sum_at_rest_N, sum_N);
-    for (int i = 0; i < robot.modules(); ++i) rest[i].add(robot.trueForce_N(i));
+    for (int i = 0; i < robot.modules(); ++i) {
+      run.largest_felt_at_rest_N = std::max(run.largest_felt_at_rest_N, output.sensed[i].force_N);
+      rest[i].add(robot.trueForce_N(i));
+    }
   }
   for (const Spread& one : rest) run.restlessness_N = std::max(run.restlessness_N, one.deviation());
   run.fault = output.fault;

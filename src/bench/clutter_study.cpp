@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <string>
 
 #include "tactus/bench/clutter_grid.h"
 #include "tactus/bench/parallel.h"
@@ -15,7 +16,7 @@ constexpr int kClutterDraws = 40;
 std::vector<Cell> clutterRow(ClutterKind kind, int posts, ClutterLaw law,
                              const std::vector<ClutterRun>& runs) {
   double reached = 0, touching = 0, contact_s = 0, high_s = 0, largest_N = 0, low = 0, restless = 0,
-         rest_N = 0;
+         rest_N = 0, felt_N = 0;
   for (const ClutterRun& run : runs) {
     reached += run.isReached();
     touching += run.contact_s > 0.0;
@@ -25,6 +26,7 @@ std::vector<Cell> clutterRow(ClutterKind kind, int posts, ClutterLaw law,
     largest_N = std::max(largest_N, run.largest_N);
     restless += !(run.restlessness_N <= JudgedRun::kMaxRestlessness_N);
     rest_N = std::max(rest_N, run.largest_at_rest_N);
+    felt_N = std::max(felt_N, run.largest_felt_at_rest_N);
   }
   const double high_share = contact_s > 0.0 ? high_s / contact_s : 0.0;
   return {std::string(clutterKindName(kind)),
@@ -37,22 +39,25 @@ std::vector<Cell> clutterRow(ClutterKind kind, int posts, ClutterLaw law,
           high_share,
           largest_N,
           rest_N,
+          felt_N,
           restless};
 }
 
 Table emptyClutterTable() {
   return {"clutter",
           {"kind", "posts", "law", "runs", "with_contact", "reached", "reached_with_low_forces",
-           "high_share_of_contact_time", "largest_force_N", "largest_force_at_rest_N", "restless"},
+           "high_share_of_contact_time", "largest_force_N", "largest_force_at_rest_N",
+           "largest_felt_at_rest_N", "restless"},
           {}};
 }
 
-/// Over all rows of null_limit with all modules.
-double largestOf(const Table& table, const char* column) {
+/// Of null_limit, among posts that give way: what stands may hold a link from both sides.
+double largestHighShare(const Table& table) {
   double largest = 0.0;
   for (std::size_t row = 0; row < table.rows.size(); ++row)
-    if (table.word(row, "law") == clutterLawName(ClutterLaw::kNullLimit))
-      largest = std::max(largest, table.number(row, column));
+    if (table.word(row, "law") == clutterLawName(ClutterLaw::kNullLimit) &&
+        table.word(row, "kind") != clutterKindName(ClutterKind::kHard))
+      largest = std::max(largest, table.number(row, "high_share_of_contact_time"));
   return largest;
 }
 
@@ -87,8 +92,9 @@ StudyResult studyClutter(const BenchOptions& options) {
         table.rows.push_back(clutterRow(kind, posts, law, runs));
       }
     }
-  result.goals = {{"reaching in clutter: largest share of contact time with a high force", 0.01,
-                   largestOf(table, "high_share_of_contact_time")}};
+  result.goals = {
+      {"reaching in clutter that gives way: largest share of contact time with a high force", 0.01,
+       largestHighShare(table)}};
   result.tables = {std::move(table)};
   return result;
 }

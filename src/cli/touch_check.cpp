@@ -49,8 +49,9 @@ std::vector<TouchReport> touchesOf(const Scene& scene, const PathContacts& conta
     const TouchedSpring touched = touchedSpring(scene, touch->module, scene.plant.obstacles[i],
                                                 scene.plant.robot_stiffness_N_per_m);
     // One that appears in the arm pushes at once.
-    const double peak_N = std::max(touchPeak_N(touched, touch->speed_m_per_s),
-                                   touched.spring.force_N(touch->depth_m));
+    const double peak_N = std::min(scene.plant.obstacles[i].slide_force_N.value_or(kNoLimit),
+                                   std::max(touchPeak_N(touched, touch->speed_m_per_s),
+                                            touched.spring.force_N(touch->depth_m)));
     reports.push_back({static_cast<int>(i), *touch, peak_N,
                        softerTouch(scene, touched, touch->speed_m_per_s, peak_N)});
   }

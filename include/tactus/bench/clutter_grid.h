@@ -45,9 +45,8 @@ struct ClutterRun {
   double contact_s = 0.0;  ///< time with a contact
   double high_s = 0.0;     ///< of it, with a high force
   double largest_N = 0.0;
-  double largest_at_rest_N = 0.0;  ///< over the last JudgedRun::kRest_s
-  /// Likewise, of all posts on one link together, which is all that its module feels.
-  double largest_sum_N = 0.0, largest_sum_at_rest_N = 0.0;
+  double largest_at_rest_N = 0.0;       ///< over the last JudgedRun::kRest_s
+  double largest_felt_at_rest_N = 0.0;  ///< what a module says, at most, over them
   double restlessness_N = 0.0;  ///< largest standard deviation of a module's force over them
   Fault fault = Fault::kNone;
 
