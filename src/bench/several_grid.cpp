@@ -99,10 +99,12 @@ struct Figures {
   void add(const SeveralCase& drawn, const SeveralRun& run) {
     const ForceGains& force = drawn.setup.controller.gains.force;
     const double limit_N = force.activation_force_N + force.contact_threshold_N;
+    const bool is_one_module = drawn.kind >= SeveralKind::kSameSide;
+    const double peak = is_one_module ? run.contact_peak_to_scale : run.largest_peak_to_scale;
     runs += 1;
-    both += run.touched_modules > 1;
-    high += run.largest_peak_to_scale > 1.15;
-    highest = std::max(highest, run.largest_peak_to_scale);
+    both += (is_one_module ? run.touched_posts : run.touched_modules) > 1;
+    high += peak > 1.15;
+    highest = std::max(highest, peak);
     restless += !(run.restlessness_N <= JudgedRun::kMaxRestlessness_N);
     most_restless = std::max(most_restless, run.restlessness_N);
     rests += !(run.peak_at_rest_N <= 1.02 * limit_N);
@@ -120,21 +122,25 @@ void addRow(const std::string& trial, const std::string& kind, const Figures& f,
 }  // namespace
 
 const char* severalKindName(SeveralKind kind) {
-  static constexpr const char* kNames[kSeveralKinds] = {"at_once",  "sequence",  "opposite",
-                                                        "squeezed", "vanishing", "moving"};
+  static constexpr const char* kNames[kSeveralKinds] = {"at_once",   "sequence",  "opposite",
+                                                        "squeezed",  "vanishing", "moving",
+                                                        "same_side", "across",    "both_sides"};
   return kNames[static_cast<int>(kind)];
+}
+
+RunSetup withoutLimits(RunSetup base) {
+  // Limits would spread a step over several cycles.
+  base.controller.limits.max_acceleration.setConstant(kNoLimit);
+  for (TactileModuleConfig& module : base.controller.tactile_modules) module.max_force_N = kNoLimit;
+  for (SimulatedModuleConfig& module : base.plant.modules) module.quantised = false;
+  return base;
 }
 
 std::vector<SeveralCase> drawSeveral(const RunSetup& base, std::uint64_t seed, int count) {
   BenchRandom draw(seed);
   std::vector<SeveralCase> cases;
   for (int i = 0; i < count; ++i) {
-    SeveralCase drawn{static_cast<SeveralKind>(i % kSeveralKinds), 0, base};
-    // Limits would spread a step over several cycles.
-    drawn.setup.controller.limits.max_acceleration.setConstant(kNoLimit);
-    for (TactileModuleConfig& module : drawn.setup.controller.tactile_modules)
-      module.max_force_N = kNoLimit;
-    for (SimulatedModuleConfig& module : drawn.setup.plant.modules) module.quantised = false;
+    SeveralCase drawn{static_cast<SeveralKind>(i % kDrawnKinds), 0, withoutLimits(base)};
     drawPath(draw, drawn.setup);
     if (drawSeveralPosts(draw, drawn)) cases.push_back(std::move(drawn));
   }
@@ -154,12 +160,14 @@ void addSeveralRows(const std::string& trial, const std::vector<SeveralCase>& ca
   Figures all;
   for (int kind = 0; kind < kSeveralKinds; ++kind) {
     Figures figures;
+    bool is_drawn = false;
     for (std::size_t i = 0; i < cases.size(); ++i) {
+      is_drawn = is_drawn || cases[i].kind == static_cast<SeveralKind>(kind);
       if (runs[i].is_out || cases[i].kind != static_cast<SeveralKind>(kind)) continue;
       figures.add(cases[i], runs[i]);
       all.add(cases[i], runs[i]);
     }
-    addRow(trial, severalKindName(static_cast<SeveralKind>(kind)), figures, table);
+    if (is_drawn) addRow(trial, severalKindName(static_cast<SeveralKind>(kind)), figures, table);
   }
   addRow(trial, "all", all, table);
 }

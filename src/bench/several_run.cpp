@@ -35,7 +35,7 @@ struct FirstTouch {
   Obstacle obstacle;
   double depth_m = 0.0;  ///< a cycle before
   double free_s = 0.0;
-  bool is_over = false;
+  bool is_over = false, has_been = false;
 };
 
 class TouchWatch {
@@ -72,6 +72,8 @@ class TouchWatch {
     const double limit_N = force.activation_force_N + force.contact_threshold_N;
     module.scale_N = std::max(
         {module.scale_N, limit_N, std::max(before_N, force.contact_threshold_N) + unseen_N});
+    if (!touch.has_been) ++module.posts;
+    touch.has_been = true;
     module.was_touched = touch.is_over = true;
   }
 
@@ -94,6 +96,9 @@ void sumUp(const std::vector<Spread>& rest, SeveralRun& run) {
     if (!module.was_touched) continue;
     ++run.touched_modules;
     run.largest_peak_to_scale = std::max(run.largest_peak_to_scale, module.peak_N / module.scale_N);
+    run.contact_peak_to_scale =
+        std::max(run.contact_peak_to_scale, module.contact_peak_N / module.scale_N);
+    run.touched_posts = std::max(run.touched_posts, module.posts);
   }
 }
 
@@ -124,6 +129,8 @@ SeveralRun runSeveral(const RunSetup& setup) {
       is_new = is_new || output.sensed[i].isNew();
       const double force_N = robot.trueForce_N(static_cast<int>(i));
       run.modules[i].peak_N = std::max(run.modules[i].peak_N, force_N);
+      run.modules[i].contact_peak_N =
+          std::max(run.modules[i].contact_peak_N, robot.largestContact_N(static_cast<int>(i)));
       if (cycle < rest_from) continue;
       rest[i].add(force_N);
       run.modules[i].peak_at_rest_N = std::max(run.modules[i].peak_at_rest_N, force_N);

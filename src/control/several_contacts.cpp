@@ -44,23 +44,29 @@ void tell(const ForceGains& gains, const ModuleContactState& state,
 
 }  // namespace
 
-/// A contact as the joints see it.
+/// What touches a module as the joints see it.
 struct SeveralContacts::Place {
-  Vector3 p_Base;
-  ScaledVector a;  ///< J_p^T F^
-  SpeedRow row;    ///< without speed and damping; set where there is a contact
+  Vector3 p_Base;  ///< of the resultant
+  ScaledVector a;  ///< J_p^T F^ there
+  /// Where there is a contact: rows without speed and damping, and what corners have to enclose.
+  std::array<SpeedRow, 2> row;
+  int rows = 0;
+  CoverPart part;
 };
 
 SeveralContacts::SeveralContacts(const ControllerConfig& config,
                                  const ScaledVector& inv_sqrt_weights)
     : chain_(config.chain),
       task_size_(config.task.size),
+      is_at_ends_(config.force_control->limit_at == LimitAt::kModuleEnds),
       inv_sqrt_weights_(inv_sqrt_weights),
       law_(*config.force_control, config.chain, inv_sqrt_weights) {
   const double mu = config.force_control->friction_coefficient;
+  const bool has_centre = !is_at_ends_ && config.force_control->limit_at != LimitAt::kResultant;
   for (const TactileModuleConfig& module : config.tactile_modules) {
-    modules_.push_back({module.link, ApproachLimit(config, module), std::nullopt});
+    modules_.push_back({module.link, ApproachLimit(config, module), {}, {}, module.length_m});
     if (mu > 0.0) modules_.back().cone.emplace(module, mu);
+    if (has_centre) modules_.back().centre.emplace(module, mu);
   }
 }
 
@@ -82,9 +88,35 @@ void SeveralContacts::locate(const TaskKinematics& kinematics, const Module& mod
                               place.a);
 }
 
-void SeveralContacts::project(const TaskKinematics& kinematics, Place& place) const noexcept {
-  place.row.a_scaled = inv_sqrt_weights_.cwiseProduct(place.a);
-  place.row.a_task = kinematics.pseudoinverse.project(place.row.a_scaled);
+void SeveralContacts::addPlace(const TaskKinematics& kinematics, const ScaledVector& a,
+                               Place& place) const noexcept {
+  SpeedRow& row = place.row[place.rows++];
+  row.a_scaled = inv_sqrt_weights_.cwiseProduct(a);
+  row.a_task = kinematics.pseudoinverse.project(row.a_scaled);
+}
+
+/// The resultant does not say where its contacts are.
+void SeveralContacts::spread(const TaskKinematics& kinematics, const Module& module,
+                             const ModuleContactState& state, Place& place) const noexcept {
+  ContactPointState there = state.approach.smoother.contact;
+  const auto addThere = [&](double position_m) {
+    Place other;
+    there.position_m = position_m;
+    locate(kinematics, module, there, other);
+    addPlace(kinematics, other.a, place);
+  };
+  if (is_at_ends_) {
+    place.part = {0.0, module.length_m};
+    addThere(place.part.from_m);
+    addThere(place.part.to_m);
+    return;
+  }
+  const double x_m = there.position_m;
+  const double shift_m = state.centre.shift_m;
+  place.part = {x_m + std::min(0.0, shift_m), x_m + std::max(0.0, shift_m)};
+  if (module.cone) place.part = module.cone->around(place.part);
+  addPlace(kinematics, place.a, place);
+  if (shift_m != 0.0) addThere(x_m + shift_m);
 }
 
 void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics,
@@ -107,7 +139,13 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
                        state.approach);
   passTransition(gains.force.transition, F_p_N, place.p_Base, period_s, state.transition);
   if (!commanded.is_followed) state.approach.obstacle.high_s = 0.0;
-  if (state.approach.memory_N_per_m > 0.0) project(kinematics, place);
+  if (module.centre) {
+    if (state.approach.memory_N_per_m == 0.0 || reading.is_lost)
+      state.centre = {};
+    else if (reading.contact.isNew())
+      module.centre->update(gains.force, reading.contact, state.approach.smoother, state.centre);
+  }
+  if (state.approach.memory_N_per_m > 0.0) spread(kinematics, module, state, place);
 }
 
 /// The second level's.
@@ -117,10 +155,11 @@ void SeveralContacts::addRow(const ForceGains& gains, const TaskKinematics& kine
   const int first = rows.size;
   double cosine = 1.0;
   if (module.cone) {
-    module.cone->add(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_, rows);
+    module.cone->add(chain_, kinematics, state.approach.smoother.contact.direction, place.part,
+                     inv_sqrt_weights_, rows);
     cosine = module.cone->cosine();
   } else {
-    rows.row[rows.size++] = place.row;
+    for (int i = 0; i < place.rows; ++i) rows.row[rows.size++] = place.row[i];
   }
   module.limit.limitRows(gains, contactForce_N(gains, state), cosine, state.approach, first, rows);
   for (int i = first; i < rows.size; ++i) rows.row[i].presence = presence(gains, state.approach);
@@ -134,7 +173,7 @@ void SeveralContacts::addRows(const ForceGains& gains, const TaskKinematics& kin
     if (i == without_module || approach.memory_N_per_m == 0.0) continue;
     Place place;
     locate(kinematics, modules_[i], approach.smoother.contact, place);
-    project(kinematics, place);
+    spread(kinematics, modules_[i], state.modules[i], place);
     addRow(gains, kinematics, modules_[i], state.modules[i], place, rows);
   }
 }
@@ -167,8 +206,10 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
     const ApproachLimitState& approach = contact.approach;
     sense(gains, kinematics, readings[i], commanded, period_s, modules_[i], contact, place);
     if (approach.memory_N_per_m > 0.0) {
-      null_rows.row[null_rows.size] = place.row;
-      holdRow(gains.force, approach, null_rows.row[null_rows.size++]);
+      for (int j = 0; j < place.rows; ++j) {
+        null_rows.row[null_rows.size] = place.row[j];
+        holdRow(gains.force, approach, null_rows.row[null_rows.size++]);
+      }
       addRow(gains.force, kinematics, modules_[i], contact, place, rows);
     }
     first[i + 1] = rows.size;

@@ -130,12 +130,16 @@ void SimulatedRobot::touch(double t_s, Module& module) noexcept {
                        module.cover_radius_m};
   module.force_Base.setZero();
   module.wrench.setZero();
+  module.largest_contact_N = 0.0;
   for (Obstacle& obstacle : module.obstacles) {
     const ObstacleContact contact = obstacle.touch(axis, t_s);
+    Vector3 force_Base = contact.force_Base;
     if (obstacle.hasFriction()) {
       const ObstacleFriction friction = obstacle.rub(step, axis, contact);
       push(friction.p_ModuleSurface, friction.force_Base, module);
+      force_Base += friction.force_Base;
     }
+    module.largest_contact_N = std::max(module.largest_contact_N, force_Base.norm());
     if (contact.force_N != 0.0)
       push(Vector3(contact.position_m, 0.0, 0.0), contact.force_Base, module);
   }

@@ -36,6 +36,8 @@ class SimulatedRobot final : public Robot {
   double trueForce_N(int module = 0) const noexcept {
     return modules_.empty() ? 0.0 : modules_[module].true_force_N;
   }
+  /// The largest of those contacts' forces, each by itself, N.
+  double largestContact_N(int module) const noexcept { return modules_[module].largest_contact_N; }
   /// What pushes where no module feels it; null unless the plant has capsules.
   const LinkContacts* linkContacts() const noexcept { return links_ ? &*links_ : nullptr; }
   /// Obstacles appear and vanish by a time that counts from now.
@@ -54,6 +56,7 @@ class SimulatedRobot final : public Robot {
     std::optional<MovingCover> cover;
     int steps_a_filter_step = 1;
     double true_force_N = 0.0;
+    double largest_contact_N = 0.0;
     Vector3 force_Base = Vector3::Zero();  ///< of all contacts, and what they are to the module
     Wrench5 wrench = Wrench5::Zero();
   };
