@@ -48,7 +48,7 @@ class PressedModule {
     }
     ContactPointState sensor = state_.contact;
     sensor.force_N = std::abs(F_N);
-    sensor.position_m = std::clamp(M_Nm / F_N, 0.0, config().length_m);
+    if (F_N != 0.0) sensor.position_m = std::clamp(M_Nm / F_N, 0.0, config().length_m);
     sensor.direction = Vector3(0.0, F_N < 0.0 ? 1.0 : -1.0, 0.0);
     sensor.interval_s = kSample_s;
     Pose X;
@@ -56,6 +56,11 @@ class PressedModule {
     X.p_AB = Vector3(slide_m, 0.0, 0.0);
     smoother_.update({}, sensor, X, state_);
     centre_.update({}, sensor, state_, centre_state_);
+  }
+
+  /// Until the smoother knows the noise.
+  void waitUntouched(double noise_N, test::Random& random) {
+    for (int i = 0; i < 500; ++i) press({}, 0.0, 0.0, 0.0, noise_N, random);
   }
 
   double contact_m() const { return state_.contact.position_m; }
@@ -68,9 +73,12 @@ class PressedModule {
   StiffnessCentreState centre_state_;
 };
 
+/// The second is met before the first presses with 3 N.
 std::vector<Spring> drawPair(test::Random& random) {
-  return {{random.logUniform(300.0, 3e4), random.uniform(0.02, 0.15), 0.0},
-          {random.logUniform(300.0, 3e4), random.uniform(0.25, 0.38), random.uniform(0.0, 0.003)}};
+  const double first = random.logUniform(300.0, 3e4);
+  return {{first, random.uniform(0.02, 0.15), 0.0},
+          {random.logUniform(300.0, 3e4), random.uniform(0.25, 0.38),
+           random.uniform(0.0, 3.0) / first}};
 }
 
 double stiffnessCentre(const std::vector<Spring>& springs) {
@@ -122,6 +130,7 @@ TEST(StiffnessCentre, IsFoundUnderNoise) {
   for (int draw = 0; draw < 200; ++draw) {
     const std::vector<Spring> springs = drawPair(random);
     PressedModule module;
+    module.waitUntouched(0.05, random);
     pressToAndFro(springs, 0.05, random, module);
     worst_m = std::max(worst_m, std::abs(module.centre().p_Base.x() - stiffnessCentre(springs)));
   }
@@ -130,16 +139,18 @@ TEST(StiffnessCentre, IsFoundUnderNoise) {
 
 TEST(StiffnessCentre, OfOneContactIsTheContact) {
   test::Random random(83);
-  for (const double noise_N : {0.0, 0.02, 0.1}) {
+  for (const double noise_N : {0.0, 0.02, 0.05, 0.1}) {
     for (int draw = 0; draw < 100; ++draw) {
       std::vector<Spring> springs = drawPair(random);
       springs.resize(1);
       PressedModule module;
+      module.waitUntouched(noise_N, random);
       for (int i = 0; i < 2000; ++i) {
         const double way_m = (4.0 + 3.9 * std::sin(0.01 * i)) / springs[0].stiffness_N_per_m;
         const double slide_m = 0.02 * std::sin(0.004 * i);
         module.press(springs, way_m, 0.0, slide_m, noise_N, random);
-        ASSERT_EQ(module.centre().shift_m, 0.0) << draw << " " << i << " " << noise_N;
+        ASSERT_LE(std::abs(module.centre().shift_m), noise_N > 0.05 ? 0.005 : 0.0)
+            << draw << " " << i << " " << noise_N;
       }
       EXPECT_GT(module.centre().weight, 0.0) << "it has been looked for";
     }
@@ -170,7 +181,7 @@ TEST(StiffnessCentre, LearnsNothingBelowTheThreshold) {
   test::Random random(85);
   PressedModule module;
   for (int i = 0; i < 1000; ++i)
-    module.press({{1000.0, 0.05, 0.0}, {1000.0, 0.35, 0.0}}, 0.5e-3 * (1.0 + std::sin(0.05 * i)),
+    module.press({{1000.0, 0.05, 0.0}, {1000.0, 0.35, 0.0}}, 0.25e-3 * (1.0 + std::sin(0.05 * i)),
                  0.0, 0.0, 0.0, random);
   EXPECT_EQ(module.centre().weight, 0.0);
   EXPECT_EQ(module.centre().shift_m, 0.0);
