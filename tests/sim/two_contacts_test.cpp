@@ -65,6 +65,52 @@ PlantConfig among(const std::vector<ObstacleConfig>& posts) {
   return plant;
 }
 
+/// The nine-joint arm of config/scenes/whole_arm/crops9_skin_one_link.yaml, without its covers'
+/// weight: a stiff post near the start of link 4, a soft one near its end.
+struct Held {
+  double peak_N = 0.0, least_at_rest_N = 1e9;
+
+  explicit Held(LimitAt at) {
+    ControllerConfig config = test::crops9Controller(Variant::kNullLimit, true);
+    PlantConfig plant = test::crops9Plant({});
+    const std::pair<int, double> covers[] = {
+        {2, 0.22}, {3, 0.38}, {5, 0.17}};  // joint, length in m
+    config.tactile_modules.resize(3, config.tactile_modules.front());
+    plant.modules.resize(3, plant.modules.front());
+    for (std::size_t i = 0; i < 3; ++i) {
+      config.tactile_modules[i].link.joint = covers[i].first;
+      config.tactile_modules[i].length_m = covers[i].second;
+    }
+    plant.obstacles.resize(2);
+    plant.obstacles[0].post = PostConfig{{0.68, 0.07, 0.2}, Vector3::UnitZ(), 0.7, 0.02};
+    plant.obstacles[0].stiffness_N_per_m = 800.0;
+    plant.obstacles[1].post = PostConfig{{0.5, 0.015, 0.2}, Vector3::UnitZ(), 0.7, 0.02};
+    plant.obstacles[1].stiffness_N_per_m = 20000.0;
+    config.force_control->limit_at = at;
+    test::ClosedLoop loop(config, plant, kPeriod_s);
+    for (int i = 0; i < 13000; ++i) {
+      loop.step();
+      const double force_N = loop.robot().trueForce_N(1);
+      peak_N = std::max(peak_N, force_N);
+      if (i > 11000) least_at_rest_N = std::min(least_at_rest_N, force_N);
+    }
+    EXPECT_EQ(loop.output().fault, Fault::kNone);
+  }
+};
+
+TEST(TwoContactsOnAModule, AreHeldTogether) {
+  for (const LimitAt at : {LimitAt::kAuto, LimitAt::kStiffnessCentre, LimitAt::kModuleEnds}) {
+    const Held held(at);
+    EXPECT_LT(held.peak_N, 5.1) << "F_act + F_th";
+    EXPECT_GT(held.least_at_rest_N, 4.9);
+  }
+}
+
+/// Else the above would say nothing.
+TEST(TwoContactsOnAModule, AreNotByTheResultantAlone) {
+  EXPECT_GT(Held(LimitAt::kResultant).peak_N, 7.0);
+}
+
 /// One contact has no centre of its own: the motion is that of the resultant, to the bit.
 TEST(OneContactOnAModule, MovesAsIfNoSecondWereLookedFor) {
   test::Random random(62);
