@@ -96,11 +96,13 @@ struct Figures {
   double runs = 0, both = 0, high = 0, highest = 0.0, restless = 0, most_restless = 0.0, rests = 0,
          largest_rest = 0.0, largest_tcp = 0.0, steps = 0.0, step = 0.0, intrusion = 0.0;
 
-  void add(const SeveralRun& run) {
+  void add(const SeveralCase& drawn, const SeveralRun& run) {
+    const bool is_one_module = drawn.kind >= SeveralKind::kSameSide;
+    const double peak = is_one_module ? run.contact_peak_to_scale : run.largest_peak_to_scale;
     runs += 1;
-    both += run.touched_modules > 1;
-    high += run.largest_peak_to_scale > 1.15;
-    highest = std::max(highest, run.largest_peak_to_scale);
+    both += (is_one_module ? run.touched_posts : run.touched_modules) > 1;
+    high += peak > 1.15;
+    highest = std::max(highest, peak);
     restless += !(run.restlessness_N <= JudgedRun::kMaxRestlessness_N);
     most_restless = std::max(most_restless, run.restlessness_N);
     rests += !(run.peak_at_rest_N <= 1.02 * run.limit_N);
@@ -113,6 +115,7 @@ struct Figures {
 };
 
 void addRow(const std::string& trial, const std::string& kind, const Figures& f, Table& table) {
+  if (f.runs == 0.0) return;
   table.rows.push_back({trial, kind, f.runs, f.both, f.high, f.highest, f.restless, f.most_restless,
                         f.rests, f.largest_rest, f.largest_tcp, f.steps, f.step, f.intrusion});
 }
@@ -120,23 +123,30 @@ void addRow(const std::string& trial, const std::string& kind, const Figures& f,
 }  // namespace
 
 const char* severalKindName(SeveralKind kind) {
-  static constexpr const char* kNames[kSeveralKinds] = {"at_once",  "sequence",  "opposite",
-                                                        "squeezed", "vanishing", "moving"};
+  static constexpr const char* kNames[kSeveralKinds] = {"at_once",   "sequence",  "opposite",
+                                                        "squeezed",  "vanishing", "moving",
+                                                        "same_side", "across",    "both_sides"};
   return kNames[static_cast<int>(kind)];
+}
+
+RunSetup withoutLimits(RunSetup base) {
+  // Limits would spread a step over several cycles.
+  base.controller.limits.max_acceleration.setConstant(kNoLimit);
+  for (TactileModuleConfig& module : base.controller.tactile_modules) module.max_force_N = kNoLimit;
+  for (SimulatedModuleConfig& module : base.plant.modules) module.quantised = false;
+  return base;
 }
 
 std::vector<SeveralCase> drawSeveral(const RunSetup& base, std::uint64_t seed, int count) {
   BenchRandom draw(seed);
   std::vector<SeveralCase> cases;
   for (int i = 0; i < count; ++i) {
-    SeveralCase drawn{static_cast<SeveralKind>(i % kSeveralKinds),
-                      static_cast<Surroundings>(i / kSeveralKinds % kSurroundings), 0, base};
-    // Limits would spread a step over several cycles; a way to stop has to know them.
-    if (!base.controller.clearance || drawn.surroundings < Surroundings::kBodies)
-      drawn.setup.controller.limits.max_acceleration.setConstant(kNoLimit);
-    for (TactileModuleConfig& module : drawn.setup.controller.tactile_modules)
-      module.max_force_N = kNoLimit;
-    for (SimulatedModuleConfig& module : drawn.setup.plant.modules) module.quantised = false;
+    SeveralCase drawn{static_cast<SeveralKind>(i % kDrawnKinds),
+                      static_cast<Surroundings>(i / kDrawnKinds % kSurroundings), 0,
+                      withoutLimits(base)};
+    // A way to stop has to know them.
+    if (base.controller.clearance && drawn.surroundings >= Surroundings::kBodies)
+      drawn.setup.controller.limits.max_acceleration = base.controller.limits.max_acceleration;
     drawPath(draw, drawn.setup);
     if (surround(draw, drawn.surroundings, drawn.setup) && drawSeveralPosts(draw, drawn))
       cases.push_back(std::move(drawn));
@@ -159,18 +169,17 @@ void addSeveralRows(const std::string& trial, const std::vector<SeveralCase>& ca
   std::array<Figures, kSeveralKinds> of_kind;
   std::array<Figures, kSurroundings> of_surroundings;
   for (std::size_t i = 0; i < cases.size(); ++i) {
+    const SeveralCase& drawn = cases[i];
     if (runs[i].is_out) continue;
-    of_kind[static_cast<std::size_t>(cases[i].kind)].add(runs[i]);
-    if (cases[i].kind != SeveralKind::kMoving)
-      of_surroundings[static_cast<std::size_t>(cases[i].surroundings)].add(runs[i]);
-    all.add(runs[i]);
+    of_kind[static_cast<std::size_t>(drawn.kind)].add(drawn, runs[i]);
+    if (drawn.kind != SeveralKind::kMoving)
+      of_surroundings[static_cast<std::size_t>(drawn.surroundings)].add(drawn, runs[i]);
+    all.add(drawn, runs[i]);
   }
-  for (int kind = 0; kind < kSeveralKinds; ++kind)
-    addRow(trial, severalKindName(static_cast<SeveralKind>(kind)),
-           of_kind[static_cast<std::size_t>(kind)], table);
-  for (int kind = 0; kind < kSurroundings; ++kind)
-    addRow(trial, surroundingsName(static_cast<Surroundings>(kind)),
-           of_surroundings[static_cast<std::size_t>(kind)], table);
+  for (std::size_t i = 0; i < of_kind.size(); ++i)
+    addRow(trial, severalKindName(static_cast<SeveralKind>(i)), of_kind[i], table);
+  for (std::size_t i = 0; i < of_surroundings.size(); ++i)
+    addRow(trial, surroundingsName(static_cast<Surroundings>(i)), of_surroundings[i], table);
   addRow(trial, "all", all, table);
 }
 

@@ -40,7 +40,7 @@ struct FirstTouch {
   double free_s = 0.0;
   double unfelt_s = 0.0;  ///< what is left of the time in which no answer can come
   double before_N = 0.0;  ///< what the module felt then
-  bool is_over = false;
+  bool is_over = false, has_been = false;
 };
 
 class TouchWatch {
@@ -77,13 +77,15 @@ class TouchWatch {
 
  private:
   /// What others feel may turn the arm towards a post that nobody feels yet.
-  void note(const FirstTouch& touch, double speed_m_per_s, SeveralRun::Module& module) {
+  void note(FirstTouch& touch, double speed_m_per_s, SeveralRun::Module& module) {
     const ForceGains& force = setup_.controller.gains.force;
     const double unseen_N = touch.stiffness_N_per_m * speed_m_per_s * feedbackDelay_s(setup_.plant);
     const double limit_N = force.activation_force_N + force.contact_threshold_N;
     const double felt_N = std::max(touch.before_N, force.contact_threshold_N);
     module.scale_N =
         std::max(module.scale_N, touch.friction * std::max(limit_N, felt_N + unseen_N));
+    if (!touch.has_been) ++module.posts;
+    touch.has_been = true;
     module.was_touched = true;
   }
 
@@ -114,6 +116,9 @@ void sumUp(const std::vector<Spread>& rest, SeveralRun& run) {
     if (!module.was_touched) continue;
     ++run.touched_modules;
     run.largest_peak_to_scale = std::max(run.largest_peak_to_scale, module.peak_N / module.scale_N);
+    run.contact_peak_to_scale =
+        std::max(run.contact_peak_to_scale, module.contact_peak_N / module.scale_N);
+    run.touched_posts = std::max(run.touched_posts, module.posts);
   }
 }
 
@@ -146,6 +151,8 @@ SeveralRun runSeveral(const RunSetup& setup) {
       is_new = is_new || output.sensed[i].isNew();
       const double force_N = robot.trueForce_N(static_cast<int>(i));
       run.modules[i].peak_N = std::max(run.modules[i].peak_N, force_N);
+      run.modules[i].contact_peak_N =
+          std::max(run.modules[i].contact_peak_N, robot.hardestContact_N(static_cast<int>(i)));
       if (cycle < rest_from) continue;
       rest[i].add(force_N);
       run.modules[i].peak_at_rest_N = std::max(run.modules[i].peak_at_rest_N, force_N);

@@ -2,8 +2,10 @@
 #include <array>
 
 #include "tactus/bench/parallel.h"
+#include "tactus/bench/same_module.h"
 #include "tactus/bench/several_grid.h"
 #include "tactus/bench/study.h"
+#include "tactus/scene/key_words.h"
 #include "tactus/scene/scene_loader.h"
 
 namespace tactus {
@@ -12,6 +14,7 @@ namespace {
 constexpr const char* kSeveralBase = "/whole_arm/crops9_skin_rail.yaml";
 constexpr std::uint64_t kSeveralSeed = 20'261'125;
 constexpr int kSeveralDraws = 1200;
+constexpr int kPairDraws = 200;
 
 /// What is done to all environments.
 struct SeveralTrial {
@@ -82,6 +85,24 @@ std::vector<Goal> severalGoals(const Table& table) {
       {"several contacts: how far the arm came within a safe distance, m", 1e-9, all.intrusion_m}};
 }
 
+/// Two contacts on one module, by where the approach is limited.
+Table tryLimitPlaces(const RunSetup& base, int draws) {
+  const std::vector<SeveralCase> cases = drawSameModule(base, kSeveralSeed, draws);
+  Table table = emptySeveralTable("two_contacts_on_a_module");
+  for (const Word<LimitAt>& at : kLimitAtWords) {
+    if (at.value == LimitAt::kAuto) continue;
+    std::vector<SeveralRun> runs(cases.size());
+    inParallel(cases.size(), [&](std::size_t i) {
+      RunSetup setup = cases[i].setup;
+      apply(kSeveralTrials[0], setup);
+      setup.controller.force_control->limit_at = at.value;
+      runs[i] = runSeveral(setup);
+    });
+    addSeveralRows(at.text, cases, runs, table);
+  }
+  return table;
+}
+
 }  // namespace
 
 StudyResult studySeveral(const BenchOptions& options) {
@@ -99,8 +120,9 @@ StudyResult studySeveral(const BenchOptions& options) {
       "where the arm gives way to, on both sides with little room, one that vanishes, one of up "
       "to 7000 N/m that comes and goes with up to 5 mm/s; with nothing else around, with joints "
       "near their limits, beside a bar and itself, or at a wall. Peaks are true forces over what "
-      "no "
-      "law could avoid. Of posts that move no rest is asked for. What the figures mean is in "
+      "no law could avoid. Of posts that move no rest is asked for. A second table has two posts "
+      "on one module, on the same side, across it and on both sides, by controller.limit_at; its "
+      "peaks are those of single contacts. What the figures mean is in "
       "docs/gate.md.";
   Table table = emptySeveralTable("several_contacts");
   for (const SeveralTrial& trial : kSeveralTrials) {
@@ -113,7 +135,10 @@ StudyResult studySeveral(const BenchOptions& options) {
     addSeveralRows(trial.name, cases, runs, table);
   }
   result.goals = severalGoals(table);
-  result.tables = {std::move(table)};
+  RunSetup open = base;
+  open.controller.clearance.reset();
+  Table pairs = tryLimitPlaces(open, options.is_quick ? 5 : kPairDraws);
+  result.tables = {std::move(table), std::move(pairs)};
   return result;
 }
 

@@ -11,7 +11,10 @@ void ContactController::addContactRows(const ForceGains& gains, const TaskKinema
                                        SpeedRows& rows) const noexcept {
   double cosine = 1.0;
   if (friction_cone_) {
-    friction_cone_->add(chain_, kinematics, approach.smoother.contact, inv_sqrt_weights_, rows);
+    const ContactPointState& contact = approach.smoother.contact;
+    friction_cone_->add(chain_, kinematics, contact.direction,
+                        friction_cone_->around({contact.position_m, contact.position_m}),
+                        inv_sqrt_weights_, rows);
     cosine = friction_cone_->cosine();
   } else {
     rows.row[0].a_scaled = space.a_scaled;

@@ -43,7 +43,7 @@ Controller::Controller(const ControllerConfig& config)
   if (modules == 0 || (modules > 1 && config.force_control->variant != Variant::kNullLimit))
     throw std::invalid_argument(
         "force control needs a tactile module, null_limit alone takes more");
-  if (modules > 1) {
+  if (hasContactRows(config)) {
     several_contacts_.emplace(config, inv_sqrt_weights_);
   } else {
     contact_controller_.emplace(config, inv_sqrt_weights_);

@@ -11,18 +11,17 @@ FrictionCone::FrictionCone(const TactileModuleConfig& module, double friction_co
       shift_m_(friction_coefficient * module.cover_radius_m) {}
 
 void FrictionCone::add(const SerialChain& chain, const TaskKinematics& kinematics,
-                       const ContactPointState& contact, const ScaledVector& inv_sqrt_weights,
-                       SpeedRows& rows) const noexcept {
+                       const Vector3& direction, const CoverPart& part,
+                       const ScaledVector& inv_sqrt_weights, SpeedRows& rows) const noexcept {
   const Pose X_BaseModule = framePose(kinematics.pose, link_);
   const Vector3 axis = X_BaseModule.R_AB.col(0);
-  const Vector3 F_Base = X_BaseModule.R_AB.lazyProduct(contact.direction);
+  const Vector3 F_Base = X_BaseModule.R_AB.lazyProduct(direction);
   const Vector3 turned = axis.cross(F_Base);
   for (int i = 0; i < 4; ++i) {
-    const double shift_m = i < 2 ? shift_m_ : -shift_m_;
+    const double x_m = i < 2 ? part.to_m : part.from_m;
     const double sine = i % 2 == 0 ? sin_ : -sin_;
     ScaledVector a;
-    applyPointJacobianTranspose(chain, kinematics.pose, link_.joint,
-                                X_BaseModule.p_AB + (contact.position_m + shift_m) * axis,
+    applyPointJacobianTranspose(chain, kinematics.pose, link_.joint, X_BaseModule.p_AB + x_m * axis,
                                 cos_ * F_Base + sine * turned, a);
     SpeedRow& row = rows.row[rows.size++];
     row.a_scaled = inv_sqrt_weights.cwiseProduct(a);

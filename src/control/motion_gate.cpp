@@ -5,7 +5,7 @@ namespace {
 
 /// One contact alone has the law that it had before there was a gate, to the bit.
 bool isOfWholeArm(const ControllerConfig& config) {
-  return config.clearance || config.tactile_modules.size() > 1;
+  return config.clearance || hasContactRows(config);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ void tell(const ForceGains& gains, const ModuleContactState& state,
 
 }  // namespace
 
-/// A contact as the joints see it.
+/// What touches a module as the joints see it.
 struct SeveralContacts::Place {
   PlacedContact at;
   ScaledVector a;  ///< J_p^T F^
@@ -60,12 +60,15 @@ SeveralContacts::SeveralContacts(const ControllerConfig& config,
                                  const ScaledVector& inv_sqrt_weights)
     : chain_(config.chain),
       task_size_(config.task.size),
+      is_at_ends_(config.force_control->limit_at == LimitAt::kModuleEnds),
       inv_sqrt_weights_(inv_sqrt_weights),
       null_speed_limit_(config.chain, inv_sqrt_weights) {
   const double mu = config.force_control->friction_coefficient;
+  const bool has_centre = !is_at_ends_ && config.force_control->limit_at != LimitAt::kResultant;
   for (const TactileModuleConfig& module : config.tactile_modules) {
-    modules_.push_back({module.link, ApproachLimit(config, module), std::nullopt});
+    modules_.push_back({module.link, ApproachLimit(config, module), {}, {}, module.length_m});
     if (mu > 0.0) modules_.back().cone.emplace(module, mu);
+    if (has_centre) modules_.back().centre.emplace(module, mu);
   }
 }
 
@@ -84,10 +87,41 @@ void SeveralContacts::locate(const TaskKinematics& kinematics, const Module& mod
 }
 
 /// Without speed, damping and presence.
-void SeveralContacts::project(const TaskKinematics& kinematics, const Place& place,
+void SeveralContacts::project(const TaskKinematics& kinematics, const ScaledVector& a,
                               SpeedRow& row) const noexcept {
-  row.a_scaled = inv_sqrt_weights_.cwiseProduct(place.a);
+  row.a_scaled = inv_sqrt_weights_.cwiseProduct(a);
   row.a_task = kinematics.pseudoinverse.project(row.a_scaled);
+}
+
+void SeveralContacts::addRowAt(const TaskKinematics& kinematics, const Module& module,
+                               const ContactPointState& point, SpeedRows& rows) const noexcept {
+  Place place;
+  locate(kinematics, module, point, place);
+  project(kinematics, place.a, rows.row[rows.size++]);
+}
+
+/// Where rows stand: the resultant does not say where its contacts are. place: the resultant's.
+void SeveralContacts::addPlaces(const TaskKinematics& kinematics, const Module& module,
+                                const ModuleContactState& state, const Place& place,
+                                SpeedRows& rows) const noexcept {
+  ContactPointState there = state.approach.smoother.contact;
+  const double x_m = there.position_m;
+  const double shift_m = state.centre.shift_m;
+  CoverPart part{x_m + std::min(0.0, shift_m), x_m + std::max(0.0, shift_m)};
+  if (is_at_ends_) part = {0.0, module.length_m};
+  if (module.cone) {
+    if (!is_at_ends_) part = module.cone->around(part);
+    module.cone->add(chain_, kinematics, there.direction, part, inv_sqrt_weights_, rows);
+  } else if (is_at_ends_) {
+    there.position_m = part.from_m;
+    addRowAt(kinematics, module, there, rows);
+    there.position_m = part.to_m;
+    addRowAt(kinematics, module, there, rows);
+  } else {
+    project(kinematics, place.a, rows.row[rows.size++]);
+    there.position_m = x_m + shift_m;
+    if (shift_m != 0.0) addRowAt(kinematics, module, there, rows);
+  }
 }
 
 void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics,
@@ -110,6 +144,12 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
                        period_s, state.approach);
   passTransition(gains.force.transition, F_p_N, place.at.p_Base, period_s, state.transition);
   if (!commanded.is_followed) state.approach.obstacle.high_s = 0.0;
+  if (module.centre) {
+    if (state.approach.memory_N_per_m == 0.0 || reading.is_lost)
+      state.centre = {};
+    else if (reading.contact.isNew())
+      module.centre->update(gains.force, reading.contact, state.approach.smoother, state.centre);
+  }
 }
 
 /// The second level's.
@@ -117,10 +157,7 @@ void SeveralContacts::addRow(const ForceGains& gains, const TaskKinematics& kine
                              const Module& module, const ModuleContactState& state,
                              const Place& place, SpeedRows& rows) const noexcept {
   const int first = rows.size;
-  if (module.cone)
-    module.cone->add(chain_, kinematics, state.approach.smoother.contact, inv_sqrt_weights_, rows);
-  else
-    project(kinematics, place, rows.row[rows.size++]);
+  addPlaces(kinematics, module, state, place, rows);
   module.limit.limitRows(gains, contactForce_N(gains, state), module.cosine(), state.approach,
                          first, rows);
   for (int i = first; i < rows.size; ++i) rows.row[i].presence = presence(gains, state.approach);

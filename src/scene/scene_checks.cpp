@@ -154,9 +154,12 @@ void checkModules(const Checked& c) {
 /// What acceleration_law.h has no law for.
 void checkLevel(const Checked& c) {
   const ForceControlConfig& control = *c.scene.controller;
-  if (control.level != ControlLevel::kAcceleration) return;
-  const std::string at_level = " with the level acceleration";
   const Variant variant = control.variant;
+  const bool is_velocity = control.level == ControlLevel::kVelocity;
+  if (control.limit_at != LimitAt::kAuto && (variant != Variant::kNullLimit || !is_velocity))
+    c.fail("controller.limit_at", "is of null_limit at the level velocity", "auto");
+  if (is_velocity) return;
+  const std::string at_level = " with the level acceleration";
   if (variant != Variant::kNullSpace && variant != Variant::kNullTask &&
       variant != Variant::kNullLimit) {
     c.fail("controller.level", "acceleration has no variant " + wordOf(kVariantWords, variant),

@@ -97,6 +97,17 @@ Row<ForceControlConfig> frictionRow() {
                            &ForceControlConfig::friction_coefficient));
 }
 
+Row<ForceControlConfig> limitAtRow() {
+  return choice(
+      "limit_at",
+      "where on a tactile module null_limit limits the approach, as two contacts may press "
+      "on one: resultant where their sum acts; stiffness_centre there, and where changes "
+      "of it act; module_ends at both ends, which bounds all contacts on one side, at the "
+      "price of more give; auto stiffness_centre on robots with several modules, and "
+      "else resultant",
+      &ForceControlConfig::limit_at, kLimitAtWords);
+}
+
 Table<ForceGains> responseKeys() {
   using Config = ForceGains;
   return {
@@ -150,7 +161,8 @@ Row<SceneConfig> controllerSection() {
   const Table<ForceGains> gains = join(responseKeys(), responseLimitKeys());
   return optional(group<SceneConfig>(
       "controller", "force control; absent: no tactile module is even read",
-      join(inside(&SceneConfig::controller, {variantRow(), levelRow(), orderRow(), frictionRow()}),
+      join(inside(&SceneConfig::controller,
+                  {variantRow(), levelRow(), orderRow(), frictionRow(), limitAtRow()}),
            inside(&SceneConfig::gains, inside(&Gains::force, gains))),
       [](SceneConfig& scene) { scene.controller.emplace(); }));
 }

@@ -135,11 +135,13 @@ void SimulatedRobot::touch(double t_s, Module& module) noexcept {
   for (std::size_t k = 0; k < module.obstacles.size(); ++k) {
     Obstacle& obstacle = module.obstacles[k];
     const ObstacleContact contact = obstacle.touch(axis, t_s, &slid_m_[k]);
-    module.hardest_N = std::max(module.hardest_N, contact.force_N);
+    Vector3 force_Base = contact.force_Base;
     if (obstacle.hasFriction()) {
       const ObstacleFriction friction = obstacle.rub(step, axis, contact);
       push(friction.p_ModuleSurface, friction.force_Base, module);
+      force_Base += friction.force_Base;
     }
+    module.hardest_N = std::max(module.hardest_N, force_Base.norm());
     if (contact.force_N != 0.0)
       push(Vector3(contact.position_m, 0.0, 0.0), contact.force_Base, module);
   }

@@ -56,6 +56,7 @@ controller:
   level: velocity
   order: 2
   friction_coefficient: 0
+  limit_at: auto
   time_constant_s: 0.1
   damping: 0.5
   contact_threshold_N: 1.2

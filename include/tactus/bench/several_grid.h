@@ -18,8 +18,13 @@ enum class SeveralKind {
   kSqueezed,   ///< both sides of one link, or of two, with little room
   kVanishing,  ///< the first is gone a while after the second has come
   kMoving,     ///< the second comes and goes slowly
+  // Both before one module, see same_module.h:
+  kSameSide,   ///< of it
+  kAcross,     ///< the second lies across, so that forces differ by 90 degrees
+  kBothSides,  ///< the second is behind the link
 };
-inline constexpr int kSeveralKinds = 6;
+inline constexpr int kSeveralKinds = 9;
+inline constexpr int kDrawnKinds = 6;  ///< by drawSeveral(), in turn
 const char* severalKindName(SeveralKind kind);
 
 struct SeveralCase {
@@ -34,8 +39,11 @@ struct SeveralCase {
 /// whose links do not come to their posts, or that do not start clear, are left out.
 std::vector<SeveralCase> drawSeveral(const RunSetup& base, std::uint64_t seed, int count);
 
-/// A row of the table for each kind and for each surroundings, over the runs that say something,
-/// and one of all. Those of surroundings are without posts that move.
+/// Without limits of acceleration and force, which would judge instead of the law.
+RunSetup withoutLimits(RunSetup base);
+
+/// A row of the table for each kind and each surroundings that there is, over the runs that say
+/// something, and one of all. Those of surroundings are without posts that move.
 Table emptySeveralTable(const std::string& name);
 void addSeveralRows(const std::string& trial, const std::vector<SeveralCase>& cases,
                     const std::vector<SeveralRun>& runs, Table& table);

@@ -52,7 +52,7 @@ struct ControllerState {
   double speed_share = 1.0;  ///< of all but answers to contacts; less without a tactile module
   std::array<TactileReading, kMaxTactileModules> modules;
   ContactControllerState contact;
-  SeveralContactsState several;  ///< instead, with several modules
+  SeveralContactsState several;  ///< instead, see hasContactRows()
   JointLimitZones zones;         ///< of the last gains
   RetreatState retreat;
 
@@ -202,7 +202,7 @@ class Controller {
   std::vector<CoverCompensation> covers_;  ///< one a module, or none
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
   std::optional<ContactController> contact_controller_;
-  std::optional<SeveralContacts> several_contacts_;  ///< instead, with several modules
+  std::optional<SeveralContacts> several_contacts_;  ///< instead, see hasContactRows()
 };
 
 }  // namespace tactus

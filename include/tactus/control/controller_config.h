@@ -77,12 +77,21 @@ enum class ControlLevel {
   kAcceleration,  ///< acceleration_law.h; null space, null_task and null_limit only
 };
 
+/// Where on a tactile module null_limit limits the approach, as two contacts may press on one.
+enum class LimitAt {
+  kAuto,             ///< kResultant with one module, kStiffnessCentre with several
+  kResultant,        ///< M / F alone
+  kStiffnessCentre,  ///< there, and where changes of the force act: stiffness_centre.h
+  kModuleEnds,       ///< at both ends, each with the whole force
+};
+
 struct ForceControlConfig {
   Variant variant = Variant::kNullSpace;
   ControlLevel level = ControlLevel::kVelocity;
   int order = 2;                      ///< of the target dynamics (4): 1 or 2
   bool has_estimator = false;         ///< of the stiffness; else it is as assumed
   double friction_coefficient = 0.0;  ///< mu_max that contacts may have; null_limit only
+  LimitAt limit_at = LimitAt::kAuto;  ///< null_limit only
 };
 
 /// What an arm does that loses one of several tactile modules (silent, or no numbers) while nothing
@@ -110,5 +119,12 @@ struct ControllerConfig {
   std::optional<ClearanceConfig> clearance{};
   Gains gains{};  ///< no structure: what the first cycle is given, and all where nobody tunes
 };
+
+/// Whether contacts have rows of their own, see several_contacts.h; else a law answers one.
+inline bool hasContactRows(const ControllerConfig& config) {
+  if (config.tactile_modules.size() > 1) return true;
+  return config.force_control && (config.force_control->limit_at == LimitAt::kStiffnessCentre ||
+                                  config.force_control->limit_at == LimitAt::kModuleEnds);
+}
 
 }  // namespace tactus

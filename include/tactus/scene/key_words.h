@@ -31,6 +31,13 @@ inline constexpr std::array kLevelWords = {
     Word<ControlLevel>{"acceleration", ControlLevel::kAcceleration},
 };
 
+inline constexpr std::array kLimitAtWords = {
+    Word<LimitAt>{"auto", LimitAt::kAuto},
+    Word<LimitAt>{"resultant", LimitAt::kResultant},
+    Word<LimitAt>{"stiffness_centre", LimitAt::kStiffnessCentre},
+    Word<LimitAt>{"module_ends", LimitAt::kModuleEnds},
+};
+
 /// Of TaskConfig::components.
 inline constexpr std::array kComponentWords = {
     Word<int>{"x", 0},  Word<int>{"y", 1},  Word<int>{"z", 2},

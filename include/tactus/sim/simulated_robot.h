@@ -36,8 +36,7 @@ class SimulatedRobot final : public Robot {
   double trueForce_N(int module = 0) const noexcept {
     return modules_.empty() ? 0.0 : modules_[module].true_force_N;
   }
-  /// The strongest that one obstacle pushes on a module's cover, which the sum above may hide, N;
-  /// without friction.
+  /// The strongest that one obstacle pushes on a module's cover, which the sum above may hide, N.
   double hardestContact_N(int module) const noexcept { return modules_[module].hardest_N; }
   /// What pushes where no module feels it; null unless the plant has capsules.
   const LinkContacts* linkContacts() const noexcept { return links_ ? &*links_ : nullptr; }
