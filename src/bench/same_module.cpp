@@ -71,7 +71,7 @@ std::vector<SeveralCase> drawSameModule(const RunSetup& base, std::uint64_t seed
   BenchRandom draw(seed);
   std::vector<SeveralCase> cases;
   for (int i = 0; i < count; ++i) {
-    SeveralCase drawn{pairKind(i), 1, withoutLimits(base)};
+    SeveralCase drawn{pairKind(i), Surroundings::kOpen, 1, withoutLimits(base)};
     drawPath(draw, drawn.setup);
     const ModulePaths paths = freePaths(drawn.setup);
     drawn.setup.duration_s += kPairRest_s;

@@ -8,12 +8,12 @@ namespace tactus {
 /// frame, m.
 struct StiffnessCentreState {
   bool has_reference = false;
-  Vector3 F_BaseRef;     ///< an earlier reading, N
-  Vector3 p_BaseRef;     ///< and its place
-  double since_s = 0.0;  ///< that reading
-  Vector3 p_Base;        ///< the centre
-  double weight = 0.0;   ///< sum of dF^2 behind it, N^2; 0: nothing is known
-  double shift_m = 0.0;  ///< along x from the smoother's contact to it, beyond doubt
+  Vector3 F_BaseRef = Vector3::Zero();  ///< an earlier reading, N
+  Vector3 p_BaseRef = Vector3::Zero();  ///< and its place
+  double since_s = 0.0;                 ///< that reading
+  Vector3 p_Base = Vector3::Zero();     ///< the centre
+  double weight = 0.0;                  ///< sum of dF^2 behind it, N^2; 0: nothing is known
+  double shift_m = 0.0;                 ///< along x from the smoother's contact to it, beyond doubt
 };
 
 // clang-format off: equations
