@@ -9,7 +9,7 @@ namespace {
 constexpr double kLeastShift_m = 0.01;
 constexpr double kLeastChange = 0.1;  ///< of the force: less is sliding
 constexpr double kMaxWeight = 30.0;   ///< in s^2, of what was before
-constexpr double kDoubt = 0.75;       ///< of the length, where all that is known is one s
+constexpr double kDoubt = 0.5;        ///< of the length, where all that is known is one s
 constexpr double kStale_s = 1.0;
 
 double alongAxis(const Pose& X_BaseModule, const Vector3& p_Base) {

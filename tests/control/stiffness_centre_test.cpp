@@ -122,7 +122,7 @@ TEST(StiffnessCentre, IsWhereTwoSpringsAreIt) {
     ++apart;
     EXPECT_GT(shift_m * way_m, 0.0) << "towards it";
   }
-  EXPECT_GT(apart, 20);
+  EXPECT_GT(apart, 10);
 }
 
 TEST(StiffnessCentre, IsFoundUnderNoise) {
@@ -150,7 +150,7 @@ TEST(StiffnessCentre, OfOneContactIsTheContact) {
         const double way_m = (4.0 + 3.9 * std::sin(0.01 * i)) / springs[0].stiffness_N_per_m;
         const double slide_m = 0.02 * std::sin(0.004 * i);
         module.press(springs, way_m, 0.0, slide_m, noise_N, random);
-        ASSERT_LE(std::abs(module.centre().shift_m), noise_N > 0.02 ? 0.01 : 0.0)
+        ASSERT_LE(std::abs(module.centre().shift_m), noise_N > 0.02 ? 0.02 : 0.0)
             << draw << " " << i << " " << noise_N;
       }
       EXPECT_GT(module.centre().weight, 0.0) << "it has been looked for";
@@ -158,18 +158,19 @@ TEST(StiffnessCentre, OfOneContactIsTheContact) {
   }
 }
 
-/// A link that also turns: the place that is found approaches at least as fast as the centre.
+/// A link that also turns, and loses none of them: the place that is found approaches at least as
+/// fast as the centre.
 TEST(StiffnessCentre, OfATurningLinkApproachesNoSlower) {
   test::Random random(84);
   int told = 0;
   for (int draw = 0; draw < 200; ++draw) {
     const std::vector<Spring> springs = drawPair(random);
     const double x_c = stiffnessCentre(springs);
-    const double v = 0.002, turn = random.uniform(-0.02, 0.02);  // m/s at the centre, rad/s
+    const double v = 0.005, turn = random.uniform(-0.05, 0.05);  // m/s at the centre, rad/s
     PressedModule module;
     for (int i = 0; i < 500; ++i) {
       const double t_s = kSample_s * i;
-      module.press(springs, 0.004 + (v - turn * x_c) * t_s, turn * t_s, 0.0, 0.0, random);
+      module.press(springs, 0.04 + (v - turn * x_c) * t_s, turn * t_s, 0.0, 0.0, random);
     }
     if (module.centre().weight == 0.0) continue;
     ++told;

@@ -27,7 +27,7 @@ struct StiffnessCentreState {
 ///   x_c)
 /// All along the smoothed direction F^. If the link turns meanwhile, x is not x_c, but a place that
 /// approaches the faster, never slower: a limit there holds at x_c, too.
-/// One contact has x_c = M / F. What is less than a centimetre, mu r and 0.75 lengths times
+/// One contact has x_c = M / F. What is less than a centimetre, mu r and half a length times
 /// s / sqrt W away from that is no second contact.
 /// A reading that is a second old is replaced: slow changes are friction and drift. Of readings up
 /// to F_th nothing is learnt.
