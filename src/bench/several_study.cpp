@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kSeveralBase = "/whole_arm/crops9_skin_rail.yaml";
 constexpr std::uint64_t kSeveralSeed = 20'261'125;
-constexpr int kSeveralDraws = 1200;
+constexpr int kSeveralDraws = 600;
 constexpr int kPairDraws = 200;
 
 /// What is done to all environments.

@@ -41,11 +41,12 @@ struct Draw {
     const ContactPointState point{.position_m = random.uniform(0.0, 0.15),
                                   .direction = Vector3(0.0, std::cos(angle), std::sin(angle))};
     const int first = rows.size;
-    FrictionCone(tactile, rubs ? 0.5 : 0.0)
-        .add(config.chain, kinematics, point, ScaledVector::Ones(), rows);
+    const FrictionCone cone(tactile, rubs ? 0.5 : 0.0);
+    cone.add(config.chain, kinematics, point.direction,
+             cone.around({point.position_m, point.position_m}), ScaledVector::Ones(), rows);
     if (!rubs) rows.size = first + 1;
     setSpeeds(random, first, -0.1, 0.1, random.logUniform(10.0, 1e5));
-    null_rows.row[null_rows.size++] = rows.row[first];
+    for (int i = first; i < rows.size; ++i) null_rows.row[null_rows.size++] = rows.row[i];
   }
 
   void addPair(test::Random& random) {
