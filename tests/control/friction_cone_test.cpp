@@ -27,8 +27,9 @@ struct ConeCase {
                        components, 2,
                        scaled(JointVector(JointVector::Ones(n)), ScaledVector::Ones()), J);
     kinematics.pseudoinverse.factorise(J, n, 2);
-    FrictionCone(module, mu)
-        .add(chain, kinematics, contact,
+    const FrictionCone cone(module, mu);
+    cone.add(chain, kinematics, contact.direction,
+             cone.around({contact.position_m, contact.position_m}),
              scaled(JointVector(JointVector::Ones(n)), ScaledVector::Ones()), rows);
   }
 
@@ -91,7 +92,7 @@ TEST(FrictionCone, EveryNormalLiesBetweenItsCorners) {
     other.position_m += shift * c.mu * c.module.cover_radius_m;
     SpeedRows rows;
     FrictionCone(c.module, 0.0)
-        .add(c.chain, c.kinematics, other,
+        .add(c.chain, c.kinematics, other.direction, {other.position_m, other.position_m},
              scaled(JointVector(JointVector::Ones(c.n)), ScaledVector::Ones()), rows);
     const double edge = std::atan(c.mu);
     const double share[] = {std::sin(edge + angle) / std::sin(2.0 * edge),

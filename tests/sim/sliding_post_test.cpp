@@ -66,7 +66,9 @@ TEST(SlidingPost, NeverPushesHarderThanItBears) {
       const ObstacleContact contact = slides.touch(axis, 0.0, &slid_m);
       const double standing_N = stands.touch(axis, 0.0).force_N;
       ASSERT_LE(contact.force_N, bears_N);
-      if (slid_m.isZero(0.0)) ASSERT_EQ(contact.force_N, standing_N);
+      if (slid_m.isZero(0.0)) {
+        ASSERT_EQ(contact.force_N, standing_N);
+      }
     }
     slid += !slid_m.isZero(0.0);
   }

@@ -10,7 +10,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+constexpr double kPairPeriod_s = 0.001;
 constexpr double kSpeed_m_per_s = 0.01;
 
 /// A carriage along y with a link that turns about z and a tool at its end, which goes along y.
@@ -87,7 +87,7 @@ struct Held {
     plant.obstacles[1].post = PostConfig{{0.5, 0.015, 0.2}, Vector3::UnitZ(), 0.7, 0.02};
     plant.obstacles[1].stiffness_N_per_m = 20000.0;
     config.force_control->limit_at = at;
-    test::ClosedLoop loop(config, plant, kPeriod_s);
+    test::ClosedLoop loop(config, plant, kPairPeriod_s);
     for (int i = 0; i < 13000; ++i) {
       loop.step();
       const double force_N = loop.robot().trueForce_N(1);
@@ -126,7 +126,7 @@ TEST(OneContactOnAModule, MovesAsIfNoSecondWereLookedFor) {
         plant.obstacles.front().friction_coefficient = 0.6 * friction;
         ControllerConfig resultant = config;
         resultant.force_control->limit_at = LimitAt::kResultant;
-        test::ClosedLoop loop(config, plant, kPeriod_s), other(resultant, plant, kPeriod_s);
+        test::ClosedLoop loop(config, plant, kPairPeriod_s), other(resultant, plant, kPairPeriod_s);
         double highest_N = 0.0;
         for (int i = 0; i < 8000; ++i) {
           loop.step();
@@ -147,7 +147,7 @@ TEST(TwoContactsOnAModule, TouchNoHeap) {
   for (const LimitAt at : {LimitAt::kStiffnessCentre, LimitAt::kModuleEnds}) {
     ControllerConfig config = turningLink();
     config.force_control->limit_at = at;
-    test::ClosedLoop loop(config, plant, kPeriod_s);
+    test::ClosedLoop loop(config, plant, kPairPeriod_s);
     const test::AllocationGuard guard;
     loop.runUntil(3.0);
   }
