@@ -120,6 +120,12 @@ MovingObstacle bearableMotion(const ForceGains& gains, double stiffest_N_per_m) 
   return {m, limit_N / (2.0 * gains.time_constant_s * m), 1.5 * limit_N};
 }
 
+/// Whether a cover comes to this obstacle first, and the law gives way to it.
+bool isFeltBefore(const Scene& scene, const PathContacts& contacts, const CapsuleTouch& unsensed) {
+  const std::optional<PathTouch>& touch = contacts.touches[unsensed.obstacle];
+  return scene.controller.force_control && touch && touch->t_s < unsensed.t_s;
+}
+
 /// Of an arm that follows its path and does not give way.
 std::string unsensedWarning(const Scene& scene, const CapsuleTouch& touch) {
   const ContactSpring spring(scene.plant.obstacles[touch.obstacle],
@@ -160,7 +166,7 @@ std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& cont
     }
   }
   for (const CapsuleTouch& touch : contacts.unsensed)
-    warnings.push_back(unsensedWarning(scene, touch));
+    if (!isFeltBefore(scene, contacts, touch)) warnings.push_back(unsensedWarning(scene, touch));
   if (peak && peak->peak_N() > peak->max_force_N) {
     warnings.push_back(
         fmt::format("the stiffest contact{} may come to {:.3g} N, the sensor's max_force_N is "

@@ -12,10 +12,8 @@ static_assert(4 * kMaxTactileModules + kMaxNearBodies + kMaxJoints <= kMaxRows,
 /// back before it is slow enough, and bounce: the way back takes T for each F_th of overshoot.
 constexpr double kFading = 0.2;
 
-/// How fast m fades: not where the contact was, and still is felt.
-double fading(const ForceGains& gains, const ModuleContactState& state) noexcept {
-  const bool is_felt = state.approach.smoother.contact.force_N > gains.transition.release_force_N;
-  return kFading * (is_felt ? 1.0 - state.transition.gamma : 1.0);
+bool isFelt(const ForceGains& gains, const ModuleContactState& state) noexcept {
+  return state.approach.smoother.contact.force_N > gains.transition.release_force_N;
 }
 
 double contactForce_N(const ForceGains& gains, const ModuleContactState& state) noexcept {
@@ -139,9 +137,11 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
   }
   locate(kinematics, module, contact, place);
   const double F_p_N = contactForce_N(gains.force, state);
-  module.limit.observe(gains.force, place.a,
-                       {F_p_N, state.transition.gamma, fading(gains.force, state)}, commanded.q,
-                       period_s, state.approach);
+  const bool is_felt = isFelt(gains.force, state);
+  module.limit.observe(
+      gains.force, place.a,
+      {F_p_N, is_felt ? 1.0 : state.transition.gamma, is_felt ? 0.0 : kFading},
+      commanded.q, period_s, state.approach);
   passTransition(gains.force.transition, F_p_N, place.at.p_Base, period_s, state.transition);
   if (!commanded.is_followed) state.approach.obstacle.high_s = 0.0;
   if (module.centre) {

@@ -19,9 +19,9 @@ TEST(SeveralGrid, DrawsTheSameEachTimeAndOfAllKinds) {
   const std::vector<SeveralCase> some = drawSeveral(skin(), 5, 24);
   const std::vector<SeveralCase> again = drawSeveral(skin(), 5, 24);
   ASSERT_EQ(some.size(), again.size());
-  std::array<int, kSeveralKinds> kinds{};
+  std::array<int, kDrawnKinds> kinds{};
   for (std::size_t i = 0; i < some.size(); ++i) {
-    ++kinds[static_cast<std::size_t>(some[i].kind)];
+    ++kinds.at(static_cast<std::size_t>(some[i].kind));
     const RunSetup& setup = some[i].setup;
     EXPECT_EQ(setup.plant.obstacles.size(), again[i].setup.plant.obstacles.size());
     EXPECT_EQ(setup.controller.q_start, again[i].setup.controller.q_start);

@@ -75,7 +75,7 @@ struct Held {
     PlantConfig plant = test::crops9Plant({});
     const std::pair<int, double> covers[] = {
         {2, 0.22}, {3, 0.38}, {5, 0.17}};  // joint, length in m
-    config.tactile_modules.resize(3, config.tactile_modules.front());
+    config.tactile_modules.assign(3, TactileModuleConfig(config.tactile_modules.front()));
     plant.modules.resize(3, plant.modules.front());
     for (std::size_t i = 0; i < 3; ++i) {
       config.tactile_modules[i].link.joint = covers[i].first;
