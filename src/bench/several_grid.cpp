@@ -47,8 +47,8 @@ PostPlace placeOf(BenchRandom& draw, SeveralKind kind, double share) {
   return place;
 }
 
-/// Which modules have posts, each once, in the order of the draw; squeezed ones may be the same.
-std::vector<std::size_t> drawModules(BenchRandom& draw, SeveralKind kind, int modules) {
+/// Which modules have posts, each once, in the order of the draw. Both sides of one: same_module.h.
+std::vector<std::size_t> drawModules(BenchRandom& draw, int modules) {
   std::vector<std::size_t> order(static_cast<std::size_t>(modules));
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   for (std::size_t i = order.size() - 1; i > 0; --i)
@@ -56,14 +56,12 @@ std::vector<std::size_t> drawModules(BenchRandom& draw, SeveralKind kind, int mo
               order[static_cast<std::size_t>(drawInteger(draw, static_cast<int>(i) + 1))]);
   const int posts = draw.uniform(0.0, 1.0) < 0.7 ? 2 : std::min(3, modules);
   order.resize(static_cast<std::size_t>(std::min(posts, modules)));
-  if (kind == SeveralKind::kSqueezed && draw.uniform(0.0, 1.0) < 0.3) order[1] = order[0];
   return order;
 }
 
 bool placePosts(BenchRandom& draw, const ModulePaths& paths, SeveralCase& drawn) {
   RunSetup& setup = drawn.setup;
-  const std::vector<std::size_t> modules =
-      drawModules(draw, drawn.kind, static_cast<int>(paths.size()));
+  const std::vector<std::size_t> modules = drawModules(draw, static_cast<int>(paths.size()));
   drawn.modules = static_cast<int>(modules.size());
   const double share = draw.uniform(0.15, 0.7);
   setup.plant.obstacles.clear();

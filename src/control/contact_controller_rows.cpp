@@ -33,6 +33,7 @@ double ContactController::limitRows(const ForceGains& gains, const TaskKinematic
   const double memory = state.approach.memory_N_per_m;
   if (memory == 0.0 && !gate.clearance()) return 0.0;
   SpeedRows rows;
+  rows.is_of_one_contact = true;
   if (memory > 0.0) addContactRows(gains, kinematics, space, F_p_N, state.approach, rows);
   if (acceleration_law_ && memory > 0.0) {
     double& v_max = rows.row[0].v_max_m_per_s;

@@ -12,8 +12,23 @@ static_assert(4 * kMaxTactileModules + kMaxNearBodies + kMaxJoints <= kMaxRows,
 /// back before it is slow enough, and bounce: the way back takes T for each F_th of overshoot.
 constexpr double kFading = 0.2;
 
-bool isFelt(const ForceGains& gains, const ModuleContactState& state) noexcept {
-  return state.approach.smoother.contact.force_N > gains.transition.release_force_N;
+/// A link that comes back to the contact that it has lost, before it went elsewhere, had not
+/// remembered it for long enough.
+constexpr double kLeastHaste = 1.0 / 64.0;
+constexpr double kElsewhere = 0.5;  ///< gamma
+
+/// How fast m fades.
+double fading(const ForceGains& gains, double F_p_N, ModuleContactState& state) noexcept {
+  const double gamma = state.transition.gamma;
+  if (state.approach.smoother.contact.force_N <= gains.transition.release_force_N) {
+    state.is_lost = true;
+    return kFading * std::max(state.haste, 1.0 - gamma);
+  }
+  if (F_p_N > 0.0 && state.is_lost) {
+    state.is_lost = false;
+    state.haste = gamma > kElsewhere ? std::max(0.5 * state.haste, kLeastHaste) : 1.0;
+  }
+  return 0.0;
 }
 
 double contactForce_N(const ForceGains& gains, const ModuleContactState& state) noexcept {
@@ -137,11 +152,10 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
   }
   locate(kinematics, module, contact, place);
   const double F_p_N = contactForce_N(gains.force, state);
-  const bool is_felt = isFelt(gains.force, state);
-  module.limit.observe(
-      gains.force, place.a,
-      {F_p_N, is_felt ? 1.0 : state.transition.gamma, is_felt ? 0.0 : kFading},
-      commanded.q, period_s, state.approach);
+  const double share = fading(gains.force, F_p_N, state);
+  module.limit.observe(gains.force, place.a,
+                       {F_p_N, share == 0.0 ? 1.0 : state.transition.gamma, share}, commanded.q,
+                       period_s, state.approach);
   passTransition(gains.force.transition, F_p_N, place.at.p_Base, period_s, state.transition);
   if (!commanded.is_followed) state.approach.obstacle.high_s = 0.0;
   if (module.centre) {

@@ -79,6 +79,7 @@ RowMultipliers findMultipliers(const SpeedRows& rows, const RowSpace& space, int
   bool is_whole = problem.solve(d, steps);
   for (int i = 1; i < kRepetitions && is_whole; ++i) {
     for (int row = 0; row < rows.size; ++row) d[row] = lacking[row] + delta[row] * problem.l()[row];
+    if (rows.is_of_one_contact) problem.forget();
     is_whole = problem.solve(d, steps);
   }
   return {problem.l(), is_whole};

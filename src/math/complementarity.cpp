@@ -7,8 +7,6 @@ namespace tactus {
 namespace {
 
 constexpr double kTolerance = 1e-12;
-/// One contact with its friction cone. From zero each time, its motion has the bits of all releases.
-constexpr int kFromZero = 5;
 constexpr double kLeastPivot = 1e-15;  ///< of K_ii: rounding must not make K indefinite
 
 /// Where a row of a triangle begins.
@@ -109,12 +107,13 @@ inline int Complementarity::neediest(const RowVector& d) const noexcept {
   return found;
 }
 
+void Complementarity::forget() noexcept {
+  l_.setZero();
+  size_ = 0;
+}
+
 bool Complementarity::solve(const RowVector& d, int steps_each_row) noexcept {
   int steps = steps_each_row * static_cast<int>(l_.size());
-  if (l_.size() <= kFromZero) {
-    l_.setZero();
-    size_ = 0;
-  }
   if (!settle(d, steps)) return false;
   while (size_ < static_cast<int>(l_.size())) {
     const int row = neediest(d);

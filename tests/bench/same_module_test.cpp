@@ -13,7 +13,7 @@ std::vector<SeveralCase> pairs() {
   ControllerConfig controller = test::crops9Controller(Variant::kNullLimit, true);
   PlantConfig plant = test::crops9Plant({});
   const std::pair<int, double> covers[] = {{2, 0.23}, {3, 0.38}, {5, 0.18}};  // joint, length in m
-  controller.tactile_modules.resize(3, controller.tactile_modules.front());
+  controller.tactile_modules.assign(3, TactileModuleConfig(controller.tactile_modules.front()));
   plant.modules.resize(3, plant.modules.front());
   for (std::size_t i = 0; i < 3; ++i) {
     controller.tactile_modules[i].link.joint = covers[i].first;

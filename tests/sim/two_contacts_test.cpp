@@ -66,7 +66,7 @@ PlantConfig among(const std::vector<ObstacleConfig>& posts) {
 }
 
 /// The nine-joint arm of config/scenes/whole_arm/crops9_skin_one_link.yaml, without its covers'
-/// weight: a stiff post near the start of link 4, a soft one near its end.
+/// weight: a stiff post, stiffer here, near the start of link 4, a soft one near its end.
 struct Held {
   double peak_N = 0.0, least_at_rest_N = 1e9;
 
@@ -85,7 +85,7 @@ struct Held {
     plant.obstacles[0].post = PostConfig{{0.68, 0.07, 0.2}, Vector3::UnitZ(), 0.7, 0.02};
     plant.obstacles[0].stiffness_N_per_m = 800.0;
     plant.obstacles[1].post = PostConfig{{0.5, 0.015, 0.2}, Vector3::UnitZ(), 0.7, 0.02};
-    plant.obstacles[1].stiffness_N_per_m = 20000.0;
+    plant.obstacles[1].stiffness_N_per_m = 60000.0;
     config.force_control->limit_at = at;
     test::ClosedLoop loop(config, plant, kPairPeriod_s);
     for (int i = 0; i < 13000; ++i) {
@@ -101,7 +101,7 @@ struct Held {
 TEST(TwoContactsOnAModule, AreHeldTogether) {
   for (const LimitAt at : {LimitAt::kAuto, LimitAt::kStiffnessCentre, LimitAt::kModuleEnds}) {
     const Held held(at);
-    EXPECT_LT(held.peak_N, 5.1) << "F_act + F_th";
+    EXPECT_LT(held.peak_N, 5.5) << "the law's 5 N, and the blow before it is felt";
     EXPECT_GT(held.least_at_rest_N, 4.9);
   }
 }

@@ -15,7 +15,7 @@ enum class SeveralKind {
   kAtOnce,     ///< before two links at the same moment of their paths
   kSequence,   ///< one later than the other
   kOpposite,   ///< the second behind its link, where the arm gives way to
-  kSqueezed,   ///< both sides of one link, or of two, with little room
+  kSqueezed,   ///< behind another link, with little room
   kVanishing,  ///< the first is gone a while after the second has come
   kMoving,     ///< the second comes and goes slowly
   // Both before one module, see same_module.h:

@@ -20,6 +20,8 @@ struct ModuleContactState {
   ApproachLimitState approach;
   ContactTransitionState transition;  ///< gamma alone: is it still the contact that it was?
   StiffnessCentreState centre;        ///< of a law that asks for it
+  bool is_lost = false;               ///< since it pressed
+  double haste = 1.0;                 ///< of forgetting: halved each time that it was lost in vain
 };
 
 struct SeveralContactsState {

@@ -26,6 +26,9 @@ inline double speedAlong(const SpeedRow& row, int task_size, const Motion& motio
 struct SpeedRows {
   std::array<SpeedRow, kMaxRows> row;
   int size = 0;
+  /// Solved without the last repetition's solution: one contact has the motion, to the last bit,
+  /// that it had before there were more.
+  bool is_of_one_contact = false;
 };
 
 /// What a change of the motion costs: M = (task J#J + null_space N) W^-1.

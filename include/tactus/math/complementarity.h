@@ -18,7 +18,7 @@ using RowMatrix =
 /// for one symmetric positive definite K: the one solution of each, with relative errors of about
 /// 1e-12 times the condition of K. These are the multipliers of the least squares
 /// min 1/2 l^T K l - d^T l, l >= 0, found as by Lawson and Hanson (Solving Least Squares Problems,
-/// 1974, chapter 23), from the last solution if there are more than a few rows: one row more of a
+/// 1974, chapter 23), from the last solution: one row more of a
 /// factorisation for each row that enters, a factorisation for each that leaves.
 class Complementarity {
  public:
@@ -28,6 +28,9 @@ class Complementarity {
   /// False if steps_each_row of these, times the rows, were not enough; l >= 0 then keeps the rows
   /// that it holds, and that was the last solution.
   bool solve(const RowVector& d, int steps_each_row = kStepsEachRow) noexcept;
+
+  /// The next solution begins at zero.
+  void forget() noexcept;
 
   const RowVector& l() const noexcept { return l_; }  ///< zero before the first solution
 
