@@ -65,7 +65,7 @@ std::vector<VariantLoop> variantLoops(const ControllerConfig& config, const Plan
       limit.model_drive_lag_s = config.drive_lag_s;
       limit.model_filter_cutoff_hz = config.tactile_modules[module].filter_cutoff_hz;
       // Several contacts have that form in both levels.
-      if (config.tactile_modules.size() > 1) return {{"approach limit", limit, kNull}};
+      if (hasContactRows(config)) return {{"approach limit", limit, kNull}};
       return {{"one space", one, kNull}, {"approach limit", limit, kNull}};
     }
   }

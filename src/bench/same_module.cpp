@@ -11,7 +11,7 @@ namespace {
 constexpr double kPairRest_s = 20.0;
 constexpr double kMinApart = 0.25;  ///< of the cover's length
 constexpr double kMinLength_m = 0.15;
-constexpr int kPairDraws = 40;
+constexpr int kTriesEachPath = 40;
 
 SeveralKind pairKind(int i) {
   if (i % 5 == 3) return SeveralKind::kAcross;
@@ -77,7 +77,7 @@ std::vector<SeveralCase> drawSameModule(const RunSetup& base, std::uint64_t seed
     drawn.setup.duration_s += kPairRest_s;
     drawn.setup.plant.robot_stiffness_N_per_m =
         draw.uniform(0.0, 1.0) < 0.4 ? kNoLimit : draw.logUniform(2e3, 1e5);
-    for (int k = 0; k < kPairDraws; ++k) {
+    for (int k = 0; k < kTriesEachPath; ++k) {
       if (!placePair(draw, paths, drawn)) continue;
       cases.push_back(std::move(drawn));
       break;

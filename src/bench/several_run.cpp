@@ -102,9 +102,28 @@ double restLimit_N(const RunSetup& setup) {
   return (force.activation_force_N + force.contact_threshold_N) * std::hypot(1.0, friction);
 }
 
-double largestStep(const JointVector& a, const JointVector& b) {
-  return (a - b).cwiseAbs().maxCoeff();
-}
+/// What speeds change by beyond what they changed by in the cycle before: an arm that accelerates
+/// makes no step.
+struct StepWatch {
+  explicit StepWatch(int joints)
+      : velocity(JointVector::Zero(joints)), change(JointVector::Zero(joints)) {}
+
+  void update(const JointVector& now, bool is_new, SeveralRun& run) {
+    const JointVector change_now = now - velocity;
+    without_samples = is_new ? 0 : without_samples + 1;
+    if (without_samples > 1 && cycles > 1) {
+      const double step = (change_now - change).cwiseAbs().maxCoeff();
+      run.step_between_samples = std::max(run.step_between_samples, step);
+    }
+    velocity = now;
+    change = change_now;
+    ++cycles;
+  }
+
+  JointVector velocity, change;
+  int without_samples = 0;
+  long cycles = 0;
+};
 
 void sumUp(const std::vector<Spread>& rest, SeveralRun& run) {
   for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -136,7 +155,7 @@ SeveralRun runSeveral(const RunSetup& setup) {
   SeveralRun run;
   run.limit_N = restLimit_N(setup);
   std::vector<Spread> rest(setup.controller.tactile_modules.size());
-  JointVector before = JointVector::Zero(setup.controller.chain.size());
+  StepWatch steps(setup.controller.chain.size());
   const long cycles = std::lround(setup.duration_s / setup.period_s);
   const long rest_from = cycles - std::lround(JudgedRun::kRest_s / setup.period_s);
   for (long cycle = 0; cycle < cycles; ++cycle) {
@@ -157,10 +176,7 @@ SeveralRun runSeveral(const RunSetup& setup) {
       rest[i].add(force_N);
       run.modules[i].peak_at_rest_N = std::max(run.modules[i].peak_at_rest_N, force_N);
     }
-    if (!is_new && cycle > 0)
-      run.step_between_samples =
-          std::max(run.step_between_samples, largestStep(output.velocity, before));
-    before = output.velocity;
+    steps.update(output.velocity, is_new, run);
     run.clearance_left_m = std::min(run.clearance_left_m, clearance.left_m(output.q_desired));
     touches.update(input.q_measured, t_s, run, output);
     run.is_out = run.is_out || ends.isOut(input.q_measured, cycle == 0);

@@ -105,9 +105,9 @@ std::vector<std::size_t> setGains(const std::vector<std::string>& settings) {
 }
 
 void checkGains(const std::string& path, const Scene& scene, const CycleRecord& recorded) {
-  const auto& force_control = scene.controller.force_control;
-  const bool is_joint_space = force_control && force_control->variant == Variant::kJointSpace;
-  const auto problem = findGainProblem(recorded.gains, is_joint_space, scene.period_s);
+  const ControllerConfig& controller = scene.controller;
+  const GainUse use = gainUse(controller.force_control, controller.tactile_modules.size());
+  const auto problem = findGainProblem(recorded.gains, use, scene.period_s);
   if (!problem) return;
   failAt({std::make_shared<std::string>(path), 1, 1}, problem->path,
          fmt::format("{}, in the gains recorded at {:.9g} s", problem->problem, recorded.t_s),

@@ -131,7 +131,10 @@ std::string unsensedWarning(const Scene& scene, const CapsuleTouch& touch) {
   const ContactSpring spring(scene.plant.obstacles[touch.obstacle],
                              scene.plant.robot_stiffness_N_per_m);
   const std::string& link = scene.capsule_links[touch.capsule];
-  const std::string force = fmt::format("about {:.3g} N", spring.force_N(touch.deepest_m));
+  const double force_N =
+      std::min(scene.plant.obstacles[touch.obstacle].slide_force_N.value_or(kNoLimit),
+               spring.force_N(touch.deepest_m));
+  const std::string force = fmt::format("about {:.3g} N", force_N);
   if (touch.t_s == 0.0) {
     return fmt::format("{} touches obstacle {} unsensed at the start, {:.3g} mm deep, {}", link,
                        touch.obstacle, 1e3 * touch.depth_m, force);

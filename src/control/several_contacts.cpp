@@ -15,18 +15,21 @@ constexpr double kFading = 0.2;
 /// A link that comes back to the contact that it has lost, before it went elsewhere, had not
 /// remembered it for long enough.
 constexpr double kLeastHaste = 1.0 / 64.0;
-constexpr double kElsewhere = 0.5;  ///< gamma
+constexpr double kElsewhere = 0.5;  ///< of the distance where a contact is another
 
 /// How fast m fades.
-double fading(const ForceGains& gains, double F_p_N, ModuleContactState& state) noexcept {
-  const double gamma = state.transition.gamma;
-  if (state.approach.smoother.contact.force_N <= gains.transition.release_force_N) {
+double fading(const ForceGains& gains, double F_p_N, const Vector3& p_Base,
+              ModuleContactState& state) noexcept {
+  if (F_p_N == 0.0 && state.approach.smoother.contact.force_N <= gains.transition.release_force_N) {
     state.is_lost = true;
-    return kFading * std::max(state.haste, 1.0 - gamma);
+    return kFading * std::max(state.haste, 1.0 - state.transition.gamma);
   }
   if (F_p_N > 0.0 && state.is_lost) {
     state.is_lost = false;
-    state.haste = gamma > kElsewhere ? std::max(0.5 * state.haste, kLeastHaste) : 1.0;
+    const double apart_m = (p_Base - state.transition.p_BaseLost).norm();
+    const bool is_back =
+        state.transition.touched && apart_m < kElsewhere * gains.transition.distance_m;
+    state.haste = is_back ? std::max(0.5 * state.haste, kLeastHaste) : 1.0;
   }
   return 0.0;
 }
@@ -149,10 +152,12 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
   if (reading.is_lost) {
     contact.force_N = 0.0;
     state.approach.position = {};  // else all of its absence were one way to its next sample
+    state.haste = 1.0;
+    state.transition = {};
   }
   locate(kinematics, module, contact, place);
   const double F_p_N = contactForce_N(gains.force, state);
-  const double share = fading(gains.force, F_p_N, state);
+  const double share = fading(gains.force, F_p_N, place.at.p_Base, state);
   module.limit.observe(gains.force, place.a,
                        {F_p_N, share == 0.0 ? 1.0 : state.transition.gamma, share}, commanded.q,
                        period_s, state.approach);

@@ -36,6 +36,7 @@ void StiffnessCentre::update(const ForceGains& gains, const ContactPointState& s
   const ContactPointState& contact = smoother.contact;
   if (contact.force_N <= gains.contact_threshold_N) {
     state.has_reference = false;
+    state.shift_m = shift_m(smoother, state);
     return;
   }
   const Pose& X = smoother.X_BaseModule;

@@ -54,7 +54,12 @@ const std::vector<GainKey>& gainKeys() {
   return keys;
 }
 
-std::optional<GainProblem> findGainProblem(const Gains& gains, bool is_joint_space,
+GainUse gainUse(const std::optional<ForceControlConfig>& force_control, std::size_t modules) {
+  if (!force_control) return {};
+  return {force_control->variant == Variant::kJointSpace, hasContactRows(force_control, modules)};
+}
+
+std::optional<GainProblem> findGainProblem(const Gains& gains, const GainUse& use,
                                            double period_s) {
   for (const GainKey& key : gainKeys()) {
     const double value = gainAt(gains, key.offset);
@@ -63,10 +68,10 @@ std::optional<GainProblem> findGainProblem(const Gains& gains, bool is_joint_spa
     return GainProblem{key.path, fmt::format("{} is out of range", value),
                        describeExpectation(key.spec)};
   }
-  return findGainConflict(gains, is_joint_space, period_s);
+  return findGainConflict(gains, use, period_s);
 }
 
-std::optional<GainProblem> findGainConflict(const Gains& gains, bool is_joint_space,
+std::optional<GainProblem> findGainConflict(const Gains& gains, const GainUse& use,
                                             double period_s) {
   // One explicit step of the drift term, or of the pull, must not overshoot.
   const auto tooHigh = [period_s](const char* path, double gain_per_s) {
@@ -76,13 +81,14 @@ std::optional<GainProblem> findGainConflict(const Gains& gains, bool is_joint_sp
   if (gains.task.drift_gain_per_s * period_s > 1.0)
     return tooHigh("task.drift_gain_per_s", gains.task.drift_gain_per_s);
   const ForceGains& force = gains.force;
-  if (is_joint_space && force.transition.release_force_N >= force.contact_threshold_N) {
+  if ((use.is_joint_space || use.has_contact_rows) &&
+      force.transition.release_force_N >= force.contact_threshold_N) {
     return GainProblem{
         "controller.transition.release_force_N",
         fmt::format("{} N is not below the contact threshold", force.transition.release_force_N),
         fmt::format("less than contact_threshold_N = {}", force.contact_threshold_N)};
   }
-  if (is_joint_space && force.pull_gain_per_s * period_s > 1.0)
+  if (use.is_joint_space && force.pull_gain_per_s * period_s > 1.0)
     return tooHigh("controller.pull_gain_per_s", force.pull_gain_per_s);
   if (force.estimator.min_N_per_m >= force.estimator.max_N_per_m) {
     return GainProblem{"stiffness.estimate.max_N_per_m",

@@ -269,9 +269,8 @@ void checkPeriod(const Checked& c) {
 }
 
 void checkGains(const Checked& c) {
-  const bool is_joint_space =
-      c.scene.controller && c.scene.controller->variant == Variant::kJointSpace;
-  const auto problem = findGainConflict(c.scene.gains, is_joint_space, c.scene.period_s);
+  const GainUse use = gainUse(c.scene.controller, c.robot.config.tactile_modules.size());
+  const auto problem = findGainConflict(c.scene.gains, use, c.scene.period_s);
   if (problem) c.fail(problem->path, problem->problem, problem->expectation);
 }
 

@@ -205,6 +205,11 @@ INSTANTIATE_TEST_SUITE_P(
                    "  transition: {release_force_N: 1.2}",
                    "scene.yaml:12:33: controller.transition.release_force_N: ",
                    "not below the contact threshold", "less than"},
+        BrokenText{"variant: null_task",
+                   "variant: null_limit\n  limit_at: module_ends\n"
+                   "  transition: {release_force_N: 1.2}",
+                   "scene.yaml:13:33: controller.transition.release_force_N: ",
+                   "not below the contact threshold", "less than"},
         BrokenText{"weights: [1, 2, 3]\ncontroller:\n  variant: null_task",
                    "joint_limit_avoidance: {}\ncontroller:\n  variant: joint_space\n"
                    "  pull_gain_per_s: 1001",

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+
 #include "support/allocation_guard.h"
 #include "support/closed_loop.h"
 #include "support/random_robot.h"
@@ -64,6 +67,44 @@ TEST(SeveralContacts, OfWhichOneVanishesLetTheOtherRestAtTheThreshold) {
   loop.runUntil(12.0);
   EXPECT_EQ(loop.robot().trueForce_N(0), 0.0);
   EXPECT_EQ(loop.robot().trueForce_N(1), 0.0) << "nothing that is remembered brings it back";
+}
+
+/// How fast the first module forgets a post in each of the pauses of 2 s in which none is there;
+/// each stands where shift_m of k says.
+std::vector<double> forgettingOf(const std::function<double(int)>& shift_m) {
+  constexpr int kPosts = 4;
+  std::vector<ObstacleConfig> posts;
+  for (int k = 0; k < kPosts; ++k) {
+    ObstacleConfig next = post(0, 1.0, 0.004 + 0.002 * k, 3000.0);
+    next.x_m += shift_m(k);
+    next.appears_s = 3.0 * k;
+    next.vanishes_s = 3.0 * k + 1.0;
+    posts.push_back(next);
+  }
+  test::ClosedLoop loop(slide(), worldOf(posts), kCycle_s);
+  std::vector<double> rates;
+  for (int k = 0; k < kPosts; ++k) {
+    const ApproachLimitState& approach = loop.state().several.modules[0].approach;
+    loop.runUntil(3.0 * k + 1.5);
+    const double before = approach.memory_N_per_m;
+    loop.runUntil(3.0 * k + 2.5);
+    rates.push_back(std::log(before / approach.memory_N_per_m));
+  }
+  return rates;
+}
+
+/// It may have let the arm go to and fro.
+TEST(SeveralContacts, AreForgottenHalfAsFastEachTimeTheyAreFoundAgain) {
+  const std::vector<double> rates = forgettingOf([](int) { return 0.0; });
+  EXPECT_GT(rates[0], 1.0);
+  for (std::size_t k = 1; k < rates.size(); ++k)
+    EXPECT_NEAR(rates[k], 0.5 * rates[k - 1], 0.1 * rates[k]) << k;
+}
+
+TEST(SeveralContacts, AreForgottenAsFastAsEverWhenFoundElsewhere) {
+  const std::vector<double> rates = forgettingOf([](int k) { return k < 3 ? 0.0 : 0.15; });
+  EXPECT_LT(rates[2], 0.5 * rates[0]);
+  EXPECT_NEAR(rates[3], rates[0], 0.1 * rates[0]);
 }
 
 /// Both press with 15 N however the carriage stands between them: what is left is an equilibrium.

@@ -114,6 +114,7 @@ TEST(TwoContactsOnAModule, AreNotByTheResultantAlone) {
 /// One contact has no centre of its own: the motion is that of the resultant, to the bit.
 TEST(OneContactOnAModule, MovesAsIfNoSecondWereLookedFor) {
   test::Random random(62);
+  int learnt = 0;
   for (const double noise_N : {0.0, 0.05}) {
     for (const double friction : {0.0, 0.5}) {
       for (int draw = 0; draw < 4; ++draw) {
@@ -136,9 +137,12 @@ TEST(OneContactOnAModule, MovesAsIfNoSecondWereLookedFor) {
               << noise_N << " " << friction << " " << draw << " " << i;
         }
         EXPECT_GT(highest_N, 0.9);
+        for (const ModuleContactState& module : loop.state().several.modules)
+          learnt += module.centre.weight > 0.0;
       }
     }
   }
+  EXPECT_GT(learnt, 4) << "else nothing was looked for";
 }
 
 TEST(TwoContactsOnAModule, TouchNoHeap) {

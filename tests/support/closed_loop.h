@@ -29,6 +29,7 @@ class ClosedLoop {
 
   double time_s() const { return static_cast<double>(cycle_) * period_s_; }
   const ControllerOutput& output() const { return output_; }
+  const ControllerState& state() const { return state_; }
   const RobotInput& input() const { return input_; }
   const SimulatedRobot& robot() const { return robot_; }
 

@@ -31,7 +31,8 @@ struct SeveralRun {
   double limit_N = 0.0;                ///< F_act + F_th, with what is not felt of friction
   int touched_modules = 0;
   double tcp_error_final_m = 0.0;
-  /// Largest change of a joint's speed within a cycle in which no module had a new sample.
+  /// Largest change of a joint's acceleration times the period, rad/s, while no module had a new
+  /// sample.
   double step_between_samples = 0.0;
   double clearance_left_m = kNoLimit;  ///< least, of the commanded joints, beyond the safe distance
   bool is_out = false;                 ///< see EndWatch

@@ -29,7 +29,7 @@ inline double stiffnessInContact(const ForceGains& gains,
 
 struct FeltForce {
   double F_p_N = 0.0;  ///< >= 0
-  /// Of a contact felt below F_th, F_sen > F_rel, to the one that was: 0 to 1.
+  /// 0 to 1, where F_p = 0: how much of c is kept, as it may be the contact that was.
   double nearness = 0.0;
   double fading = 1.0;  ///< share of the cycle in which m fades where F_p = 0
 };

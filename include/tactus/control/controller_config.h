@@ -121,10 +121,14 @@ struct ControllerConfig {
 };
 
 /// Whether contacts have rows of their own, see several_contacts.h; else a law answers one.
+inline bool hasContactRows(const std::optional<ForceControlConfig>& force_control,
+                           std::size_t modules) {
+  if (modules > 1) return true;
+  return force_control && (force_control->limit_at == LimitAt::kStiffnessCentre ||
+                           force_control->limit_at == LimitAt::kModuleEnds);
+}
 inline bool hasContactRows(const ControllerConfig& config) {
-  if (config.tactile_modules.size() > 1) return true;
-  return config.force_control && (config.force_control->limit_at == LimitAt::kStiffnessCentre ||
-                                  config.force_control->limit_at == LimitAt::kModuleEnds);
+  return hasContactRows(config.force_control, config.tactile_modules.size());
 }
 
 }  // namespace tactus

@@ -37,9 +37,9 @@ struct SeveralContactsState {
 ///   level 2, task, too:         a_ij^T q_dot >= -v_max,i,   the approach limit of each
 ///            a_ij: a_i, or the corners of the friction cone
 /// As a module tells of two contacts the resultant alone, both levels have the same row a second
-/// time at the centre of stiffness, where that is elsewhere; or, as LimitAt says, both rows at the
-/// ends of the module, or the resultant's alone. A contact is there while m_i > 0. Nothing else is
-/// remembered: no integral, no feedforward. Derived in docs/gate.md.
+/// time towards the centre of stiffness, where that is elsewhere beyond doubt; or, as LimitAt says,
+/// both rows at the ends of the module, or the resultant's alone. A contact is there while m_i > 0.
+/// Nothing else is remembered: no integral, no feedforward. Derived in docs/gate.md.
 // clang-format on
 class SeveralContacts {
  public:

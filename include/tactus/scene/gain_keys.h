@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tactus/control/gains.h"
+#include "tactus/control/controller_config.h"
 #include "tactus/scene/key_table.h"
 
 /// The keys of a scene that are gains: where each lies in Gains, and what it may be.
@@ -24,12 +24,18 @@ struct GainProblem {
   std::string path, problem, expectation;
 };
 
+/// The law that gains are for.
+struct GainUse {
+  bool is_joint_space = false;
+  bool has_contact_rows = false;
+};
+GainUse gainUse(const std::optional<ForceControlConfig>& force_control, std::size_t modules);
+
 /// The first gain that is out of its range, or does not go with another one or with the period.
-std::optional<GainProblem> findGainProblem(const Gains& gains, bool is_joint_space,
-                                           double period_s);
+std::optional<GainProblem> findGainProblem(const Gains& gains, const GainUse& use, double period_s);
 
 /// The latter alone, for gains whose ranges are checked.
-std::optional<GainProblem> findGainConflict(const Gains& gains, bool is_joint_space,
+std::optional<GainProblem> findGainConflict(const Gains& gains, const GainUse& use,
                                             double period_s);
 
 }  // namespace tactus
