@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kClutterBase = "/whole_arm/planar3_clutter.yaml";
 constexpr std::uint64_t kClutterSeed = 20'261'126;
-constexpr int kClutterDraws = 40;
+constexpr int kClutterDraws = 12;
 
 std::vector<Cell> clutterRow(ClutterKind kind, int posts, ClutterLaw law,
                              const std::vector<ClutterRun>& runs) {

@@ -103,15 +103,19 @@ double restLimit_N(const RunSetup& setup) {
 }
 
 /// What speeds change by beyond what they changed by in the cycle before: an arm that accelerates
-/// makes no step.
+/// makes no step, but where its limit of acceleration begins or ends to hold it back.
 struct StepWatch {
-  explicit StepWatch(int joints)
-      : velocity(JointVector::Zero(joints)), change(JointVector::Zero(joints)) {}
+  explicit StepWatch(const RunSetup& setup)
+      : most(0.999 * setup.period_s * setup.controller.limits.max_acceleration),
+        velocity(JointVector::Zero(most.size())),
+        change(velocity) {}
 
   void update(const JointVector& now, bool is_new, SeveralRun& run) {
     const JointVector change_now = now - velocity;
-    without_samples = is_new ? 0 : without_samples + 1;
-    if (without_samples > 1 && cycles > 1) {
+    const bool is_limited = (change_now.cwiseAbs().array() >= most.array()).any();
+    // The cycle after a limited one is in part what that had left.
+    to_judge = is_limited ? -1 : is_new ? 0 : to_judge + 1;
+    if (to_judge > 1 && cycles > 1) {
       const double step = (change_now - change).cwiseAbs().maxCoeff();
       run.step_between_samples = std::max(run.step_between_samples, step);
     }
@@ -120,8 +124,8 @@ struct StepWatch {
     ++cycles;
   }
 
-  JointVector velocity, change;
-  int without_samples = 0;
+  JointVector most, velocity, change;
+  int to_judge = 0;  ///< cycles in a row
   long cycles = 0;
 };
 
@@ -155,7 +159,7 @@ SeveralRun runSeveral(const RunSetup& setup) {
   SeveralRun run;
   run.limit_N = restLimit_N(setup);
   std::vector<Spread> rest(setup.controller.tactile_modules.size());
-  StepWatch steps(setup.controller.chain.size());
+  StepWatch steps(setup);
   const long cycles = std::lround(setup.duration_s / setup.period_s);
   const long rest_from = cycles - std::lround(JudgedRun::kRest_s / setup.period_s);
   for (long cycle = 0; cycle < cycles; ++cycle) {

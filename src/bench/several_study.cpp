@@ -89,16 +89,18 @@ std::vector<Goal> severalGoals(const Table& table) {
 Table tryLimitPlaces(const RunSetup& base, int draws) {
   const std::vector<SeveralCase> cases = drawSameModule(base, kSeveralSeed, draws);
   Table table = emptySeveralTable("two_contacts_on_a_module");
-  for (const Word<LimitAt>& at : kLimitAtWords) {
-    if (at.value == LimitAt::kAuto) continue;
-    std::vector<SeveralRun> runs(cases.size());
-    inParallel(cases.size(), [&](std::size_t i) {
-      RunSetup setup = cases[i].setup;
-      apply(kSeveralTrials[0], setup);
-      setup.controller.force_control->limit_at = at.value;
-      runs[i] = runSeveral(setup);
-    });
-    addSeveralRows(at.text, cases, runs, table);
+  for (const SeveralTrial& trial : {kSeveralTrials[0], kSeveralTrials[1]}) {
+    for (const Word<LimitAt>& at : kLimitAtWords) {
+      if (at.value == LimitAt::kAuto) continue;
+      std::vector<SeveralRun> runs(cases.size());
+      inParallel(cases.size(), [&](std::size_t i) {
+        RunSetup setup = cases[i].setup;
+        apply(trial, setup);
+        setup.controller.force_control->limit_at = at.value;
+        runs[i] = runSeveral(setup);
+      });
+      addSeveralRows(at.text + (", " + std::string(trial.name)), cases, runs, table);
+    }
   }
   return table;
 }
