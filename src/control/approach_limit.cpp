@@ -20,8 +20,7 @@ double approach(const ScaledVector& a, int joints, const ScaledVector& from,
 
 ApproachLimit::ApproachLimit(const ControllerConfig& config, const TactileModuleConfig& module)
     : has_estimator_(config.force_control->has_estimator),
-      smoother_(module, config.force_control->friction_coefficient,
-                hasContactRows(config)),
+      smoother_(module, config.force_control->friction_coefficient, hasContactRows(config)),
       position_(config.drive_lag_s, module.filter_cutoff_hz) {}
 
 ApproachLimitState ApproachLimit::initialState() const noexcept {
