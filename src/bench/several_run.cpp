@@ -115,18 +115,16 @@ struct StepWatch {
     const bool is_limited = (change_now.cwiseAbs().array() >= most.array()).any();
     // The cycle after a limited one is in part what that had left.
     to_judge = is_limited ? -1 : is_new ? 0 : to_judge + 1;
-    if (to_judge > 1 && cycles > 1) {
+    if (to_judge > 1) {
       const double step = (change_now - change).cwiseAbs().maxCoeff();
       run.step_between_samples = std::max(run.step_between_samples, step);
     }
     velocity = now;
     change = change_now;
-    ++cycles;
   }
 
   JointVector most, velocity, change;
-  int to_judge = 0;  ///< cycles in a row
-  long cycles = 0;
+  int to_judge = -1;  ///< cycles in a row, after the first two
 };
 
 void sumUp(const std::vector<Spread>& rest, SeveralRun& run) {

@@ -41,6 +41,11 @@ std::optional<SofterTouch> softerTouch(const Scene& scene, const TouchedSpring& 
   return softer;
 }
 
+/// Of what it would push with if it stood.
+double pushOf_N(const ObstacleConfig& obstacle, double standing_N) {
+  return std::min(obstacle.slide_force_N.value_or(kNoLimit), standing_N);
+}
+
 std::vector<TouchReport> touchesOf(const Scene& scene, const PathContacts& contacts) {
   std::vector<TouchReport> reports;
   for (std::size_t i = 0; i < contacts.touches.size(); ++i) {
@@ -49,9 +54,9 @@ std::vector<TouchReport> touchesOf(const Scene& scene, const PathContacts& conta
     const TouchedSpring touched = touchedSpring(scene, touch->module, scene.plant.obstacles[i],
                                                 scene.plant.robot_stiffness_N_per_m);
     // One that appears in the arm pushes at once.
-    const double peak_N = std::min(scene.plant.obstacles[i].slide_force_N.value_or(kNoLimit),
-                                   std::max(touchPeak_N(touched, touch->speed_m_per_s),
-                                            touched.spring.force_N(touch->depth_m)));
+    const double standing_N = std::max(touchPeak_N(touched, touch->speed_m_per_s),
+                                       touched.spring.force_N(touch->depth_m));
+    const double peak_N = pushOf_N(scene.plant.obstacles[i], standing_N);
     reports.push_back({static_cast<int>(i), *touch, peak_N,
                        softerTouch(scene, touched, touch->speed_m_per_s, peak_N)});
   }
@@ -128,12 +133,10 @@ bool isFeltBefore(const Scene& scene, const PathContacts& contacts, const Capsul
 
 /// Of an arm that follows its path and does not give way.
 std::string unsensedWarning(const Scene& scene, const CapsuleTouch& touch) {
-  const ContactSpring spring(scene.plant.obstacles[touch.obstacle],
-                             scene.plant.robot_stiffness_N_per_m);
+  const ObstacleConfig& obstacle = scene.plant.obstacles[touch.obstacle];
+  const ContactSpring spring(obstacle, scene.plant.robot_stiffness_N_per_m);
   const std::string& link = scene.capsule_links[touch.capsule];
-  const double force_N =
-      std::min(scene.plant.obstacles[touch.obstacle].slide_force_N.value_or(kNoLimit),
-               spring.force_N(touch.deepest_m));
+  const double force_N = pushOf_N(obstacle, spring.force_N(touch.deepest_m));
   const std::string force = fmt::format("about {:.3g} N", force_N);
   if (touch.t_s == 0.0) {
     return fmt::format("{} touches obstacle {} unsensed at the start, {:.3g} mm deep, {}", link,

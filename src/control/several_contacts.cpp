@@ -17,7 +17,7 @@ constexpr double kFading = 0.2;
 constexpr double kLeastHaste = 1.0 / 64.0;
 constexpr double kElsewhere = 0.5;  ///< of the distance where a contact is another
 
-/// How fast m fades.
+/// How fast m fades; 0 while the contact is felt.
 double fading(const ForceGains& gains, double F_p_N, const Vector3& p_Base,
               ModuleContactState& state) noexcept {
   if (F_p_N == 0.0 && state.approach.smoother.contact.force_N <= gains.transition.release_force_N) {
