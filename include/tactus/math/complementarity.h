@@ -18,8 +18,8 @@ using RowMatrix =
 /// for one symmetric positive definite K: the one solution of each, with relative errors of about
 /// 1e-12 times the condition of K. These are the multipliers of the least squares
 /// min 1/2 l^T K l - d^T l, l >= 0, found as by Lawson and Hanson (Solving Least Squares Problems,
-/// 1974, chapter 23), from the last solution: one row more of a
-/// factorisation for each row that enters, a factorisation for each that leaves.
+/// 1974, chapter 23), from the last solution: one row more of a factorisation for each row that
+/// enters, a factorisation for each that leaves.
 class Complementarity {
  public:
   /// K must outlive it.
