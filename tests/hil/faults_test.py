@@ -78,7 +78,8 @@ EXPECTED = {
     # The one that moves on is not seen off. Nor are the next two, whatever their truth is.
     "ignore_commands": Expected("fault", "drive_fault", "quick stop", 2, 2, QUICK_STOP_LASTS,
                                 MOVES_ON + 5, lost=(("can2", 2),), faulty=(("can0", 2),)),
-    "nonsense_status": Expected("fault", "drive_state_lost", "quick stop", 2, 2, QUICK_STOP_LASTS,
+    # Told with the next SYNC only, up to a cycle later, and read in the cycle after that.
+    "nonsense_status": Expected("fault", "drive_state_lost", "quick stop", 3, 3, QUICK_STOP_LASTS,
                                 DEADLINE + 5, lost=(("can1", 3),)),
     "freeze_feedback": Expected("fault", "emergency_stop", "quick stop and brake", 2, 2,
                                 QUICK_STOP_LASTS, 2, lost=(("can0", 2),)),
