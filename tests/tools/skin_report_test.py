@@ -63,6 +63,16 @@ class Kinematics(unittest.TestCase):
     def test_of_another_tip(self):
         self.agrees("free_motion", "robot.tip=link9")
 
+    def test_of_links_that_are_fixed_beside_the_way(self):
+        """Modules may sit on them."""
+        urdf = (ROOT / "config/robots/planar3_skin/planar3.urdf").read_text(encoding="utf-8")
+        chain = kinematics.read_chain(urdf, "tip")
+        q = np.array([0.3, -0.5, 0.8])
+        poses = chain.poses(q)
+        along = poses["link2c"][:3, 3] - poses["link2"][:3, 3]
+        np.testing.assert_allclose(along, poses["link2"][:3, :3] @ [0.222, 0, 0], atol=1e-12)
+        self.assertEqual(len(chain.way(q)), len(chain.joints))
+
     def test_refuses_a_urdf_without_a_way(self):
         for urdf in ("<robot", "<robot/>", '<robot><link name="a"/></robot>'):
             with self.assertRaises(ValueError):

@@ -12,6 +12,7 @@ MOVING = ("revolute", "continuous", "prismatic")
 class Joint:
     name: str
     kind: str
+    parent: str  # link
     child: str  # link
     pose: np.ndarray  # 4 x 4, in the parent link
     axis: np.ndarray  # in the joint's frame
@@ -20,15 +21,16 @@ class Joint:
 @dataclasses.dataclass
 class Chain:
     joints: list  # from the base to the tip, fixed ones too
+    attached: list  # fixed joints of links beside that way, parents first
 
     def moving(self):
         return [joint.name for joint in self.joints if joint.kind in MOVING]
 
     def poses(self, q):
         """Of each child link, 4 x 4 in the base frame, for a value of each moving joint, m or rad."""
-        poses, pose, values = {}, np.eye(4), iter(q)
-        for joint in self.joints:
-            pose = pose @ joint.pose
+        poses, values = {self.joints[0].parent: np.eye(4)}, iter(q)
+        for joint in self.joints + self.attached:
+            pose = poses[joint.parent] @ joint.pose
             if joint.kind in MOVING:
                 pose = pose @ moved(joint, next(values))
             poses[joint.child] = pose
@@ -36,7 +38,8 @@ class Chain:
 
     def way(self, q):
         """The places of the joints and of the tip, base frame, m."""
-        return np.array([pose[:3, 3] for pose in self.poses(q).values()])
+        poses = self.poses(q)
+        return np.array([poses[joint.child][:3, 3] for joint in self.joints])
 
 
 def read_chain(urdf, tip):
@@ -53,7 +56,18 @@ def read_chain(urdf, tip):
         link = element.find("parent").get("link")
     if not joints:
         raise ValueError(f"the URDF has no way to the link {tip}")
-    return Chain(joints)
+    return Chain(joints, attached_links([read_joint(e) for e in by_child.values()], joints))
+
+
+def attached_links(others, joints):
+    """Of the other joints those that are fixed to the way, or to what is fixed to it."""
+    links = {joints[0].parent, *(joint.child for joint in joints)}
+    attached = []
+    while found := [joint for joint in others
+                    if joint.kind == "fixed" and joint.parent in links and joint.child not in links]:
+        attached += found
+        links.update(joint.child for joint in found)
+    return attached
 
 
 def read_joint(element):
@@ -63,8 +77,8 @@ def read_joint(element):
         pose[:3, :3] = rotation_of(numbers(origin.get("rpy", "0 0 0")))
         pose[:3, 3] = numbers(origin.get("xyz", "0 0 0"))
     direction = numbers(axis.get("xyz")) if axis is not None else np.array([1.0, 0.0, 0.0])
-    return Joint(element.get("name"), element.get("type"), element.find("child").get("link"), pose,
-                 direction / np.linalg.norm(direction))
+    return Joint(element.get("name"), element.get("type"), element.find("parent").get("link"),
+                 element.find("child").get("link"), pose, direction / np.linalg.norm(direction))
 
 
 def numbers(text):
