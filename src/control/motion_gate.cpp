@@ -46,7 +46,7 @@ RowVector MotionGate::keep(const CommandedMotion& commanded, const TaskKinematic
   if (clearance_ && isKept(commanded, kinematics, period_s, rows, motion))
     return RowVector::Zero(rows.size);
   add(commanded, kinematics, joint_share, period_s, rows);
-  return keepSpeedRows(rows, task_size_, motion);
+  return RowProblem(rows, task_size_).keep(motion);
 }
 
 }  // namespace tactus

@@ -43,17 +43,14 @@ double presence(const ForceGains& gains, const ApproachLimitState& state) noexce
   return std::min(1.0, state.memory_N_per_m / stiffnessInContact(gains, state.estimator));
 }
 
-/// The rows of a contact of the second level as the first has them.
-void addHoldRows(const ForceGains& gains, const ApproachLimitState& state, double cosine, int first,
-                 const SpeedRows& rows, SpeedRows& null_rows) noexcept {
+/// The speeds that the first level gives the rows of a contact.
+void addHoldSpeeds(const ForceGains& gains, const ApproachLimitState& state, double cosine,
+                   int first, const SpeedRows& rows, RowVector& v_hold) noexcept {
   const double m = state.memory_N_per_m;
   const double F_left_N =
       gains.contact_threshold_N - state.smoother.contact.force_N - m * state.way_ahead_m;
-  for (int i = first; i < rows.size; ++i) {
-    SpeedRow& row = null_rows.row[null_rows.size++];
-    row = rows.row[i];
-    row.v_max_m_per_s = cosine * (F_left_N / row.damping_N_s_per_m);
-  }
+  for (int i = first; i < rows.size; ++i)
+    v_hold[i] = cosine * (F_left_N / rows.row[i].damping_N_s_per_m);
 }
 
 void tell(const ForceGains& gains, const ModuleContactState& state,
@@ -110,7 +107,9 @@ void SeveralContacts::project(const TaskKinematics& kinematics, const ScaledVect
 }
 
 void SeveralContacts::addRowAt(const TaskKinematics& kinematics, const Module& module,
-                               const ContactPointState& point, SpeedRows& rows) const noexcept {
+                               ContactPointState point, double position_m,
+                               SpeedRows& rows) const noexcept {
+  point.position_m = position_m;
   Place place;
   locate(kinematics, module, point, place);
   project(kinematics, place.a, rows.row[rows.size++]);
@@ -120,23 +119,21 @@ void SeveralContacts::addRowAt(const TaskKinematics& kinematics, const Module& m
 void SeveralContacts::addPlaces(const TaskKinematics& kinematics, const Module& module,
                                 const ModuleContactState& state, const Place& place,
                                 SpeedRows& rows) const noexcept {
-  ContactPointState there = state.approach.smoother.contact;
-  const double x_m = there.position_m;
+  const ContactPointState& contact = state.approach.smoother.contact;
   const double shift_m = state.centre.shift_m;
-  CoverPart part{x_m + std::min(0.0, shift_m), x_m + std::max(0.0, shift_m)};
-  if (is_at_ends_) part = {0.0, module.length_m};
   if (module.cone) {
-    if (!is_at_ends_) part = module.cone->around(part);
-    module.cone->add(chain_, kinematics, there.direction, part, inv_sqrt_weights_, rows);
+    const double x_m = contact.position_m;
+    const CoverPart part =
+        is_at_ends_
+            ? CoverPart{0.0, module.length_m}
+            : module.cone->around({x_m + std::min(0.0, shift_m), x_m + std::max(0.0, shift_m)});
+    module.cone->add(chain_, kinematics, contact.direction, part, inv_sqrt_weights_, rows);
   } else if (is_at_ends_) {
-    there.position_m = part.from_m;
-    addRowAt(kinematics, module, there, rows);
-    there.position_m = part.to_m;
-    addRowAt(kinematics, module, there, rows);
+    addRowAt(kinematics, module, contact, 0.0, rows);
+    addRowAt(kinematics, module, contact, module.length_m, rows);
   } else {
     project(kinematics, place.a, rows.row[rows.size++]);
-    there.position_m = x_m + shift_m;
-    if (shift_m != 0.0) addRowAt(kinematics, module, there, rows);
+    if (shift_m != 0.0) addRowAt(kinematics, module, contact, contact.position_m + shift_m, rows);
   }
 }
 
@@ -179,7 +176,8 @@ void SeveralContacts::addRow(const ForceGains& gains, const TaskKinematics& kine
   addPlaces(kinematics, module, state, place, rows);
   module.limit.limitRows(gains, contactForce_N(gains, state), module.cosine(), state.approach,
                          first, rows);
-  for (int i = first; i < rows.size; ++i) rows.row[i].presence = presence(gains, state.approach);
+  const double share = presence(gains, state.approach);
+  for (int i = first; i < rows.size; ++i) rows.row[i].presence = share;
 }
 
 void SeveralContacts::addRows(const ForceGains& gains, const TaskKinematics& kinematics,
@@ -196,15 +194,18 @@ void SeveralContacts::addRows(const ForceGains& gains, const TaskKinematics& kin
 
 /// The first level.
 double SeveralContacts::holdInNullSpace(const ForceGains& gains, const SpeedRows& rows,
-                                        int contacts, NullSpeedLimits& limits,
-                                        Motion& motion) const noexcept {
+                                        const RowVector& v_hold, int contacts, RowProblem& problem,
+                                        NullSpeedLimits& limits, Motion& motion) const noexcept {
   if (contacts == 0) return 0.0;
-  RowVector l = findMultipliers(rows, kNullSpaceAlone, task_size_, motion).l;
-  ScaledVector v_scaled = ScaledVector::Zero();
-  for (int i = 0; i < rows.size; ++i) v_scaled += l[i] * rows.row[i].a_scaled;
-  l *= null_speed_limit_.share(gains, v_scaled, limits);
-  tactus::addRows(rows, l, kNullSpaceAlone, motion);
-  return l.head(contacts).sum();
+  const RowVector l = problem.solve(v_hold, kNullSpaceAlone, motion).l;
+  Motion push;
+  push.y.setZero();
+  push.v_scaled.setZero();
+  tactus::addRows(rows, l, kNullSpaceAlone, push);
+  const double share = null_speed_limit_.share(gains, push.v_scaled, limits);
+  motion.v_scaled += share * push.v_scaled;
+  motion.y += share * push.y;
+  return share * l.head(contacts).sum();
 }
 
 void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematics,
@@ -212,7 +213,8 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
                              const CommandedMotion& commanded, const MotionGate& gate,
                              double period_s, SeveralContactsState& state, ContactReport& report,
                              Motion& motion) const noexcept {
-  SpeedRows null_rows, rows;
+  SpeedRows rows;
+  RowVector v_hold(kMaxRows);
   std::array<int, kMaxTactileModules + 1> first{};
   int leading = 0;
   double most_N = -1.0;
@@ -223,7 +225,7 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
     sense(gains, kinematics, readings[i], commanded, period_s, modules_[i], contact, place);
     if (approach.memory_N_per_m > 0.0) {
       addRow(gains.force, kinematics, modules_[i], contact, place, rows);
-      addHoldRows(gains.force, approach, modules_[i].cosine(), first[i], rows, null_rows);
+      addHoldSpeeds(gains.force, approach, modules_[i].cosine(), first[i], rows, v_hold);
     }
     first[i + 1] = rows.size;
     if (approach.smoother.contact.force_N <= most_N) continue;
@@ -231,11 +233,13 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
     leading = i;
     motion.a = place.a;
   }
-  const int contacts = null_rows.size;
-  gate.add(commanded, kinematics, 1.0, period_s, null_rows);
-  for (int i = contacts; i < null_rows.size; ++i) rows.row[rows.size++] = null_rows.row[i];
-  report.u_n = -holdInNullSpace(gains.force, null_rows, contacts, state.null_speed, motion);
-  const RowVector l = keepSpeedRows(rows, task_size_, motion);
+  const int contacts = rows.size;
+  gate.add(commanded, kinematics, 1.0, period_s, rows);
+  for (int i = contacts; i < rows.size; ++i) v_hold[i] = rows.row[i].v_max_m_per_s;
+  RowProblem problem(rows, task_size_);
+  report.u_n =
+      -holdInNullSpace(gains.force, rows, v_hold, contacts, problem, state.null_speed, motion);
+  const RowVector l = problem.keep(motion);
   for (int i = 0; i < static_cast<int>(modules_.size()); ++i) {
     const double sum = l.segment(first[i], first[i + 1] - first[i]).sum();
     state.modules[i].approach.is_limiting = sum > 0.0;

@@ -1,6 +1,7 @@
 #include "tactus/control/speed_rows.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus {
 namespace {
@@ -8,45 +9,8 @@ namespace {
 constexpr double kYielding_N_s_m = 1.5;  ///< delta_0
 constexpr double kProximal = 1e-6;
 constexpr int kRepetitions = 4;
-
-RowMatrix responses(const SpeedRows& rows, const RowSpace& space, int task_size) {
-  RowMatrix K(rows.size, rows.size);
-  for (int i = 0; i < rows.size; ++i) {
-    const SpeedRow& a = rows.row[i];
-    const double length_squared = dot(a.a_scaled, a.a_scaled);
-    const double difference = space.task - space.null_space;
-    for (int j = 0; j < i; ++j) {
-      const SpeedRow& b = rows.row[j];
-      K(i, j) = K(j, i) = space.null_space * dot(a.a_scaled, b.a_scaled) +
-                          difference * dot(a.a_task, b.a_task, task_size);
-    }
-    const double own =
-        space.null_space * length_squared + difference * dot(a.a_task, a.a_task, task_size);
-    K(i, i) = std::max({own, 1e-3 * length_squared, 1e-4});
-  }
-  return K;
-}
-
-/// delta
-RowVector yielding(const SpeedRows& rows, const RowSpace& space, const RowMatrix& K) {
-  RowVector delta(rows.size);
-  for (int i = 0; i < rows.size; ++i) {
-    const SpeedRow& row = rows.row[i];
-    const double K_ii = K(i, i);
-    double opposition = 0.0;
-    for (int j = 0; j < rows.size; ++j) {
-      const double against = K(j, i);
-      if (against >= 0.0) continue;
-      opposition += row.presence * rows.row[j].presence * (against * against / (K_ii * K(j, j)));
-    }
-    delta[i] = kProximal * K_ii;
-    if (opposition == 0.0) continue;
-    const double most =
-        std::min(kYielding_N_s_m / row.damping_N_s_per_m, space.max_yielding * K_ii);
-    delta[i] += most * std::min(1.0, opposition);
-  }
-  return delta;
-}
+/// Of the largest speed that lacks: what a repetition changes less than this is found.
+constexpr double kFound = 1e-11;
 
 /// The motion as a whole, until it keeps the rows that standing still keeps.
 void slowDown(const SpeedRows& rows, int task_size, Motion& motion) {
@@ -60,29 +24,116 @@ void slowDown(const SpeedRows& rows, int task_size, Motion& motion) {
   motion.y *= share;
 }
 
+/// d = lacking + delta l; false if it was that.
+bool passOn(const RowVector& lacking, const RowVector& delta, const RowVector& l, RowVector& d) {
+  double most = 0.0;
+  double change = 0.0;
+  for (int i = 0; i < d.size(); ++i) {
+    const double before = d[i];
+    d[i] = lacking[i] + delta[i] * l[i];
+    most = std::max(most, std::abs(lacking[i]));
+    change = std::max(change, std::abs(d[i] - before));
+  }
+  return change > kFound * most;
+}
+
 }  // namespace
 
-RowMultipliers findMultipliers(const SpeedRows& rows, const RowSpace& space, int task_size,
-                               const Motion& motion, int steps) noexcept {
-  RowVector lacking(rows.size);
-  for (int i = 0; i < rows.size; ++i) {
-    const SpeedRow& row = rows.row[i];
-    lacking[i] = -row.v_max_m_per_s - dot(row.a_scaled, motion.v_scaled) -
-                 dot(row.a_task, motion.y, task_size);
+void RowProblem::multiply() noexcept {
+  if (has_products_) return;
+  has_products_ = true;
+  in_all_.resize(rows_.size, rows_.size);
+  in_task_.resize(rows_.size, rows_.size);
+  for (int i = 0; i < rows_.size; ++i) {
+    const SpeedRow& a = rows_.row[i];
+    for (int j = 0; j <= i; ++j) {
+      const SpeedRow& b = rows_.row[j];
+      in_all_(j, i) = dot(a.a_scaled, b.a_scaled);
+      in_task_(j, i) = dot(a.a_task, b.a_task, task_size_);
+    }
   }
-  if ((lacking.array() <= 0.0).all()) return {RowVector::Zero(rows.size)};
-  RowMatrix K = responses(rows, space, task_size);
-  const RowVector delta = yielding(rows, space, K);
-  for (int i = 0; i < rows.size; ++i) K(i, i) += delta[i];
+}
+
+/// K and delta.
+void RowProblem::respond(const RowSpace& space, RowMatrix& K, RowVector& delta) const noexcept {
+  const double difference = space.task - space.null_space;
+  K.resize(rows_.size, rows_.size);
+  RowVector opposition(rows_.size);
+  for (int i = 0; i < rows_.size; ++i) {
+    const double length_squared = in_all_(i, i);
+    const double own = space.null_space * length_squared + difference * in_task_(i, i);
+    K(i, i) = std::max({own, 1e-3 * length_squared, 1e-4});
+    opposition[i] = 0.0;
+    for (int j = 0; j < i; ++j) {
+      const double K_ij = space.null_space * in_all_(j, i) + difference * in_task_(j, i);
+      K(i, j) = K(j, i) = K_ij;
+      if (K_ij >= 0.0) continue;
+      const double o_ij =
+          rows_.row[i].presence * rows_.row[j].presence * (K_ij * K_ij / (K(i, i) * K(j, j)));
+      opposition[i] += o_ij;
+      opposition[j] += o_ij;
+    }
+  }
+  delta.resize(rows_.size);
+  for (int i = 0; i < rows_.size; ++i) {
+    delta[i] = kProximal * K(i, i);
+    if (opposition[i] == 0.0) continue;
+    const double most =
+        std::min(kYielding_N_s_m / rows_.row[i].damping_N_s_per_m, space.max_yielding * K(i, i));
+    delta[i] += most * std::min(1.0, opposition[i]);
+  }
+}
+
+/// K: with delta. False if the solver's steps were not enough.
+bool RowProblem::repeat(const RowMatrix& K, const RowVector& delta, const RowVector& lacking,
+                        int steps, RowVector& l) const noexcept {
   Complementarity problem(K);
   RowVector d = lacking;
   bool is_whole = problem.solve(d, steps);
   for (int i = 1; i < kRepetitions && is_whole; ++i) {
-    for (int row = 0; row < rows.size; ++row) d[row] = lacking[row] + delta[row] * problem.l()[row];
-    if (rows.is_of_one_contact) problem.forget();
+    const bool is_new = passOn(lacking, delta, problem.l(), d);
+    if (rows_.is_of_one_contact)
+      problem.forget();
+    else if (!is_new)
+      break;
     is_whole = problem.solve(d, steps);
   }
-  return {problem.l(), is_whole};
+  l = problem.l();
+  return is_whole;
+}
+
+RowMultipliers RowProblem::solve(const RowVector& v_max_m_per_s, const RowSpace& space,
+                                 const Motion& motion, int steps) noexcept {
+  RowVector lacking(rows_.size);
+  bool is_kept = true;
+  for (int i = 0; i < rows_.size; ++i) {
+    const SpeedRow& row = rows_.row[i];
+    lacking[i] = -v_max_m_per_s[i] - dot(row.a_scaled, motion.v_scaled) -
+                 dot(row.a_task, motion.y, task_size_);
+    is_kept = is_kept && lacking[i] <= 0.0;
+  }
+  if (is_kept) return {RowVector::Zero(rows_.size)};
+  multiply();
+  RowMatrix K;
+  RowVector delta;
+  respond(space, K, delta);
+  for (int i = 0; i < rows_.size; ++i) K(i, i) += delta[i];
+  RowMultipliers found;
+  found.is_whole = repeat(K, delta, lacking, steps, found.l);
+  return found;
+}
+
+RowVector RowProblem::keep(Motion& motion, int steps) noexcept {
+  const RowMultipliers found = solve(ownSpeeds(rows_), kBothSpaces, motion, steps);
+  addRows(rows_, found.l, kBothSpaces, motion);
+  if (!found.is_whole) slowDown(rows_, task_size_, motion);
+  return found.l;
+}
+
+RowVector ownSpeeds(const SpeedRows& rows) noexcept {
+  RowVector v_max(rows.size);
+  for (int i = 0; i < rows.size; ++i) v_max[i] = rows.row[i].v_max_m_per_s;
+  return v_max;
 }
 
 void addRows(const SpeedRows& rows, const RowVector& l, const RowSpace& space,
@@ -92,13 +143,6 @@ void addRows(const SpeedRows& rows, const RowVector& l, const RowSpace& space,
     motion.v_scaled += space.null_space * l[i] * rows.row[i].a_scaled;
     motion.y += (space.task - space.null_space) * l[i] * rows.row[i].a_task;
   }
-}
-
-RowVector keepSpeedRows(const SpeedRows& rows, int task_size, Motion& motion, int steps) noexcept {
-  const RowMultipliers found = findMultipliers(rows, kBothSpaces, task_size, motion, steps);
-  addRows(rows, found.l, kBothSpaces, motion);
-  if (!found.is_whole) slowDown(rows, task_size, motion);
-  return found.l;
 }
 
 }  // namespace tactus

@@ -40,22 +40,25 @@ void Complementarity::letGo() noexcept {
   const int before = size_;
   size_ = 0;
   while (size_ < before && l_[held_[size_]] > 0.0) ++size_;
+  forward_ = std::min(forward_, size_);
   for (int i = size_; i < before; ++i)
     if (l_[held_[i]] > 0.0) hold(held_[i]);
 }
 
 /// z of K z = d, of the rows that are held alone.
 void Complementarity::solveHeld(const RowVector& d) noexcept {
-  for (int i = 0; i < size_; ++i) {
+  const int size = size_;
+  for (int i = forward_; i < size; ++i) {
     const double* const l = L_.data() + rowAt(i);
     double left = d[held_[i]];
-    for (int j = 0; j < i; ++j) left -= l[j] * z_[j];
-    z_[i] = left / l[i];
+    for (int j = 0; j < i; ++j) left -= l[j] * y_[j];
+    y_[i] = left / l[i];
   }
-  for (int i = size_ - 1; i >= 0; --i) {
+  forward_ = size;
+  for (int i = size - 1; i >= 0; --i) {
     double sum = 0.0;
-    for (int j = i + 1; j < size_; ++j) sum += L_[rowAt(j) + i] * z_[j];
-    z_[i] = (z_[i] - sum) / L_[rowAt(i) + i];
+    for (int j = i + 1; j < size; ++j) sum += L_[rowAt(j) + i] * z_[j];
+    z_[i] = (y_[i] - sum) / L_[rowAt(i) + i];
   }
 }
 
@@ -114,6 +117,7 @@ void Complementarity::forget() noexcept {
 
 bool Complementarity::solve(const RowVector& d, int steps_each_row) noexcept {
   int steps = steps_each_row * static_cast<int>(l_.size());
+  forward_ = 0;
   if (!settle(d, steps)) return false;
   while (size_ < static_cast<int>(l_.size())) {
     const int row = neediest(d);

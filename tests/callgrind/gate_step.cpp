@@ -46,7 +46,6 @@ struct Draw {
              cone.around({point.position_m, point.position_m}), ScaledVector::Ones(), rows);
     if (!rubs) rows.size = first + 1;
     setSpeeds(random, first, -0.1, 0.1, random.logUniform(10.0, 1e5));
-    for (int i = first; i < rows.size; ++i) null_rows.row[null_rows.size++] = rows.row[i];
   }
 
   void addPair(test::Random& random) {
@@ -69,24 +68,22 @@ struct Draw {
   }
 
   void addWithoutSensor(test::Random& random) {
-    const int first = rows.size;
     for (int i = 0; i < 4; ++i) addPair(random);
     JointLimitRows(config.limits, true).add(q, kinematics, ScaledVector::Ones(), 1.0, rows);
-    for (int i = first; i < rows.size; ++i) null_rows.row[null_rows.size++] = rows.row[i];
   }
 
   void keep() {
-    const int task_size = config.task.size;
-    const RowMultipliers found = findMultipliers(null_rows, kNullSpaceAlone, task_size, motion);
-    addRows(null_rows, found.l, kNullSpaceAlone, motion);
-    keepSpeedRows(rows, task_size, motion);
+    RowProblem problem(rows, config.task.size);
+    const RowMultipliers found = problem.solve(ownSpeeds(rows), kNullSpaceAlone, motion);
+    addRows(rows, found.l, kNullSpaceAlone, motion);
+    problem.keep(motion);
   }
 
   ControllerConfig config;
   JointVector q;
   TaskKinematics kinematics;
   Motion motion;
-  SpeedRows null_rows, rows;
+  SpeedRows rows;
 };
 
 }  // namespace

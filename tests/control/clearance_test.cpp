@@ -68,7 +68,7 @@ struct GuardedArm {
     Motion motion;
     motion.y.setZero();
     motion.v_scaled = scaled(wanted, ones);
-    keepSpeedRows(rows, config.task.size, motion);
+    RowProblem(rows, config.task.size).keep(motion);
     wanted = (motion.v_scaled + kinematics.pseudoinverse.expand(motion.y)).head(n);
   }
 

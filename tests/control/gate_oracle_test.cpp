@@ -78,7 +78,7 @@ TEST(GateOracle, RowsThatDoNotOpposeEachOtherAreTheQuadraticPrograms) {
     const Eigen::MatrixXd root = rootOfM(c);
     const Eigen::MatrixXd B = c.A * root;
     const std::optional<Eigen::VectorXd> expected = leastChange(B, d);
-    const RowVector l = keepSpeedRows(c.rows, c.m, c.motion);
+    const RowVector l = RowProblem(c.rows, c.m).keep(c.motion);
     const Eigen::VectorXd change = c.joints(c.motion) - before;
     ASSERT_TRUE(change.allFinite());
     ASSERT_GE(l.minCoeff(), 0.0);

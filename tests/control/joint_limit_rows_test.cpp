@@ -78,7 +78,7 @@ TEST(JointLimitRows, SlowEachJointDownOnItsWayToTheLimit) {
   for (int i = 0; i < 2000; ++i) {
     LimitedCase c(random);
     const JointVector before = c.velocity();
-    keepSpeedRows(c.rows, c.task_size, c.motion);
+    RowProblem(c.rows, c.task_size).keep(c.motion);
     const JointVector after = c.velocity();
     for (int joint = 0; joint < c.n; ++joint) {
       if (!c.isNear(joint)) continue;

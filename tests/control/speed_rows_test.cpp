@@ -15,7 +15,7 @@ TEST(SpeedRows, AddMATransposedL) {
   for (int i = 0; i < 1000; ++i) {
     RowsCase c(random, random.integer(1, 4));
     const Eigen::VectorXd before = c.joints(c.motion);
-    const RowVector l = keepSpeedRows(c.rows, c.m, c.motion);
+    const RowVector l = RowProblem(c.rows, c.m).keep(c.motion);
     const Eigen::MatrixXd N = c.inverse.N;
     const Eigen::MatrixXd J_J = Eigen::MatrixXd::Identity(c.n, c.n) - N;
     const Eigen::MatrixXd W_inv = c.weights.cwiseInverse().asDiagonal();
@@ -40,7 +40,7 @@ TEST(SpeedRows, AreKeptExactly) {
       c.setRow(1, a);
       c.rows.row[1].damping_N_s_per_m = 100.0;
     }
-    const RowVector l = keepSpeedRows(c.rows, c.m, c.motion);
+    const RowVector l = RowProblem(c.rows, c.m).keep(c.motion);
     const Eigen::VectorXd speed = c.A * c.joints(c.motion);
     for (int row = 0; row < c.rows.size; ++row) {
       const double excess = speed[row] + c.rows.row[row].v_max_m_per_s;
@@ -67,7 +67,7 @@ TEST(SpeedRows, ThatExcludeEachOtherShareByForce) {
       const double share = random.logUniform(1e-3, 1e-2);
       c.rows.row[row].damping_N_s_per_m = 1.5 / (share * c.rows.row[0].a_scaled.squaredNorm());
     }
-    const RowVector l = keepSpeedRows(c.rows, c.m, c.motion);
+    const RowVector l = RowProblem(c.rows, c.m).keep(c.motion);
     const Eigen::VectorXd speed = c.A * c.joints(c.motion);
     ASSERT_TRUE(speed.allFinite());
     ASSERT_GT(l.minCoeff(), 0.0);
@@ -82,7 +82,7 @@ TEST(SpeedRows, LeaveAMotionAloneThatKeepsThem) {
   RowsCase c(random, 3);
   for (int row = 0; row < 3; ++row) c.rows.row[row].v_max_m_per_s = 1e3;
   const Eigen::VectorXd before = c.joints(c.motion);
-  EXPECT_TRUE(keepSpeedRows(c.rows, c.m, c.motion).isZero(0.0));
+  EXPECT_TRUE(RowProblem(c.rows, c.m).keep(c.motion).isZero(0.0));
   EXPECT_EQ(before, c.joints(c.motion));
 }
 
@@ -97,7 +97,8 @@ TEST(SpeedRows, OfOneContactAloneAreItsLaw) {
     const double k_t = dot(row.a_task, row.a_task, c.m);
     const double v_res = dot(row.a_scaled, c.motion.v_scaled) + dot(row.a_task, c.motion.y, c.m);
     const double u_t = std::min(0.0, v_res + row.v_max_m_per_s) * invertRegularised(k_t, k_j);
-    const RowMultipliers found = findMultipliers(c.rows, {1.0, 0.0, kNoLimit}, c.m, c.motion);
+    const RowMultipliers found =
+        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), {1.0, 0.0, kNoLimit}, c.motion);
     ASSERT_TRUE(found.is_whole);
     ASSERT_NEAR(found.l[0], -u_t, 1e-12 * (1.0 + std::abs(u_t))) << i;
     active += u_t < 0.0 ? 1 : 0;
@@ -110,7 +111,8 @@ TEST(SpeedRows, InTheNullSpaceAloneLeaveTheTask) {
   for (int i = 0; i < 1000; ++i) {
     RowsCase c(random, random.integer(1, 8));
     const Eigen::VectorXd before = c.joints(c.motion);
-    const RowMultipliers found = findMultipliers(c.rows, kNullSpaceAlone, c.m, c.motion);
+    const RowMultipliers found =
+        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), kNullSpaceAlone, c.motion);
     addRows(c.rows, found.l, kNullSpaceAlone, c.motion);
     const Eigen::VectorXd change = c.joints(c.motion) - before;
     ASSERT_LT((change - c.inverse.N * change).norm(), 1e-9 * (1.0 + change.norm())) << i;
@@ -124,8 +126,9 @@ TEST(SpeedRows, AreKeptByASlowerMotionWhereTheSolverMustEndEarly) {
   for (int i = 0; i < 5000; ++i) {
     RowsCase c(random, random.integer(2, kMaxRows));
     const int steps = random.integer(0, 1);
-    const bool is_whole = findMultipliers(c.rows, kBothSpaces, c.m, c.motion, steps).is_whole;
-    keepSpeedRows(c.rows, c.m, c.motion, steps);
+    const bool is_whole =
+        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), kBothSpaces, c.motion, steps).is_whole;
+    RowProblem(c.rows, c.m).keep(c.motion, steps);
     const Eigen::VectorXd speed = c.A * c.joints(c.motion);
     ASSERT_TRUE(speed.allFinite());
     if (is_whole) continue;
@@ -150,7 +153,8 @@ TEST(SpeedRows, AreSolvedWithinTheirStepsHoweverTheyOpposeEachOther) {
       const JointVector other = c.A.row(random.index(row));
       c.setRow(row, JointVector(random.sign() * other + 1e-3 * random.vector(c.n, -1.0, 1.0)));
     }
-    const RowMultipliers found = findMultipliers(c.rows, kBothSpaces, c.m, c.motion);
+    const RowMultipliers found =
+        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), kBothSpaces, c.motion);
     ASSERT_TRUE(found.is_whole) << i;
     ASSERT_TRUE(found.l.allFinite() && found.l.minCoeff() >= 0.0);
   }

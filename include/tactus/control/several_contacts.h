@@ -74,8 +74,8 @@ class SeveralContacts {
               const ContactPointState& point, Place& place) const noexcept;
   void project(const TaskKinematics& kinematics, const ScaledVector& a,
                SpeedRow& row) const noexcept;
-  void addRowAt(const TaskKinematics& kinematics, const Module& module,
-                const ContactPointState& point, SpeedRows& rows) const noexcept;
+  void addRowAt(const TaskKinematics& kinematics, const Module& module, ContactPointState point,
+                double position_m, SpeedRows& rows) const noexcept;
   void addPlaces(const TaskKinematics& kinematics, const Module& module,
                  const ModuleContactState& state, const Place& place,
                  SpeedRows& rows) const noexcept;
@@ -84,8 +84,9 @@ class SeveralContacts {
              ModuleContactState& state, Place& place) const noexcept;
   void addRow(const ForceGains& gains, const TaskKinematics& kinematics, const Module& module,
               const ModuleContactState& state, const Place& place, SpeedRows& rows) const noexcept;
-  double holdInNullSpace(const ForceGains& gains, const SpeedRows& rows, int contacts,
-                         NullSpeedLimits& limits, Motion& motion) const noexcept;
+  double holdInNullSpace(const ForceGains& gains, const SpeedRows& rows, const RowVector& v_hold,
+                         int contacts, RowProblem& problem, NullSpeedLimits& limits,
+                         Motion& motion) const noexcept;
 
   SerialChain chain_;
   int task_size_;

@@ -49,7 +49,7 @@ inline constexpr RowSpace kBothSpaces{1.0, 30.0, kNoLimit};
 ///   l >= 0,   K l >= -v_max - A q_1,  complementary,       K = A M A^T
 /// Rows that oppose each other (K_ij < 0) may exclude each other. They yield by slack_i = delta_i
 /// l_i with delta_i in proportion to 1 / D_i, which is an equilibrium of forces; rows without
-/// opponents are exact. From l = 0 four times
+/// opponents are exact. From l = 0 four times, or until nothing changes,
 ///   l <- LCP(K + diag(delta), d + delta l),
 ///   delta_i = delta_0 / D_i min(1, sum_j o_ij) + 1e-6 K_ii
 ///   o_ij = p_i p_j min(0, K_ij)^2 / (K_ii K_jj)
@@ -61,17 +61,37 @@ struct RowMultipliers {
   bool is_whole = true;  ///< false: the solver's steps were not enough; l keeps some of the rows
 };
 
-/// steps: of the solver, for each row.
-RowMultipliers findMultipliers(const SpeedRows& rows, const RowSpace& space, int task_size,
-                               const Motion& motion, int steps = kStepsEachRow) noexcept;
+/// Finds them for two levels of the same rows, which must outlive it and stay as they are.
+class RowProblem {
+ public:
+  RowProblem(const SpeedRows& rows, int task_size) noexcept : rows_(rows), task_size_(task_size) {}
+
+  /// v_max_m_per_s: in place of the rows' own. steps: of the solver, for each row.
+  RowMultipliers solve(const RowVector& v_max_m_per_s, const RowSpace& space, const Motion& motion,
+                       int steps = kStepsEachRow) noexcept;
+
+  /// Adds to the motion what it takes to keep the rows, by kBothSpaces. Where the solver's steps
+  /// are not enough, the whole motion is slowed down until it keeps all rows with v_max >= 0.
+  /// Returns l.
+  RowVector keep(Motion& motion, int steps = kStepsEachRow) noexcept;
+
+ private:
+  void multiply() noexcept;
+  void respond(const RowSpace& space, RowMatrix& K, RowVector& delta) const noexcept;
+  bool repeat(const RowMatrix& K, const RowVector& delta, const RowVector& lacking, int steps,
+              RowVector& l) const noexcept;
+
+  const SpeedRows& rows_;
+  int task_size_;
+  bool has_products_ = false;   ///< not before a row lacks something
+  RowMatrix in_all_, in_task_;  ///< a_i^T W^-1 a_j, and what of it is in the task space
+};
+
+/// v_max of the rows themselves.
+RowVector ownSpeeds(const SpeedRows& rows) noexcept;
 
 /// Adds M A^T l to the motion.
 void addRows(const SpeedRows& rows, const RowVector& l, const RowSpace& space,
              Motion& motion) noexcept;
-
-/// Both, by kBothSpaces. Where the solver's steps are not enough, the whole motion is slowed down
-/// until it keeps all rows with v_max >= 0. Returns l.
-RowVector keepSpeedRows(const SpeedRows& rows, int task_size, Motion& motion,
-                        int steps = kStepsEachRow) noexcept;
 
 }  // namespace tactus

@@ -45,7 +45,9 @@ class Complementarity {
   const RowMatrix& K_;
   RowVector l_;
   int size_ = 0;                                       ///< rows that are held with equality
+  int forward_ = 0;                                    ///< of them have y for this d
   std::array<int, kMaxRows> held_;                     ///< they
+  std::array<double, kMaxRows> y_;                     ///< L y = d
   std::array<double, kMaxRows> z_;                     ///< theirs, if none were to be positive
   std::array<double, kMaxRows*(kMaxRows + 1) / 2> L_;  ///< K = L L^T of them, a row after another
 };

@@ -45,7 +45,15 @@ inline void assign(const PaddedTaskVector& v, int size, TaskVector& result) noex
 /// TaskVector, which for most tasks is told here without asking for the number.
 inline double dot(const PaddedTaskVector& a, const PaddedTaskVector& b, int size) noexcept {
   if (size == 3) return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-  return a.head(size).dot(b.head(size));
+  if (size < 3) return a.head(size).dot(b.head(size));
+  double even = a[0] * b[0] + a[2] * b[2];
+  double odd = a[1] * b[1] + a[3] * b[3];
+  if (size == 6) {
+    even += a[4] * b[4];
+    odd += a[5] * b[5];
+  }
+  const double sum = even + odd;
+  return size == 5 ? sum + a[4] * b[4] : sum;
 }
 
 /// Task components by joints; row-major, so that a row (one task component) is contiguous.
