@@ -47,6 +47,11 @@ int tactusProgram(int argc, char** argv) {
   addKeysCommand(app, exit_code);
   addDoctorCommand(app, exit_code);
   addStatusCommand(app, exit_code);
+  addSetCommand(app, exit_code);
+  addReloadCommand(app, exit_code);
+  addUndoCommand(app, exit_code);
+  addDiffCommand(app, exit_code);
+  addSaveCommand(app, exit_code);
   try {
     if (argc > 1) refuseUnknownCommand(app, argv[1]);
     app.parse(argc, argv);

@@ -1,10 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tactus/daemon/control_client.h"
+#include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/daemon_program.h"
 #include "tactus/daemon/daemon_run.h"
 #include "tactus/record/log_size.h"
@@ -38,13 +41,23 @@ int runScene(const DaemonArguments& options) {
   return fault == Fault::kNone ? kExitDone : kExitFault;
 }
 
+/// Returns when the gains of the scene file are there, or wait for a moment without contact.
+int reload() {
+  const Json answer = ControlClient(controlPath()).change({{"do", "reload"}}, false);
+  return answer.at("trouble") == "" ? kExitDone : kExitFault;
+}
+
 }  // namespace
 
 int tactusdProgram(int argc, char** argv) {
   DaemonArguments options;
   CLI::App app{"Tactile feedback control of redundant robot arms: the daemon", "tactusd"};
   app.set_version_flag("--version", TACTUS_VERSION);
-  app.add_option("SCENE", options.scene, "Scene file")->required();
+  bool reloads = false;
+  auto* const scene = app.add_option("SCENE", options.scene, "Scene file");
+  app.add_flag("--reload", reloads,
+               "Let the daemon that runs take the gains of its scene file anew, and end")
+      ->excludes(scene);
   app.add_option("-o,--output", options.folder,
                  "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files");
   app.add_option("--name", options.name, kNameHelp);
@@ -53,6 +66,8 @@ int tactusdProgram(int argc, char** argv) {
   app.add_option("--set", options.settings, kSetHelp)->allow_extra_args(false);
   try {
     app.parse(argc, argv);
+    if (reloads) return reload();
+    if (options.scene.empty()) throw CLI::RequiredError("SCENE");
     return runScene(options);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitDone : kExitUsage;

@@ -12,6 +12,7 @@
 #include <memory>
 #include <thread>
 
+#include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/hardware_loop.h"
 #include "tactus/daemon/service_watchdog.h"
 #include "tactus/daemon/telemetry.h"
@@ -179,7 +180,8 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   // A run that is refused leaves no files.
   Telemetry telemetry(scene, runFolder(options), link);
 
-  // While stop signals are blocked, so that its thread never gets one.
+  // While stop signals are blocked, so that their threads never get one.
+  const ControlSocket control(scene, link);
   const ServiceWatchdog watchdog(link.pulse, real_time.max_late_cycles);
   const std::int64_t process_start_ns = processTime_ns();
   thread.start();

@@ -50,10 +50,20 @@ bool HardwareLoop::cycle(const Wake& wake) noexcept {
   ++cycles_;
   missed_cycles_ += wake.skipped;
   publish(wake, read_ns - woken_ns, controlled_ns - read_ns, written_ns - controlled_ns);
+  GainOrder order;
+  if (link_.gain_orders.take(order)) cycle_.order(order);
   cycle_.prepare();
+  reportGains();
   if (!cycle_.isFinished()) return true;
   cpu_end_ns_ = threadTime_ns();
   return false;
+}
+
+void HardwareLoop::reportGains() noexcept {
+  const GainReport& report = cycle_.gainReport();
+  if (report == reported_gains_) return;
+  reported_gains_ = report;
+  link_.gain_reports.put(report);
 }
 
 void HardwareLoop::readAll(const Wake& wake) noexcept {

@@ -11,12 +11,6 @@
 namespace tactus {
 namespace {
 
-double gainAt(const Gains& gains, std::size_t offset) {
-  double value;
-  std::memcpy(&value, reinterpret_cast<const char*>(&gains) + offset, sizeof(value));
-  return value;
-}
-
 /// The keys whose target lies in these gains; `owner` has the rows of `specs`.
 void collect(const std::vector<KeySpec>& specs, const std::string& prefix, void* owner,
              const Gains& gains, std::vector<GainKey>& keys) {
@@ -42,6 +36,12 @@ bool isWithin(const Range& range, double value) {
 }
 
 }  // namespace
+
+double gainAt(const Gains& gains, std::size_t offset) noexcept {
+  double value;
+  std::memcpy(&value, reinterpret_cast<const char*>(&gains) + offset, sizeof(value));
+  return value;
+}
 
 const std::vector<GainKey>& gainKeys() {
   static const std::vector<GainKey> keys = [] {

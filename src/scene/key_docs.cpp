@@ -1,5 +1,7 @@
 #include "tactus/scene/key_docs.h"
 
+#include <fmt/format.h>
+
 namespace tactus {
 namespace {
 
@@ -56,7 +58,9 @@ std::string keyFacts(const KeySpec& spec) {
     text += "; optional";
   }
   if (!spec.needs.section.empty()) text += "; only with " + spec.needs.section;
-  return text + (spec.symbol.empty() ? "" : "; symbol " + spec.symbol);
+  if (!spec.symbol.empty()) text += "; symbol " + spec.symbol;
+  if (spec.context != KeyContext::kRestart) text += fmt::format("; {}", contextName(spec.context));
+  return text;
 }
 
 std::vector<KeyRow> findKeyRows(const std::vector<KeySpec>& keys, std::string_view path) {

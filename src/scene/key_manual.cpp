@@ -41,6 +41,13 @@ keys of the robot begin with
 .BR robot. ,
 as in
 .BR \-\-set\~robot.drives.joints[0].node_id=3 .
+.PP
+Keys that are called live or free can be changed while
+.BR tactusd (8)
+runs, by
+.BR tactus\~set :
+a live one at once, a free one at the next moment without contact, both on a ramp.
+All others need a restart.
 )",
     R"(.SH EXAMPLES
 A band in the way of the arm that gives way in its null space:

@@ -123,6 +123,7 @@ Json keySchema(const KeySpec& spec, Completeness completeness) {
   }
   if (!spec.default_value.empty())
     schema["default"] = yamlJson(parseYaml({"the default", spec.default_value}));
+  if (spec.context != KeyContext::kRestart) schema["x-context"] = contextName(spec.context);
   return schema;
 }
 

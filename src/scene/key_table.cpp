@@ -25,6 +25,18 @@ std::string describeCount(const Count& count, const char* noun) {
 
 }  // namespace
 
+const char* contextName(KeyContext context) noexcept {
+  switch (context) {
+    case KeyContext::kFree:
+      return "free";
+    case KeyContext::kLive:
+      return "live";
+    case KeyContext::kRestart:
+      break;
+  }
+  return "restart";
+}
+
 std::string describeExpectation(const KeySpec& spec) {
   const std::string unit = spec.unit.empty() ? "" : " in " + spec.unit;
   switch (spec.type) {

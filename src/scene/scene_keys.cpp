@@ -36,14 +36,15 @@ Row<SceneConfig> redundancySection() {
           optional(group<SceneConfig>(
               "joint_limit_avoidance",
               "keeps the joints off their limits, by dH/dq of (1); absent: nothing does",
-              inside(&SceneConfig::gains, inside(&Gains::joint_limit_avoidance, avoidanceKeys())),
+              inside(&SceneConfig::gains,
+                     inside(&Gains::joint_limit_avoidance, live(avoidanceKeys()))),
               [](SceneConfig& scene) { scene.has_joint_limit_avoidance = true; })),
       }));
 }
 
 Table<ContactTransitionGains> transitionKeys() {
   using Config = ContactTransitionGains;
-  return {
+  Table<Config> rows = {
       withSymbol("T_t,max", number("max_time_constant_s", "s", above(0, 100),
                                    "time constant of the fade right after the loss",
                                    &Config::max_time_constant_s)),
@@ -62,6 +63,8 @@ Table<ContactTransitionGains> transitionKeys() {
                                     "speed of the return to a lost contact, joint_space only",
                                     &Config::search_speed_m_per_s)),
   };
+  for (Row<Config>& row : rows) row = whenFree(row);
+  return rows;
 }
 
 Row<ForceControlConfig> variantRow() {
@@ -119,8 +122,9 @@ Table<ForceGains> responseKeys() {
                              "how little the force overshoots: damping of the target dynamics (4), "
                              "second order only",
                              &Config::damping)),
-      withSymbol("F_th", number("contact_threshold_N", "N", within(0, 1000),
-                                "a smaller reading is no contact", &Config::contact_threshold_N)),
+      whenFree(withSymbol("F_th",
+                          number("contact_threshold_N", "N", within(0, 1000),
+                                 "a smaller reading is no contact", &Config::contact_threshold_N))),
       optional(withSymbol("F_act",
                           number("activation_force_N", "N", above(0, 1000),
                                  "contact force from which null_task, null_joint and null_limit "
@@ -138,10 +142,11 @@ Table<ForceGains> responseLimitKeys() {
       number("max_null_speed_rad_per_s", "rad/s", above(0, 1000),
              "limit of the null-space reaction of a revolute joint",
              &Config::max_null_speed_rad_per_s),
-      withSymbol("beta", number("pull_gain_per_s", "1/s", within(0, 1e4),
-                                "how fast joint_space pulls the tool back while in contact; "
-                                "drift_gain_per_s holds elsewhere",
-                                &Config::pull_gain_per_s)),
+      whenFree(
+          withSymbol("beta", number("pull_gain_per_s", "1/s", within(0, 1e4),
+                                    "how fast joint_space pulls the tool back while in contact; "
+                                    "drift_gain_per_s holds elsewhere",
+                                    &Config::pull_gain_per_s))),
       withSymbol("c_floor",
                  number("min_approach_stiffness_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m),
                         "null_limit only: softer contact is approached no faster "
@@ -158,7 +163,7 @@ Table<ForceGains> responseLimitKeys() {
 }
 
 Row<SceneConfig> controllerSection() {
-  const Table<ForceGains> gains = join(responseKeys(), responseLimitKeys());
+  const Table<ForceGains> gains = live(join(responseKeys(), responseLimitKeys()));
   return optional(group<SceneConfig>(
       "controller", "force control; absent: no tactile module is even read",
       join(inside(&SceneConfig::controller,
@@ -170,9 +175,9 @@ Row<SceneConfig> controllerSection() {
 Table<StiffnessEstimatorGains> estimateKeys() {
   using Config = StiffnessEstimatorGains;
   return {
-      withSymbol("F_est,min",
-                 number("min_force_change_N", "N", above(0, 1000),
-                        "change of force that makes an estimate", &Config::min_force_change_N)),
+      whenFree(withSymbol("F_est,min", number("min_force_change_N", "N", above(0, 1000),
+                                              "change of force that makes an estimate",
+                                              &Config::min_force_change_N))),
       withSymbol("T_est", number("filter_time_constant_s", "s", above(0, 100),
                                  "smoothing of the estimate", &Config::filter_time_constant_s)),
       number("min_N_per_m", "N/m", above(0, kMaxStiffness_N_per_m), "smallest raw estimate",
@@ -205,12 +210,13 @@ Row<SceneConfig> stiffnessSection() {
       "estimate",
       "estimates the stiffness while in contact, by Algorithm 1 or with null_limit by an "
       "estimator of its own; absent: it stays as assumed",
-      force(inside(&ForceGains::estimator, estimateKeys())),
+      force(inside(&ForceGains::estimator, live(estimateKeys()))),
       [](SceneConfig& scene) { scene.stiffness->has_estimate = true; }))};
-  return optional(group<SceneConfig>(
-      "stiffness", "what the law believes about the obstacle's stiffness",
-      join(force({assumedRow()}), inside(&SceneConfig::stiffness, {stiffestRow()}), estimate),
-      [](SceneConfig& scene) { scene.stiffness.emplace(); }));
+  return optional(
+      group<SceneConfig>("stiffness", "what the law believes about the obstacle's stiffness",
+                         join(force(live(Table<ForceGains>{assumedRow()})),
+                              inside(&SceneConfig::stiffness, {stiffestRow()}), estimate),
+                         [](SceneConfig& scene) { scene.stiffness.emplace(); }));
 }
 
 Table<LogConfig> logKeys() {

@@ -192,6 +192,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
   const SceneSettings settings{path, overrides};
   const SourcePosition robot_at = locate(root, "robot");
   const std::string robot_path = settings.resolve(*robot_at.file, "robot", config.robot);
+  const std::size_t scene_sources = reader.files().size();
   const LoadedRobot robot =
       loadRobot(reader.read(robot_path, "robot", robot_at), settings, reader, numbers);
   const JointVector q_start = readStart(root, config, robot);
@@ -216,6 +217,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
               .joint_names = robot.chain.joint_names,
               .module_links = linksThatAreRead(config, robot.config),
               .sources = reader.files(),
+              .scene_sources = scene_sources,
               .overrides = overrides,
               .numbers = std::move(numbers),
               .hardware = hardware,

@@ -104,11 +104,15 @@ std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, doubl
                    kInside * ratio * report.stiffness_N_per_m, least_N_per_m, rule));
 }
 
+const LoopReport& nearestOf(const StabilityReport& report) {
+  return *std::ranges::min_element(report.loops, {},
+                                   [](const LoopReport& loop) { return loop.phaseMargin_deg(); });
+}
+
 std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& report,
                                     double largest_ratio) {
   std::vector<std::string> warnings;
-  const LoopReport& nearest = *std::ranges::min_element(
-      report.loops, {}, [](const LoopReport& loop) { return loop.phaseMargin_deg(); });
+  const LoopReport& nearest = nearestOf(report);
   if (nearest.phaseMargin_deg() < kMinPhaseMargin_deg) {
     warnings.push_back(fmt::format(
         "phase margin of {:.1f} degrees ({}{}): overshoots and rings, better {:g} or more",
@@ -196,6 +200,33 @@ std::optional<StabilityReport> checkStability(const Scene& scene) {
     failUnstable(scene, report, stiffest.key, loops, worst);
   report.warnings = warningsOf(scene, report, largest_ratio);
   return report;
+}
+
+double phaseMargin_deg(const Scene& scene) {
+  double least_deg = std::numeric_limits<double>::infinity();
+  try {
+    const std::optional<StabilityReport> report = checkStability(scene);
+    if (!report) return least_deg;
+    for (const LoopReport& loop : report->loops)
+      least_deg = std::min(least_deg, loop.phaseMargin_deg());
+    return least_deg;
+  } catch (const InputError&) {
+    return 0.0;
+  }
+}
+
+void requirePhaseMargin(const Scene& scene, double least_deg) {
+  const std::optional<StabilityReport> report = checkStability(scene);
+  if (!report || report->loops.empty()) return;
+  const LoopReport& nearest = nearestOf(*report);
+  if (nearest.phaseMargin_deg() >= least_deg) return;
+  const std::vector<VariantLoop> loops =
+      variantLoops(scene.controller, plantOf(scene), scene.period_s, report->module);
+  fail(scene, "controller.time_constant_s",
+       fmt::format("{:.4g} s leaves a phase margin of {:.1f} degrees ({}{})",
+                   scene.controller.gains.force.time_constant_s, nearest.phaseMargin_deg(),
+                   nearest.name, ofModule(scene, report->module)),
+       timeConstantExpectation(loops, report->ratio()));
 }
 
 double stiffestBeforeGears(const Scene& scene) {

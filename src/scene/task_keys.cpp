@@ -97,10 +97,10 @@ Row<SceneConfig> taskSection() {
       "w_d", required(section("trajectory",
                               "where the tool shall be when; exactly one of line, waypoints, hold",
                               &SceneConfig::trajectory, trajectoryKeys())))};
-  return required(
-      group("task", "what the tool shall do",
-            join(inside(&SceneConfig::task, {componentsRow()}),
-                 inside(&SceneConfig::gains, inside(&Gains::task, correctionKeys())), trajectory)));
+  return required(group(
+      "task", "what the tool shall do",
+      join(inside(&SceneConfig::task, {componentsRow()}),
+           inside(&SceneConfig::gains, inside(&Gains::task, live(correctionKeys()))), trajectory)));
 }
 
 }  // namespace tactus

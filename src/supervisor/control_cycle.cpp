@@ -15,6 +15,7 @@ constexpr double kSwitchingTime_s = 2.0;
 constexpr double kRestTime_s = 0.02;
 /// Beyond the drives' own limit, which names the drive: for first feedback and first samples.
 constexpr double kFirstFrames_s = 2.0;
+constexpr double kFullSpeed = 0.999;  ///< of a joint's largest speed
 /// A ramp takes no longer in any robot that should be left to it.
 constexpr double kMaxRamp_s = 30.0;
 
@@ -66,6 +67,7 @@ ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareCon
                            double period_s)
     : controller_(controller),
       gains_(controller.gains),
+      gain_change_(controller.gains, period_s),
       robot_(hardware, period_s),
       places_(controller.q_start, hardware),
       joint_units_(jointUnits(controller.chain)),
@@ -80,6 +82,8 @@ ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareCon
 }
 
 void ControlCycle::update(const CycleInput& input) noexcept {
+  if (!has_next_gains_) goOnWithGains();
+  has_next_gains_ = false;
   coast(input.missed_cycles);
   robot_.expect(isCommanding(mode_.mode) ? state_.q_desired : output_.q_desired);
   const auto samples_before = input_.tactile;
@@ -110,7 +114,22 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   heartbeat_ = !heartbeat_;
 }
 
+/// By what the last cycle saw.
+void ControlCycle::goOnWithGains() noexcept {
+  GainWatchInput seen;
+  for (int i = 0; i < output_.modules; ++i)
+    seen.force_N = std::max(seen.force_N, output_.sensed[i].force_N);
+  const JointVector& most = controller_.config().limits.max_velocity;
+  for (int i = 0; i < output_.velocity.size(); ++i)
+    seen.is_at_limit |= std::abs(output_.velocity[i]) >= kFullSpeed * most[i];
+  seen.has_fault = mode_.fault != Fault::kNone;
+  gain_change_.update(seen);
+  if (gain_change_.isChanging()) gains_ = gain_change_.gains();
+}
+
 void ControlCycle::prepare() noexcept {
+  goOnWithGains();
+  has_next_gains_ = true;
   if (!is_started_) return;
   const long long next = task_cycles_ + (mode_.mode == Mode::kRunning ? 1 : 0);
   controller_.prepare(gains_, static_cast<double>(next) * period_s_, state_, prepared_);

@@ -21,7 +21,7 @@ LAYERS = {
     "canopen": ({"control", "math"}, {"Eigen"}),
     "supervisor": ({"canopen", "control", "math"}, {"Eigen"}),
     "plant": ({"canopen", "sim", "control", "math"}, {"Eigen"}),
-    "io": ({"supervisor", "canopen", "control", "math"}, {"Eigen", "gpiod.h"}),
+    "io": ({"supervisor", "canopen", "control", "math"}, {"Eigen", "gpiod.h", "systemd"}),
     "rt": ({"math"}, {"seccomp.h", "malloc.h"}),
     "scene": ({"analysis", "plant", "canopen", "sim", "control", "math"},
               {"Eigen", "yaml-cpp", "pugixml.hpp", "fmt", "nlohmann"}),

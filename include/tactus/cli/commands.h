@@ -23,5 +23,10 @@ void addBenchCommand(CLI::App& app, int& exit_code);
 void addKeysCommand(CLI::App& app, int& exit_code);
 void addDoctorCommand(CLI::App& app, int& exit_code);
 void addStatusCommand(CLI::App& app, int& exit_code);
+void addSetCommand(CLI::App& app, int& exit_code);
+void addReloadCommand(CLI::App& app, int& exit_code);
+void addUndoCommand(CLI::App& app, int& exit_code);
+void addDiffCommand(CLI::App& app, int& exit_code);
+void addSaveCommand(CLI::App& app, int& exit_code);
 
 }  // namespace tactus

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "tactus/rt/newest_value.h"
 #include "tactus/rt/spsc_queue.h"
 #include "tactus/supervisor/control_cycle.h"
 #include "tactus/supervisor/cycle_record.h"
@@ -22,13 +23,15 @@ struct LoopPulse {
   std::atomic<std::int64_t> late_in_a_row{0};  ///< cycles up to the last one; 0: on time
 };
 
-/// All that passes between the loop and the telemetry: wait-free, and never waited for by the loop.
+/// All that passes between the loop and other threads: wait-free, and never waited for by the loop.
 struct LoopLink {
   static constexpr std::size_t kRecords = 4096;  ///< four seconds at 1 kHz
   static constexpr std::size_t kReports = 256;
 
   SpscQueue<LoopRecord> records{kRecords};
   SpscQueue<ModeReport> reports{kReports};  ///< one for each change of mode or fault
+  NewestValue<GainOrder> gain_orders;
+  NewestValue<GainReport> gain_reports;  ///< each time that one is new
   LoopPulse pulse;
   std::atomic<bool> stop_requested{false};
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tactus/daemon/record_sink.h"
+#include "tactus/scene/scene.h"
 
 namespace tactus {
 

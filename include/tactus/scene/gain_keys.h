@@ -20,6 +20,9 @@ struct GainKey {
 /// Every word of Gains once, in its order.
 const std::vector<GainKey>& gainKeys();
 
+/// The word of Gains at an offset.
+double gainAt(const Gains& gains, std::size_t offset) noexcept;
+
 struct GainProblem {
   std::string path, problem, expectation;
 };

@@ -78,6 +78,20 @@ Row<S> onlyWith(const Needs& needs, Row<S> row) {
   return row;
 }
 
+template <class S>
+Row<S> whenFree(Row<S> row) {
+  row.spec.context = KeyContext::kFree;
+  return row;
+}
+/// All values but those that have another context already.
+template <class S>
+Table<S> live(Table<S> rows) {
+  for (Row<S>& row : rows)
+    if (row.spec.target && row.spec.context == KeyContext::kRestart)
+      row.spec.context = KeyContext::kLive;
+  return rows;
+}
+
 /// Rows of a struct inside S, as rows of S.
 template <class S, class T>
 Table<S> inside(T S::*member, Table<ContentOf<T>> rows) {

@@ -49,6 +49,14 @@ enum class Presence {
   kDefaulted,  ///< the same as `default_value`, or as an empty section
 };
 
+/// When a running daemon takes a new value.
+enum class KeyContext {
+  kRestart,  ///< at its next start
+  kFree,     ///< at the next moment without contact
+  kLive,     ///< at once; all that are not kRestart are gains, and go there on a ramp
+};
+const char* contextName(KeyContext context) noexcept;
+
 /// A section of the top level without which a key says nothing.
 struct Needs {
   std::string section;  ///< empty: none
@@ -81,6 +89,7 @@ struct KeySpec {
   std::string symbol;         ///< of the paper, as T_t,max; empty without one
   std::string doc;            ///< one line
   Needs needs;
+  KeyContext context = KeyContext::kRestart;
   std::function<Target(void* owner)> target;  ///< of a value; makes it if it is optional
   std::function<void*(void* owner)> enter;    ///< of a section: makes it or a new entry of its list
   std::vector<KeySpec> keys;                  ///< of a section: rows of what `enter` returns

@@ -46,6 +46,13 @@ PlantConfig plantOf(const Scene& scene);
 /// that contact. Not a part of loading: simulations and replays of unstable gains are of use.
 std::optional<StabilityReport> checkStability(const Scene& scene);
 
+/// The smallest of all its loops; infinite where there is none, or none can be computed; 0 where
+/// one is unstable.
+double phaseMargin_deg(const Scene& scene);
+
+/// Throws InputError where checkStability() does, and where that is less; it says which T would do.
+void requirePhaseMargin(const Scene& scene, double least_deg);
+
 /// Of the simulation's obstacles with links and cover; gears are apart. 0: there are none. Needs
 /// scene.arm.
 double stiffestBeforeGears(const Scene& scene);

@@ -7,6 +7,7 @@
 #include "tactus/control/controller.h"
 #include "tactus/supervisor/brake.h"
 #include "tactus/supervisor/cycle_record.h"
+#include "tactus/supervisor/gain_change.h"
 #include "tactus/supervisor/joint_places.h"
 #include "tactus/supervisor/line_states.h"
 #include "tactus/supervisor/mode.h"
@@ -35,11 +36,14 @@ class ControlCycle {
   /// What the next cycles are given, as Controller::update() wants them; at first the config's.
   /// Before update(), or after fill().
   void tune(const Gains& gains) noexcept { gains_ = gains; }
+  /// Leads them there over the next cycles. After fill().
+  void order(const GainOrder& order) noexcept { gain_change_.order(order); }
+  const GainReport& gainReport() const noexcept { return gain_change_.report(); }
 
   void receive(int bus, std::span<const CanFrame> frames) noexcept { robot_.receive(bus, frames); }
   void update(const CycleInput& input) noexcept;
   /// Does ahead, while frames travel and drives move, what the next cycle needs and already can
-  /// know. May be left out.
+  /// know. May be left out. After fill(), as the next cycle's gains are no longer this one's.
   void prepare() noexcept;
   const FrameBatch& outbox(int bus) const noexcept { return robot_.outbox(bus); }
   const CanFrame& probe() const noexcept { return robot_.probe(); }
@@ -74,6 +78,7 @@ class ControlCycle {
   bool hasFreshSample(int module) const noexcept;
   bool isReady(int module) const noexcept;
   void begin() noexcept;
+  void goOnWithGains() noexcept;
   void startTares() noexcept;
   void repeatRefusedTares() noexcept;
   void noteCulprit() noexcept;
@@ -93,6 +98,8 @@ class ControlCycle {
 
   Controller controller_;
   Gains gains_;
+  GainChange gain_change_;
+  bool has_next_gains_ = false;
   CanRobot robot_;
   JointPlaces places_;
   std::array<const char*, kMaxJoints> joint_units_;

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tactus/daemon/loop_link.h"
+#include "tactus/scene/gain_plan.h"
+#include "tactus/scene/json.h"
+
+namespace tactus {
+
+/// Answers what is asked of a running daemon, as docs/control.md has it: one JSON object a request
+/// and an answer, whatever the bytes are. Not for the loop; one thread.
+class ControlRequests {
+ public:
+  /// scene: of the start.
+  ControlRequests(const Scene& scene, LoopLink& link);
+
+  std::string answer(std::string_view request);
+
+  /// Looks what the loop has made of the last order. Returns a line for the journal, empty if
+  /// nothing is new.
+  std::string look();
+
+ private:
+  /// Gains that were ordered, and are not kept yet.
+  struct Trial {
+    Scene scene;
+    bool is_undo = false;
+  };
+
+  Json dispatch(const Json& request);
+  Json set(const Json& request);
+  Json reload(const Json& request);
+  Json undo(const Json& request);
+  Json show() const;
+  Json order(GainPlan plan, const Json& request, bool is_undo);
+  void settle(const GainReport& report);
+  const Scene& newest() const { return trial_ ? trial_->scene : kept_; }
+
+  LoopLink& link_;
+  std::vector<Override> start_overrides_;
+  Scene kept_;
+  std::optional<Trial> trial_;
+  std::vector<Scene> before_;  ///< what was kept, the newest last
+  std::uint32_t number_ = 0;
+  GainReport report_;
+};
+
+}  // namespace tactus

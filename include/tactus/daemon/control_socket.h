@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <list>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "tactus/daemon/control_requests.h"
+#include "tactus/io/packet_socket.h"
+
+namespace tactus {
+
+inline constexpr const char* kControlName = "control";    ///< in the folder of the status file
+inline constexpr std::size_t kMaxControlMessage = 16384;  ///< bytes
+
+/// The path of the socket of a daemon that runs as a service, or of RUNTIME_DIRECTORY.
+std::string controlPath();
+
+/// Serves ControlRequests on an AF_UNIX socket of packets (SOCK_SEQPACKET), in a thread of its own.
+/// The socket is the service manager's, or else lies in RUNTIME_DIRECTORY; without either there is
+/// none. Clients are taken for hostile: at most kMaxClients of them, each as often as
+/// kMessagesPerS; what is too long, or does not take its answer, is closed.
+class ControlSocket {
+ public:
+  static constexpr int kMaxClients = 8;
+  static constexpr int kMessagesPerS = 200;
+
+  /// Throws std::system_error.
+  ControlSocket(const Scene& scene, LoopLink& link);
+  ~ControlSocket();
+  ControlSocket(const ControlSocket&) = delete;
+  ControlSocket& operator=(const ControlSocket&) = delete;
+
+ private:
+  struct Client {
+    PacketSocket socket;
+    double may_speak_s = 0.0;  ///< on the monotonic clock
+  };
+
+  void serve(const std::stop_token& stop);
+  void accept();
+  bool hear(Client& client);
+  std::string answer(std::span<char> room, long size);
+
+  ControlRequests requests_;
+  std::string made_path_;  ///< of a socket of our own, to be removed
+  PacketSocket listening_;
+  std::list<Client> clients_;
+  std::jthread thread_;
+};
+
+}  // namespace tactus

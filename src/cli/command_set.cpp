@@ -1,0 +1,220 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tactus/cli/commands.h"
+#include "tactus/daemon/control_client.h"
+#include "tactus/daemon/control_socket.h"
+#include "tactus/record/output_file.h"
+#include "tactus/record/run_error.h"
+#include "tactus/scene/command_scene.h"
+#include "tactus/scene/gain_keys.h"
+#include "tactus/scene/located_error.h"
+#include "tactus/scene/source_hash.h"
+#include "tactus/scene/source_reader.h"
+#include "tactus/scene/yaml_edit.h"
+
+/// The gains of the running daemon: set, reload, undo, diff, save.
+namespace tactus {
+namespace {
+
+struct ChangeOptions {
+  std::vector<std::string> settings;
+  std::optional<double> for_s;
+  bool waits = false;
+  bool json = false;
+};
+
+std::string wordAt(const Json& answer, const char* name) {
+  return escaped(answer.at(name).get<std::string>());
+}
+
+/// "controller.damping  0.5 -> 0.6", a line a key.
+std::string changeText(const Json& answer) {
+  std::string text;
+  for (const auto& [key, values] : answer.at("changes").items())
+    text += fmt::format("{}  {} -> {}\n", escaped(key), values.at("from").dump(),
+                        values.at("to").dump());
+  return text.empty() ? "nothing differs\n" : text;
+}
+
+std::string stateText(const Json& answer) {
+  const std::string state = wordAt(answer, "state"), trouble = wordAt(answer, "trouble");
+  if (state == "waiting") return "waits for a moment without contact\n";
+  if (state == "ramping") return "on its way\n";
+  if (state == "on_trial") return "there, and watched in contact; `tactus undo` goes back\n";
+  if (!trouble.empty()) return fmt::format("gone back: {}\n", trouble);
+  return "kept\n";
+}
+
+int change(const Json& request, const ChangeOptions& options) {
+  try {
+    const Json answer = ControlClient(controlPath()).change(request, options.waits);
+    std::fputs(
+        options.json ? jsonText(answer).c_str() : (changeText(answer) + stateText(answer)).c_str(),
+        stdout);
+    return answer.at("trouble") == "" ? kExitDone : kExitFault;
+  } catch (const InputError& error) {
+    if (options.json)
+      std::fputs(jsonText({{"done", false}, {"error", error.what()}}).c_str(), stdout);
+    throw;
+  }
+}
+
+/// A word as it stands in YAML: a number is one, everything else a word.
+Json valueOf(const std::string& text) {
+  if (text == "~" || text == "null") return nullptr;
+  const Json number = Json::parse(text, nullptr, false);
+  return number.is_number() ? number : Json(text);
+}
+
+Json setRequest(const ChangeOptions& options) {
+  Json request = {{"do", "set"}, {"values", Json::object()}};
+  for (const Override& setting : parseOverrides(options.settings))
+    request["values"][setting.key] = valueOf(setting.value);
+  if (options.for_s) request["for_s"] = *options.for_s;
+  return request;
+}
+
+int diff(const ChangeOptions& options) {
+  const Json answer = ControlClient(controlPath()).ask({{"do", "show"}});
+  const auto path = answer.at("scene").get<std::string>();
+  const Gains in_file = loadScene(path, {}).controller.gains;
+  Json differing = Json::object();
+  for (const GainKey& key : gainKeys()) {
+    const Json file = gainAt(in_file, key.offset);
+    const Json running = answer.at("ordered").at(key.path);
+    if (file.dump() != running.dump()) differing[key.path] = {{"file", file}, {"running", running}};
+  }
+  if (options.json) {
+    std::fputs(jsonText(differing).c_str(), stdout);
+    return kExitDone;
+  }
+  for (const auto& [key, values] : differing.items())
+    fmt::print("{}  {} in {}, {} running\n", key, values.at("file").dump(), escaped(path),
+               values.at("running").dump());
+  if (differing.empty()) fmt::print("as in {}\n", escaped(path));
+  return kExitDone;
+}
+
+std::string yamlText(double value) { return std::isfinite(value) ? Json(value).dump() : "~"; }
+
+/// The scene file with the gains that run, all else of it as it is.
+std::string withGains(const std::string& path, std::string text, const Json& running) {
+  const Gains in_file = loadScene(path, {}).controller.gains;
+  for (const GainKey& key : gainKeys()) {
+    const Json& value = running.at(key.path);
+    const double wanted = value.is_null() ? kNoLimit : value.get<double>();
+    if (wanted != gainAt(in_file, key.offset))
+      text = withValue({path, text}, key.path, yamlText(wanted));
+  }
+  return text;
+}
+
+/// Whatever was changed: what is written has to be read as what runs.
+void checkGains(const std::string& path, const Json& running) {
+  const Gains gains = loadScene(path, {}).controller.gains;
+  for (const GainKey& key : gainKeys())
+    if (Json(gainAt(gains, key.offset)).dump() != running.at(key.path).dump())
+      throw RunError(fmt::format("{}: {} could not be written", escaped(path), key.path));
+}
+
+/// Written as a whole, or not at all; the old file stays beside it.
+void replaceFile(const std::string& path, const std::string& text, const Json& running) {
+  namespace fs = std::filesystem;
+  const std::string next = path + ".next";
+  OutputFile file(next);
+  file.append(text);
+  file.close();
+  try {
+    checkGains(next, running);
+  } catch (...) {
+    fs::remove(next);
+    throw;
+  }
+  fs::permissions(next, fs::status(path).permissions());
+  fs::copy_file(path, path + "~", fs::copy_options::overwrite_existing);
+  fs::rename(next, path);
+}
+
+int save(bool as_json) {
+  const ControlClient daemon(controlPath());
+  const Json answer = daemon.ask({{"do", "show"}});
+  const std::string path = answer.at("scene");
+  const std::string text = readFromDisk(path);
+  if (fmt::format("{:016x}", sourceHash(text)) != answer.at("scene_hash"))
+    throw InputError(
+        fmt::format("{}: was changed since the daemon read it, expected no change; "
+                    "`tactus diff` shows what differs, `tactus reload` takes it",
+                    escaped(path)));
+  const std::string changed = withGains(path, text, answer.at("ordered"));
+  const bool is_new = changed != text;
+  if (is_new) {
+    replaceFile(path, changed, answer.at("ordered"));
+    daemon.ask({{"do", "reload"}});  // it has read what is there now
+  }
+  if (as_json)
+    std::fputs(jsonText({{"scene", path}, {"written", is_new}}).c_str(), stdout);
+  else if (is_new)
+    fmt::print("{} written, as it was is {}~\n", escaped(path), escaped(path));
+  else
+    fmt::print("{} has all that runs\n", escaped(path));
+  return kExitDone;
+}
+
+CLI::App* addChange(CLI::App& app, const char* name, const char* help, ChangeOptions& options) {
+  CLI::App* command = app.add_subcommand(name, help);
+  command->add_flag("--wait", options.waits, "Until the change is kept, or has gone back");
+  command->add_flag("--json", options.json, "Print JSON");
+  return command;
+}
+
+}  // namespace
+
+void addSetCommand(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<ChangeOptions>();
+  CLI::App* command = addChange(app, "set", "Change gains of the running daemon", *options);
+  command->add_option("KEY=VALUE", options->settings, "All of these, or none")->required();
+  command->add_option("--for", options->for_s, "Go back after so many seconds")
+      ->check(CLI::Range(1e-3, 86400.0));
+  command->callback([options, &exit_code] { exit_code = change(setRequest(*options), *options); });
+}
+
+void addReloadCommand(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<ChangeOptions>();
+  CLI::App* command =
+      addChange(app, "reload", "Take the gains of the daemon's scene file anew", *options);
+  command->callback([options, &exit_code] { exit_code = change({{"do", "reload"}}, *options); });
+}
+
+void addUndoCommand(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<ChangeOptions>();
+  CLI::App* command = addChange(app, "undo", "Take back the last change of gains", *options);
+  command->callback([options, &exit_code] { exit_code = change({{"do", "undo"}}, *options); });
+}
+
+void addSaveCommand(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<ChangeOptions>();
+  CLI::App* command =
+      app.add_subcommand("save", "Write the gains that run into the daemon's scene file");
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &exit_code] { exit_code = save(options->json); });
+}
+
+void addDiffCommand(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<ChangeOptions>();
+  CLI::App* command =
+      app.add_subcommand("diff", "Show which gains run that the scene file does not have");
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &exit_code] { exit_code = diff(*options); });
+}
+
+}  // namespace tactus

@@ -1,0 +1,200 @@
+#include "tactus/daemon/control_requests.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "tactus/scene/gain_keys.h"
+#include "tactus/scene/located_error.h"
+#include "tactus/scene/source_hash.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::size_t kKeptForUndo = 16;
+constexpr double kMaxFor_s = 86400.0;
+
+/// What is wrong with a request itself.
+[[noreturn]] void refuse(const std::string& problem, const std::string& expectation) {
+  throw InputError(fmt::format("request: {}, expected {}", problem, expectation));
+}
+
+const char* stateName(GainState state) noexcept {
+  switch (state) {
+    case GainState::kWaiting:
+      return "waiting";
+    case GainState::kRamping:
+      return "ramping";
+    case GainState::kOnTrial:
+      return "on_trial";
+    case GainState::kGoingBack:
+      return "going_back";
+    case GainState::kKept:
+      break;
+  }
+  return "kept";
+}
+
+std::string troubleText(const GainReport& report) {
+  switch (report.trouble) {
+    case GainTrouble::kSwings:
+      return fmt::format("the force swings by {:.2f} N, and does not settle (limit {:.2f} N)",
+                         report.figure, report.limit);
+    case GainTrouble::kLosses:
+      return fmt::format("contact is lost {:.1f} times a second (limit {:.1f})", report.figure,
+                         report.limit);
+    case GainTrouble::kAtLimits:
+      return fmt::format(
+          "a joint moves as fast as it may for {:.0f} % of the time in contact "
+          "(limit {:.0f} %)",
+          100.0 * report.figure, 100.0 * report.limit);
+    case GainTrouble::kFault:
+      return "the arm has a fault";
+    case GainTrouble::kTimeIsOver:
+      return fmt::format("{:g} s are over", report.limit);
+    case GainTrouble::kNone:
+      break;
+  }
+  return "";
+}
+
+std::string valueText(const std::string& key, const Json& value) {
+  if (value.is_null()) return "~";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number() || value.is_boolean()) return value.dump();
+  refuse(fmt::format("{} is no single value", inQuotes(key)), "a number, a word or null");
+}
+
+std::vector<Override> settingsOf(const Json& request) {
+  const auto values = request.find("values");
+  if (values == request.end() || !values->is_object() || values->empty())
+    refuse("no values", "an object of keys and values");
+  std::vector<Override> settings;
+  for (const auto& [key, value] : values->items()) settings.push_back({key, valueText(key, value)});
+  return settings;
+}
+
+double duration_s(const Json& request) {
+  const auto found = request.find("for_s");
+  if (found == request.end()) return kNoLimit;
+  if (!found->is_number()) refuse("for_s is no number", "seconds");
+  const double value_s = found->get<double>();
+  if (!(value_s > 0.0 && value_s <= kMaxFor_s)) refuse("for_s is out of range", "0 to 86400 s");
+  return value_s;
+}
+
+Json gainsJson(const Gains& gains) {
+  Json json = Json::object();
+  for (const GainKey& key : gainKeys()) json[key.path] = gainAt(gains, key.offset);
+  return json;
+}
+
+Json changesJson(const Gains& from, const Gains& to, const std::vector<std::string>& keys) {
+  Json json = Json::object();
+  for (const GainKey& key : gainKeys()) {
+    if (std::ranges::find(keys, key.path) == keys.end()) continue;
+    json[key.path] = {{"from", gainAt(from, key.offset)}, {"to", gainAt(to, key.offset)}};
+  }
+  return json;
+}
+
+std::string compact(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+ControlRequests::ControlRequests(const Scene& scene, LoopLink& link)
+    : link_(link), start_overrides_(scene.overrides), kept_(scene) {}
+
+std::string ControlRequests::answer(std::string_view request) {
+  try {
+    const Json parsed = Json::parse(request, nullptr, false);
+    if (!parsed.is_object()) refuse("no JSON object", "one a message");
+    return compact(dispatch(parsed));
+  } catch (const std::exception& error) {
+    return compact({{"done", false}, {"error", error.what()}});
+  }
+}
+
+Json ControlRequests::dispatch(const Json& request) {
+  const auto found = request.find("do");
+  const std::string what =
+      found != request.end() && found->is_string() ? found->get<std::string>() : "";
+  if (what == "set") return set(request);
+  if (what == "reload") return reload(request);
+  if (what == "undo") return undo(request);
+  if (what == "show") return show();
+  refuse(fmt::format("do is {}", inQuotes(what)), "one of set, reload, undo, show");
+}
+
+Json ControlRequests::set(const Json& request) {
+  return order(planSettings(newest(), settingsOf(request)), request, false);
+}
+
+Json ControlRequests::reload(const Json& request) {
+  GainPlan plan = planReload(newest(), start_overrides_);
+  if (!plan.keys.empty()) return order(std::move(plan), request, false);
+  (trial_ ? trial_->scene : kept_) = std::move(plan.scene);  // comments may differ
+  Json json = show();
+  json["changes"] = Json::object();
+  return json;
+}
+
+Json ControlRequests::undo(const Json& request) {
+  if (!trial_ && before_.empty()) throw InputError("undo: nothing was changed");
+  return order(planChange(newest(), trial_ ? kept_ : before_.back()), request, !trial_);
+}
+
+Json ControlRequests::show() const {
+  return {{"done", true},
+          {"number", number_},
+          {"state", stateName(report_.state)},
+          {"trouble", troubleText(report_)},
+          {"scene", newest().sources.front().path},
+          {"scene_hash", fmt::format("{:016x}", sourceHash(newest().sources.front().text))},
+          {"kept", gainsJson(kept_.controller.gains)},
+          {"ordered", gainsJson(newest().controller.gains)}};
+}
+
+Json ControlRequests::order(GainPlan plan, const Json& request, bool is_undo) {
+  GainOrder order{.number = ++number_, .gains = plan.scene.controller.gains};
+  order.waits_for_free = plan.waits_for_free;
+  order.for_s = duration_s(request);
+  const Json changes = changesJson(newest().controller.gains, order.gains, plan.keys);
+  link_.gain_orders.put(order);
+  trial_ = Trial{std::move(plan.scene), is_undo};
+  report_ = {.number = number_, .state = GainState::kWaiting};
+  Json json = show();
+  json["changes"] = changes;
+  return json;
+}
+
+std::string ControlRequests::look() {
+  GainReport report;
+  if (!link_.gain_reports.take(report) || report.number != number_) return "";
+  const bool is_new = report.state != report_.state || report.trouble != report_.trouble;
+  if (!is_new) return "";
+  report_ = report;
+  if (report.state == GainState::kKept && trial_) settle(report);
+  const std::string trouble = troubleText(report);
+  return fmt::format("gains: change {} {}{}{}", report.number, stateName(report.state),
+                     trouble.empty() ? "" : ": ", trouble);
+}
+
+void ControlRequests::settle(const GainReport& report) {
+  const bool is_new = report.trouble == GainTrouble::kNone &&
+                      !isSame(trial_->scene.controller.gains, kept_.controller.gains);
+  if (is_new && trial_->is_undo) {
+    before_.pop_back();
+    kept_ = std::move(trial_->scene);
+  } else if (is_new) {
+    if (before_.size() == kKeptForUndo) before_.erase(before_.begin());
+    before_.push_back(std::exchange(kept_, std::move(trial_->scene)));
+  }
+  trial_.reset();
+}
+
+}  // namespace tactus

@@ -1,0 +1,98 @@
+#include "tactus/daemon/control_socket.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tactus/daemon/run_status.h"
+
+namespace tactus {
+namespace {
+
+constexpr const char* kServiceFolder = "/run/tactus";  ///< of the unit's RuntimeDirectory=
+constexpr int kLook_ms = 50;
+
+std::string runtimeFolder() {
+  const char* folder = std::getenv("RUNTIME_DIRECTORY");
+  return folder ? folder : "";
+}
+
+}  // namespace
+
+std::string controlPath() {
+  const std::string folder = runtimeFolder();
+  return fmt::format("{}/{}", folder.empty() ? kServiceFolder : folder, kControlName);
+}
+
+ControlSocket::ControlSocket(const Scene& scene, LoopLink& link)
+    : requests_(scene, link), listening_(PacketSocket::ofManager()) {
+  if (!listening_.isOpen() && !runtimeFolder().empty()) {
+    made_path_ = controlPath();
+    listening_ = PacketSocket::listenAt(made_path_, kMaxClients);
+  }
+  if (!listening_.isOpen()) return;
+  thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
+}
+
+ControlSocket::~ControlSocket() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+  if (!made_path_.empty()) ::unlink(made_path_.c_str());
+}
+
+void ControlSocket::serve(const std::stop_token& stop) {
+  std::vector<pollfd> polled;
+  while (!stop.stop_requested()) {
+    const std::string news = requests_.look();
+    if (!news.empty()) std::fputs(("tactusd: " + news + "\n").c_str(), stderr);
+    const double now_s = monotonicTime_s();
+    polled.assign(1, {listening_.fd(), POLLIN, 0});
+    for (const Client& client : clients_) {
+      const bool may_speak = client.may_speak_s <= now_s;
+      polled.push_back({client.socket.fd(), static_cast<short>(may_speak ? POLLIN : 0), 0});
+    }
+    ::poll(polled.data(), polled.size(), clients_.empty() ? kLook_ms : 1000 / kMessagesPerS);
+    auto client = clients_.begin();
+    for (std::size_t i = 1; i < polled.size(); ++i) {
+      const bool stays = polled[i].revents == 0 || hear(*client);
+      client = stays ? std::next(client) : clients_.erase(client);
+    }
+    if (polled[0].revents != 0) accept();
+  }
+}
+
+void ControlSocket::accept() {
+  PacketSocket socket = listening_.accept();
+  if (!socket.isOpen()) return;
+  if (clients_.size() < kMaxClients) {
+    clients_.push_back({std::move(socket)});
+  } else {
+    socket.send(R"({"done":false,"error":"too many clients"})");
+  }
+}
+
+/// False: it is to be closed.
+bool ControlSocket::hear(Client& client) {
+  client.may_speak_s = monotonicTime_s() + 1.0 / kMessagesPerS;
+  std::array<char, kMaxControlMessage> room;
+  const long size = client.socket.receive(room);
+  if (size <= 0) return size < 0;
+  const bool is_whole = static_cast<std::size_t>(size) <= room.size();
+  return client.socket.send(answer(room, size)) && is_whole;
+}
+
+std::string ControlSocket::answer(std::span<char> room, long size) {
+  const auto length = static_cast<std::size_t>(size);
+  if (length > room.size()) return R"({"done":false,"error":"request: longer than 16384 bytes"})";
+  return requests_.answer({room.data(), length});
+}
+
+}  // namespace tactus

@@ -1,0 +1,143 @@
+#include "tactus/scene/gain_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tactus/control/gain_ramp.h"
+#include "tactus/scene/gain_keys.h"
+#include "tactus/scene/key_docs.h"
+#include "tactus/scene/scene_loader.h"
+#include "tactus/scene/stability_check.h"
+#include "tactus/scene/yaml_tree.h"
+
+namespace tactus {
+namespace {
+
+constexpr int kPointsOfTheRamp = 5;
+
+using Values = std::map<std::string, std::string>;
+
+void collect(const YamlNode& node, const std::string& path, Values& values) {
+  if (node.kind == YamlNode::Kind::kScalar) values[path] = node.text;
+  for (const YamlEntry& entry : node.entries)
+    collect(entry.value, path.empty() ? entry.key : path + "." + entry.key, values);
+  for (std::size_t i = 0; i < node.items.size(); ++i)
+    collect(node.items[i], fmt::format("{}[{}]", path, i), values);
+}
+
+Values valuesOf(const Scene& scene) {
+  Values values;
+  if (scene.tree) collect(*scene.tree, "", values);
+  values.erase("extends");
+  return values;
+}
+
+std::map<std::string, double> numbersOf(const Scene& scene) {
+  return {scene.numbers.begin(), scene.numbers.end()};
+}
+
+/// All that is read of a robot: settings that are laid over it, and its files.
+bool haveSameRobot(const Scene& one, const Scene& other) {
+  const auto robot = [](const Scene& scene) {
+    std::vector<std::string> texts;
+    for (const Override& setting : scene.overrides)
+      if (setting.key.starts_with("robot.")) texts.push_back(setting.key + "=" + setting.value);
+    for (std::size_t i = scene.scene_sources; i < scene.sources.size(); ++i)
+      texts.push_back(scene.sources[i].text);
+    return texts;
+  };
+  return robot(one) == robot(other);
+}
+
+const GainKey* findGain(const std::string& path) {
+  const auto& keys = gainKeys();
+  const auto found = std::ranges::find(keys, path, &GainKey::path);
+  return found == keys.end() ? nullptr : &*found;
+}
+
+/// An optional section above a key that the scene has not: with the key it would begin to exist.
+bool makesSection(const Scene& running, const std::string& path) {
+  for (const KeyRow& row : keyRows(sceneKeys())) {
+    const bool is_above = path.starts_with(row.path + ".");
+    if (is_above && row.spec->presence == Presence::kOptional &&
+        !findGiven(*running.tree, row.path))
+      return true;
+  }
+  return false;
+}
+
+[[noreturn]] void refuse(const Scene& changed, const std::string& key) {
+  failAt(locate(*changed.tree, key), key, "needs a restart, nothing is changed",
+         "expected keys that `tactus keys` calls live or free");
+}
+
+bool isRaised(const Gains& from, const Gains& to) {
+  return to.force.max_null_speed_m_per_s > from.force.max_null_speed_m_per_s ||
+         to.force.max_null_speed_rad_per_s > from.force.max_null_speed_rad_per_s ||
+         to.task.max_return_speed_m_per_s > from.task.max_return_speed_m_per_s ||
+         to.task.max_return_speed_rad_per_s > from.task.max_return_speed_rad_per_s;
+}
+
+void checkRamp(const Scene& running, const Scene& changed) {
+  const Gains& from = running.controller.gains;
+  const double least_deg = std::min(kMinPhaseMargin_deg, phaseMargin_deg(running));
+  Scene point = changed;
+  for (int i = 1; i <= kPointsOfTheRamp; ++i) {
+    point.controller.gains =
+        gainsBetween(from, changed.controller.gains, static_cast<double>(i) / kPointsOfTheRamp);
+    requirePhaseMargin(point, least_deg);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> differingKeys(const Scene& one, const Scene& other) {
+  const Values a = valuesOf(one), b = valuesOf(other);
+  const auto numbers_a = numbersOf(one), numbers_b = numbersOf(other);
+  std::vector<std::string> keys;
+  const auto isSameNumber = [&](const std::string& key) {
+    const auto at_a = numbers_a.find(key), at_b = numbers_b.find(key);
+    return at_a != numbers_a.end() && at_b != numbers_b.end() && at_a->second == at_b->second;
+  };
+  const auto add = [&](const Values& from, const Values& to, bool only_missing) {
+    for (const auto& [key, text] : from) {
+      const auto found = to.find(key);
+      if (found != to.end() && (only_missing || found->second == text)) continue;
+      if (!isSameNumber(key)) keys.push_back(key);
+    }
+  };
+  add(a, b, false);
+  add(b, a, true);
+  std::ranges::sort(keys);
+  if (!haveSameRobot(one, other)) keys.push_back("robot");
+  return keys;
+}
+
+GainPlan planChange(const Scene& running, Scene changed) {
+  GainPlan plan{.scene = std::move(changed), .keys = {}};
+  plan.keys = differingKeys(running, plan.scene);
+  for (const std::string& key : plan.keys) {
+    const GainKey* const gain = findGain(key);
+    if (!gain || makesSection(running, key) || makesSection(plan.scene, key))
+      refuse(plan.scene, key);
+    plan.waits_for_free |= gain->spec.context == KeyContext::kFree;
+  }
+  plan.waits_for_free |= isRaised(running.controller.gains, plan.scene.controller.gains);
+  checkRamp(running, plan.scene);
+  return plan;
+}
+
+GainPlan planSettings(const Scene& running, const std::vector<Override>& settings) {
+  std::vector<Override> overrides = running.overrides;
+  overrides.insert(overrides.end(), settings.begin(), settings.end());
+  return planChange(running, loadScene(running.sources, overrides));
+}
+
+GainPlan planReload(const Scene& running, const std::vector<Override>& overrides) {
+  return planChange(running, loadScene(running.sources.front().path, overrides));
+}
+
+}  // namespace tactus

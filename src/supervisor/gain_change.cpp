@@ -1,0 +1,142 @@
+#include "tactus/supervisor/gain_change.h"
+
+#include <algorithm>
+
+#include "tactus/control/gain_ramp.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kLeastTrial_s = 4.0;  ///< of contact
+constexpr double kTrialTimeConstants = 10.0;
+constexpr double kBack_s = 0.1;  ///< faster, a link that swings is slower stopped
+constexpr double kForce = 1.3;   ///< of F_act + F_th
+constexpr double kBackFromForce_s = 0.01;
+constexpr double kSwing = 0.1;  ///< of F_act
+constexpr double kLosses_per_s = 4.0;
+constexpr double kAtLimit = 0.5;
+constexpr double kWindow_s = 1.0;   ///< of the figures
+constexpr double kMemory_s = 10.0;  ///< of how they were before a change
+constexpr double kMoreThanBefore = 1.3;
+
+}  // namespace
+
+GainChange::GainChange(const Gains& gains, double period_s) noexcept
+    : period_s_(period_s), kept_(gains), from_(gains), to_(gains), gains_(gains) {}
+
+void GainChange::order(const GainOrder& order) noexcept {
+  order_ = order;
+  before_ = largest_;
+  report_ = {.number = order.number, .state = GainState::kWaiting};
+}
+
+void GainChange::ramp(const Gains& to, double duration_s) noexcept {
+  from_ = gains_;
+  to_ = to;
+  duration_s_ = duration_s;
+  passed_s_ = 0.0;
+}
+
+void GainChange::update(const GainWatchInput& seen) noexcept {
+  observe(seen);
+  is_changing_ = false;
+  switch (report_.state) {
+    case GainState::kKept:
+      return;
+    case GainState::kWaiting:
+      return begin();
+    case GainState::kRamping:
+      if (!trips(seen)) advance(GainState::kOnTrial);
+      return;
+    case GainState::kOnTrial:
+      if (!trips(seen)) watch();
+      return;
+    case GainState::kGoingBack:
+      return advance(GainState::kKept);
+  }
+}
+
+void GainChange::begin() noexcept {
+  if (order_.waits_for_free && is_in_contact_) return;
+  ramp(order_.gains, gainRampDuration_s(gains_, order_.gains));
+  contact_s_ = 0.0;
+  report_.state = GainState::kRamping;
+}
+
+void GainChange::advance(GainState next) noexcept {
+  passed_s_ += period_s_;
+  is_changing_ = true;
+  gains_ = gainsBetween(from_, to_, passed_s_ / duration_s_);
+  if (passed_s_ < duration_s_) return;
+  gains_ = to_;
+  passed_s_ = 0.0;
+  report_.state = next;
+}
+
+void GainChange::watch() noexcept {
+  passed_s_ += period_s_;
+  contact_s_ += is_in_contact_ ? period_s_ : 0.0;
+  if (passed_s_ >= order_.for_s) return goBack(GainTrouble::kTimeIsOver, passed_s_, order_.for_s);
+  const double trial_s = std::max(kLeastTrial_s, kTrialTimeConstants * to_.force.time_constant_s);
+  if (order_.for_s < kNoLimit || contact_s_ < trial_s) return;
+  kept_ = to_;
+  report_.state = GainState::kKept;
+}
+
+double GainChange::wayBack_s(GainTrouble trouble) const noexcept {
+  if (trouble == GainTrouble::kTimeIsOver) return gainRampDuration_s(gains_, kept_);
+  return kBack_s;
+}
+
+void GainChange::goBack(GainTrouble trouble, double figure, double limit) noexcept {
+  ramp(kept_, wayBack_s(trouble));
+  report_.state = GainState::kGoingBack;
+  report_.trouble = trouble;
+  report_.figure = figure;
+  report_.limit = limit;
+}
+
+double GainChange::leastSwing_N() const noexcept {
+  return kSwing * std::max(kept_.force.activation_force_N, kept_.force.contact_threshold_N);
+}
+
+void GainChange::observe(const GainWatchInput& seen) noexcept {
+  const ForceGains& force = gains_.force;
+  swings_.update(seen.force_N, leastSwing_N(), period_s_);
+  const bool was_in_contact = is_in_contact_;
+  if (seen.force_N > force.contact_threshold_N) is_in_contact_ = true;
+  if (seen.force_N <= std::min(force.transition.release_force_N, force.contact_threshold_N))
+    is_in_contact_ = false;
+  const double share = period_s_ / kWindow_s;
+  figures_.swing_N = swings_.swing_N();
+  figures_.losses_per_s *= 1.0 - share;
+  if (was_in_contact && !is_in_contact_) figures_.losses_per_s += 1.0 / kWindow_s;
+  const double at_limit = is_in_contact_ && seen.is_at_limit ? 1.0 : 0.0;
+  figures_.at_limit += share * (at_limit - figures_.at_limit);
+  const double left = 1.0 - period_s_ / kMemory_s;
+  largest_.swing_N = std::max(left * largest_.swing_N, figures_.swing_N);
+  largest_.losses_per_s = std::max(left * largest_.losses_per_s, figures_.losses_per_s);
+  largest_.at_limit = std::max(left * largest_.at_limit, figures_.at_limit);
+}
+
+bool GainChange::exceeds(GainTrouble trouble, double figure, double limit) noexcept {
+  if (figure <= limit) return false;
+  goBack(trouble, figure, limit);
+  return true;
+}
+
+bool GainChange::trips(const GainWatchInput& seen) noexcept {
+  if (seen.has_fault) {
+    goBack(GainTrouble::kFault, 1.0, 0.0);
+    return true;
+  }
+  const auto worse = [](double limit, double before) {
+    return std::max(limit, kMoreThanBefore * before);
+  };
+  return exceeds(GainTrouble::kSwings, figures_.swing_N, worse(leastSwing_N(), before_.swing_N)) ||
+         exceeds(GainTrouble::kLosses, figures_.losses_per_s,
+                 worse(kLosses_per_s, before_.losses_per_s)) ||
+         exceeds(GainTrouble::kAtLimits, figures_.at_limit, worse(kAtLimit, before_.at_limit));
+}
+
+}  // namespace tactus

@@ -1,0 +1,61 @@
+#include "tactus/control/gain_ramp.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tactus {
+namespace {
+
+Gains other() {
+  Gains gains;
+  gains.force.time_constant_s = 0.4;
+  gains.force.assumed_stiffness_N_per_m = 70.0;
+  gains.force.damping = 1.5;
+  gains.task.max_return_speed_m_per_s = 0.1;
+  gains.force.estimator.max_N_per_m = 1e4;
+  return gains;
+}
+
+TEST(GainRamp, EndsAreTheSetsToTheBit) {
+  const Gains from, to = other();
+  EXPECT_TRUE(isSame(gainsBetween(from, to, 0.0), from));
+  EXPECT_TRUE(isSame(gainsBetween(from, to, 1.0), to));
+  EXPECT_TRUE(isSame(gainsBetween(to, to, 0.3), to));
+}
+
+TEST(GainRamp, TimesAndStiffnessesGoInEqualRatios) {
+  const Gains half = gainsBetween(Gains{}, other(), 0.5);
+  EXPECT_NEAR(half.force.time_constant_s, std::sqrt(0.1 * 0.4), 1e-15);
+  EXPECT_NEAR(half.force.assumed_stiffness_N_per_m, std::sqrt(7000.0 * 70.0), 1e-10);
+  EXPECT_NEAR(half.force.estimator.max_N_per_m, 1e5, 1e-8);
+  EXPECT_NEAR(half.force.damping, 1.0, 1e-15);
+  EXPECT_EQ(half.force.contact_threshold_N, Gains{}.force.contact_threshold_N);
+}
+
+TEST(GainRamp, WhatIsInfiniteHasNoWay) {
+  EXPECT_EQ(gainsBetween(Gains{}, other(), 0.1).task.max_return_speed_m_per_s, 0.1);
+  EXPECT_EQ(gainsBetween(other(), Gains{}, 0.1).task.max_return_speed_m_per_s, kNoLimit);
+}
+
+TEST(GainRamp, IsMonotonicAndBetween) {
+  const Gains from, to = other();
+  double before = from.force.time_constant_s;
+  for (int i = 1; i <= 1000; ++i) {
+    const double T_s = gainsBetween(from, to, 1e-3 * i).force.time_constant_s;
+    ASSERT_GE(T_s, before);
+    ASSERT_LE(T_s, to.force.time_constant_s);
+    before = T_s;
+  }
+}
+
+TEST(GainRamp, TakesFiveTimeConstants) {
+  EXPECT_EQ(gainRampDuration_s(Gains{}, other()), 2.0);
+  EXPECT_EQ(gainRampDuration_s(other(), Gains{}), 2.0);
+  Gains quick;
+  quick.force.time_constant_s = 0.01;
+  EXPECT_EQ(gainRampDuration_s(quick, quick), 0.5);
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,179 @@
+#include "tactus/scene/gain_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "support/random.h"
+#include "support/shipped_scene.h"
+#include "tactus/control/gain_ramp.h"
+#include "tactus/scene/gain_keys.h"
+#include "tactus/scene/key_docs.h"
+#include "tactus/scene/stability_check.h"
+
+namespace tactus {
+namespace {
+
+using Settings = std::vector<Override>;
+
+/// What a change is refused with; empty: it is not.
+std::string refusal(const Scene& running, const Settings& settings) {
+  try {
+    planSettings(running, settings);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(GainPlan, LaysSettingsOverWhatRuns) {
+  const Scene running = test::shippedScene("scenario2_tactus", {{"controller.damping", "0.9"}});
+  const GainPlan plan = planSettings(
+      running, {{"controller.time_constant_s", "0.15"}, {"task.drift_gain_per_s", "4"}});
+  EXPECT_EQ(plan.scene.controller.gains.force.time_constant_s, 0.15);
+  EXPECT_EQ(plan.scene.controller.gains.task.drift_gain_per_s, 4.0);
+  EXPECT_EQ(plan.scene.controller.gains.force.damping, 0.9);
+  EXPECT_FALSE(plan.waits_for_free);
+  EXPECT_EQ(plan.keys,
+            (std::vector<std::string>{"controller.time_constant_s", "task.drift_gain_per_s"}));
+  const GainPlan next = planSettings(plan.scene, {{"controller.contact_threshold_N", "1"}});
+  EXPECT_EQ(next.scene.controller.gains.force.time_constant_s, 0.15);
+  EXPECT_TRUE(next.waits_for_free);
+}
+
+TEST(GainPlan, SpeedLimitsAreLoweredAtOnceAndRaisedWithoutContact) {
+  const Scene running = test::shippedScene("scenario2_tactus");
+  const auto waits = [&](const char* value) {
+    return planSettings(running, {{"controller.max_null_speed_rad_per_s", value}}).waits_for_free;
+  };
+  EXPECT_FALSE(waits("1"));
+  EXPECT_TRUE(waits("6"));
+}
+
+TEST(GainPlan, RefusesWhatNeedsARestart) {
+  const Scene running = test::shippedScene("scenario2_estimated");
+  const Settings live = {{"controller.damping", "0.6"}};
+  for (const auto& [key, value] : Settings{{"controller.variant", "null_space"},
+                                           {"controller.order", "1"},
+                                           {"period_s", "0.002"},
+                                           {"simulation.obstacles[0].x_m", "0.6"},
+                                           {"task.trajectory.line.speed_m_per_s", "0.01"},
+                                           {"robot.home[0]", "0.01"},
+                                           {"stiffness.stiffest_N_per_m", "9000"}}) {
+    Settings settings = live;
+    settings.push_back({key, value});
+    EXPECT_NE(refusal(running, settings).find("needs a restart"), std::string::npos) << key;
+  }
+}
+
+/// With the key a stage would begin to exist.
+TEST(GainPlan, RefusesSectionsThatDoNotExist) {
+  const Scene running = test::shippedScene("scenario2_assumed");
+  EXPECT_NE(refusal(running, {{"stiffness.estimate.max_N_per_m", "1e4"}}).find("restart"),
+            std::string::npos);
+  EXPECT_EQ(refusal(running, {{"controller.transition.distance_m", "0.04"}}), "");
+}
+
+TEST(GainPlan, RefusesAsAStartWould) {
+  const Scene running = test::shippedScene("scenario2_tactus");
+  EXPECT_NE(refusal(running, {{"controller.dampin", "1"}}).find("damping"), std::string::npos);
+  EXPECT_NE(refusal(running, {{"controller.damping", "high"}}).find("a number"), std::string::npos);
+  EXPECT_NE(refusal(running, {{"controller.damping", "nan"}}), "");
+  EXPECT_NE(refusal(running, {{"controller.damping", "-1"}}).find("> 0"), std::string::npos);
+  EXPECT_NE(refusal(running, {{"task.drift_gain_per_s", "2000"}}).find("too high"),
+            std::string::npos);
+}
+
+/// And says which T would do: that one does.
+TEST(GainPlan, RefusesGainsWithoutMargin) {
+  const Scene running = test::shippedScene("scenario2_estimated");
+  const std::string text = refusal(running, {{"controller.time_constant_s", "0.02"}});
+  ASSERT_NE(text.find("expected at least "), std::string::npos) << text;
+  double T_s = 0.0;
+  ASSERT_EQ(std::sscanf(text.c_str() + text.find("at least "), "at least %lf s", &T_s), 1) << text;
+  EXPECT_EQ(refusal(running, {{"controller.time_constant_s", std::to_string(T_s)}}), "");
+  EXPECT_NE(refusal(running, {{"controller.time_constant_s", std::to_string(0.95 * T_s)}}), "");
+}
+
+/// A scene that has less from the start may be changed for the better.
+TEST(GainPlan, AcceptsMoreMarginThanBefore) {
+  Scene running = test::shippedScene("scenario2_estimated");
+  double T_s = 0.1;
+  while (phaseMargin_deg(running) >= kMinPhaseMargin_deg)
+    running = test::shippedScene("scenario2_estimated",
+                                 {{"controller.time_constant_s", std::to_string(T_s *= 0.95)}});
+  ASSERT_GT(phaseMargin_deg(running), 0.0);
+  EXPECT_EQ(refusal(running, {{"controller.time_constant_s", std::to_string(1.01 * T_s)}}), "");
+  EXPECT_NE(refusal(running, {{"controller.time_constant_s", std::to_string(0.99 * T_s)}}), "");
+}
+
+/// Whatever is accepted is within all ranges on all of its way.
+TEST(GainPlan, WhatIsAcceptedIsFitOnTheWay) {
+  test::Random random(1911);
+  const Scene running = test::shippedScene("scenario2_tactus");
+  const GainUse use = gainUse(running.controller.force_control, 1);
+  int accepted = 0;
+  for (int i = 0; i < 80; ++i) {
+    const GainKey& key = gainKeys()[random.index(static_cast<int>(gainKeys().size()))];
+    const double now = gainAt(running.controller.gains, key.offset);
+    if (!std::isfinite(now)) continue;
+    const Settings settings = {{key.path, std::to_string(now * random.logUniform(0.5, 2.0))}};
+    if (!refusal(running, settings).empty()) continue;
+    ++accepted;
+    const Gains to = planSettings(running, settings).scene.controller.gains;
+    for (int k = 0; k <= 20; ++k) {
+      const Gains between = gainsBetween(running.controller.gains, to, k / 20.0);
+      ASSERT_FALSE(findGainProblem(between, use, running.period_s)) << settings[0].key;
+    }
+  }
+  EXPECT_GT(accepted, 20);
+}
+
+TEST(GainPlan, AReloadIsOfTheFilesAsTheyAre) {
+  namespace fs = std::filesystem;
+  const std::string folder = testing::TempDir() + "tactus_reload";
+  fs::create_directories(folder);
+  const std::string path = folder + "/scene.yaml";
+  const auto write = [&](const std::string& rest) {
+    std::ofstream(path) << "extends: " TACTUS_SOURCE_DIR "/config/scenes/scenario2_tactus.yaml\n"
+                        << rest;
+  };
+  write("controller:\n  damping: 0.7\n");
+  const Scene running = loadScene(path, {});
+  EXPECT_TRUE(planReload(running, {}).keys.empty());
+  write("# a comment\ncontroller:\n  damping: 0.8\n");
+  const GainPlan plan = planReload(running, {});
+  EXPECT_EQ(plan.keys, std::vector<std::string>{"controller.damping"});
+  EXPECT_EQ(plan.scene.controller.gains.force.damping, 0.8);
+  EXPECT_TRUE(planReload(running, {{"controller.damping", "0.7"}}).keys.empty());
+  for (const char* wrong : {"controller:\n  variant: null_space\n", "controller:\n  damping: no\n",
+                            "controller: [\n", "log:\n  keep: 3\n"}) {
+    write(wrong);
+    try {
+      planReload(running, {});
+      ADD_FAILURE() << wrong;
+    } catch (const InputError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(path + ":")) << error.what();
+    }
+  }
+  fs::remove_all(folder);
+}
+
+TEST(GainContext, AllGainsCanBeChangedAndNothingElse) {
+  int gains = 0;
+  for (const KeyRow& row : keyRows(sceneKeys())) {
+    const auto found = std::ranges::find(gainKeys(), row.path, &GainKey::path);
+    const bool is_gain = found != gainKeys().end();
+    EXPECT_EQ(is_gain, row.spec->context != KeyContext::kRestart) << row.path;
+    gains += is_gain ? 1 : 0;
+  }
+  EXPECT_EQ(gains, static_cast<int>(gainKeys().size()));
+  for (const KeyRow& row : keyRows(robotKeys()))
+    EXPECT_EQ(row.spec->context, KeyContext::kRestart) << row.path;
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,159 @@
+#include "tactus/supervisor/gain_change.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace tactus {
+namespace {
+
+constexpr double kPeriod_s = 0.001;
+
+/// An arm that rests in contact, if nothing else is said.
+class GainChangeTest : public testing::Test {
+ protected:
+  void pass(double duration_s, GainWatchInput seen = {.force_N = 5.0}) {
+    for (int i = 0; i < std::lround(duration_s / kPeriod_s); ++i) {
+      change_.update(seen);
+      ++cycle_;
+    }
+  }
+  void passForce(double duration_s, const std::function<double(double)>& force) {
+    for (int i = 0; i < std::lround(duration_s / kPeriod_s); ++i)
+      pass(kPeriod_s, {.force_N = force(kPeriod_s * static_cast<double>(cycle_))});
+  }
+  GainOrder order(std::uint32_t number, double T_s) const {
+    GainOrder order{.number = number, .gains = change_.kept()};
+    order.gains.force.time_constant_s = T_s;
+    return order;
+  }
+  double T_s() const { return change_.gains().force.time_constant_s; }
+  GainState state() const { return change_.report().state; }
+
+  GainChange change_{Gains{}, kPeriod_s};
+  long cycle_ = 0;
+};
+
+double swinging(double t_s) { return 5.0 + std::sin(2.0 * std::numbers::pi * 5.0 * t_s); }
+
+TEST_F(GainChangeTest, RampsAndIsKeptAfterItsTrial) {
+  change_.order(order(1, 0.2));
+  pass(0.5);
+  EXPECT_EQ(state(), GainState::kRamping);
+  EXPECT_NEAR(T_s(), std::sqrt(0.1 * 0.2), 1e-3);
+  pass(0.6);
+  EXPECT_EQ(state(), GainState::kOnTrial);
+  EXPECT_EQ(T_s(), 0.2);
+  EXPECT_EQ(change_.kept().force.time_constant_s, 0.1);
+  pass(3.8);
+  EXPECT_EQ(state(), GainState::kOnTrial);
+  pass(0.2);
+  EXPECT_EQ(state(), GainState::kKept);
+  EXPECT_EQ(change_.kept().force.time_constant_s, 0.2);
+  EXPECT_EQ(change_.report().trouble, GainTrouble::kNone);
+}
+
+TEST_F(GainChangeTest, OnlyContactCountsForTheTrial) {
+  change_.order(order(1, 0.2));
+  pass(60.0, {.force_N = 0.0});
+  EXPECT_EQ(state(), GainState::kOnTrial);
+}
+
+TEST_F(GainChangeTest, NeverSteps) {
+  double before = T_s();
+  std::uint32_t number = 0;
+  for (int i = 0; i < 20000; ++i) {
+    if (i % 700 == 0) change_.order(order(++number, i % 1400 == 0 ? 0.05 : 1.0));
+    pass(kPeriod_s, {.force_N = 5.0, .has_fault = i % 5000 > 4990});
+    ASSERT_LT(std::abs(std::log(T_s() / before)), 0.04) << i;
+    before = T_s();
+  }
+}
+
+TEST_F(GainChangeTest, WaitsForAMomentWithoutContact) {
+  GainOrder free = order(1, 0.2);
+  free.waits_for_free = true;
+  pass(1.0);
+  change_.order(free);
+  pass(10.0);
+  EXPECT_EQ(state(), GainState::kWaiting);
+  EXPECT_EQ(T_s(), 0.1);
+  pass(1.1, {.force_N = 0.1});
+  EXPECT_EQ(state(), GainState::kOnTrial);
+  EXPECT_EQ(T_s(), 0.2);
+}
+
+TEST_F(GainChangeTest, GoesBackByItselfAfterItsTime) {
+  GainOrder passing = order(1, 0.2);
+  passing.for_s = 10.0;
+  change_.order(passing);
+  pass(10.9);
+  EXPECT_EQ(T_s(), 0.2);
+  pass(1.2);
+  EXPECT_EQ(T_s(), 0.1);
+  EXPECT_EQ(state(), GainState::kKept);
+  EXPECT_EQ(change_.report().trouble, GainTrouble::kTimeIsOver);
+}
+
+TEST_F(GainChangeTest, GoesBackWhereTheForceSwings) {
+  pass(1.0);
+  change_.order(order(1, 0.05));
+  pass(0.6);
+  passForce(1.5, swinging);
+  EXPECT_EQ(state(), GainState::kKept);
+  EXPECT_EQ(T_s(), 0.1);
+  EXPECT_EQ(change_.report().trouble, GainTrouble::kSwings);
+  EXPECT_NEAR(change_.report().figure, 2.0, 0.1);
+}
+
+/// What it does anyway is no reason.
+TEST_F(GainChangeTest, StaysWhereTheForceSwungBefore) {
+  passForce(3.0, swinging);
+  change_.order(order(1, 0.05));
+  passForce(6.0, swinging);
+  EXPECT_EQ(state(), GainState::kKept);
+  EXPECT_EQ(T_s(), 0.05);
+}
+
+TEST_F(GainChangeTest, GoesBackWhereContactIsLostAgainAndAgain) {
+  pass(1.0);
+  change_.order(order(1, 0.05));
+  passForce(3.0, [](double t_s) { return std::fmod(t_s, 0.1) < 0.05 ? 2.0 : 0.0; });
+  EXPECT_EQ(T_s(), 0.1);
+  EXPECT_NE(change_.report().trouble, GainTrouble::kNone);
+}
+
+TEST_F(GainChangeTest, GoesBackWhereJointsAreAtTheirLimits) {
+  pass(1.0);
+  change_.order(order(1, 0.05));
+  pass(2.0, {.force_N = 5.0, .is_at_limit = true});
+  EXPECT_EQ(T_s(), 0.1);
+  EXPECT_EQ(change_.report().trouble, GainTrouble::kAtLimits);
+}
+
+TEST_F(GainChangeTest, GoesBackAfterAFault) {
+  change_.order(order(1, 0.05));
+  pass(0.3);
+  pass(kPeriod_s, {.has_fault = true});
+  pass(0.2, {.force_N = 5.0});
+  EXPECT_EQ(T_s(), 0.1);
+  EXPECT_EQ(change_.report().trouble, GainTrouble::kFault);
+}
+
+/// A new order while one is on trial goes back to what was kept, not to what was not.
+TEST_F(GainChangeTest, ANewOrderGoesBackToWhatWasKept) {
+  change_.order(order(1, 0.05));
+  pass(1.0);
+  change_.order(order(2, 0.04));
+  pass(1.0);
+  EXPECT_EQ(T_s(), 0.04);
+  pass(kPeriod_s, {.has_fault = true});
+  pass(0.2);
+  EXPECT_EQ(T_s(), 0.1);
+  EXPECT_EQ(change_.report().number, 2u);
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,73 @@
+#include "tactus/supervisor/swing_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "support/random.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kPeriod_s = 0.001;
+constexpr double kLeast_N = 0.57;
+
+/// Of a force over time, 5 s of it.
+template <class Force>
+double largestSwing(const Force& force) {
+  SwingWatch watch;
+  double largest = 0.0;
+  for (int i = 0; i < 5000; ++i) {
+    watch.update(force(kPeriod_s * i), kLeast_N, kPeriod_s);
+    largest = std::max(largest, watch.swing_N());
+  }
+  return largest;
+}
+
+double sine(double t_s, double hz) { return std::sin(2.0 * std::numbers::pi * hz * t_s); }
+
+TEST(SwingWatch, TellsHowFarAForceSwings) {
+  for (const double hz : {1.0, 3.0, 10.0, 40.0}) {
+    const double swing = largestSwing([&](double t_s) { return 4.0 + 0.5 * sine(t_s, hz); });
+    EXPECT_NEAR(swing, 1.0, 0.02) << hz;
+  }
+}
+
+TEST(SwingWatch, SaysNothingOfWhatIsSmallOrDiesAway) {
+  EXPECT_EQ(largestSwing([](double t_s) { return 4.0 + 0.2 * sine(t_s, 5.0); }), 0.0);
+  for (const double damping_per_s : {2.0, 4.0, 10.0}) {
+    const auto force = [&](double t_s) {
+      return 4.0 + 4.0 * std::exp(-damping_per_s * t_s) * sine(t_s, 3.0);
+    };
+    EXPECT_EQ(largestSwing(force), 0.0) << damping_per_s;
+  }
+  EXPECT_EQ(largestSwing([](double t_s) { return 10.0 * t_s; }), 0.0);
+  test::Random random(1901);
+  EXPECT_EQ(largestSwing([&](double) { return 4.0 + random.uniform(-0.1, 0.1); }), 0.0);
+}
+
+/// Well before it is as large as what it is to be kept from.
+TEST(SwingWatch, FindsOneThatGrows) {
+  for (const double hz : {2.0, 5.0, 15.0}) {
+    SwingWatch watch;
+    double amplitude = 0.1;
+    double force = 4.0;
+    for (int i = 0; i < 10000 && watch.swing_N() == 0.0; ++i) {
+      amplitude = 0.1 * std::pow(1.3, hz * kPeriod_s * i);
+      force = 4.0 + amplitude * sine(kPeriod_s * i, hz);
+      watch.update(force, kLeast_N, kPeriod_s);
+    }
+    EXPECT_GT(watch.swing_N(), 0.0) << hz;
+    EXPECT_LT(amplitude, 1.0) << hz;
+  }
+}
+
+/// As a moving obstacle leaves it.
+TEST(SwingWatch, ForgetsSlowOnes) {
+  EXPECT_EQ(largestSwing([](double t_s) { return 4.0 + 2.0 * sine(t_s, 0.3); }), 0.0);
+}
+
+}  // namespace
+}  // namespace tactus
