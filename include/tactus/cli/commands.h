@@ -16,6 +16,7 @@ int tactusProgram(int argc, char** argv);
 void addCheckCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 void addExportCommand(CLI::App& app, int& exit_code);
+void addContactsCommand(CLI::App& app, int& exit_code);
 void addIdentifyCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
 void addPlantCommand(CLI::App& app, int& exit_code);

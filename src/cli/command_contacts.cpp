@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tactus/cli/commands.h"
+#include "tactus/record/contact_figures.h"
+#include "tactus/record/run_summary.h"
+#include "tactus/record/ulog_reader.h"
+#include "tactus/scene/located_error.h"
+#include "tactus/scene/scene_loader.h"
+
+/// The contacts of a run, a row each.
+namespace tactus {
+namespace {
+
+struct LoggedContacts {
+  Scene scene;
+  std::vector<ContactFigures> contacts;
+  bool is_cut_off = false;
+};
+
+/// Reads all cycles of a log; true if it was cut off.
+template <class Sink>
+bool readCycles(const std::string& path, const Gains& gains, const Sink& sink) {
+  std::ifstream in = openLog(path);
+  UlogReader reader(in, path);
+  reader.assumeGains(gains);
+  CycleRecord record;
+  while (reader.next(record)) sink(record);
+  return reader.cutOff();
+}
+
+Scene loadLogged(const std::string& path) {
+  std::ifstream in = openLog(path);
+  const UlogReader reader(in, path);
+  const LogDescription& description = reader.description();
+  Scene scene = loadScene(description.sources, description.overrides, SceneUse::kSimulation);
+  if (static_cast<std::size_t>(description.shape.modules) < scene.module_links.size())
+    failAt({std::make_shared<std::string>(path), 1, 1}, "force_sensor_N",
+           "has fewer tactile modules than its scene", "expected one of each");
+  return scene;
+}
+
+/// Twice: which contacts there are is known at the end alone.
+LoggedContacts readContacts(const std::string& path) {
+  checkLog(path);
+  LoggedContacts logged{.scene = loadLogged(path), .contacts = {}};
+  const Gains& gains = logged.scene.controller.gains;
+  RunSummary summary(logged.scene.controller, 0);
+  readCycles(path, gains, [&](const CycleRecord& record) { summary.add(record); });
+  ContactFiguresList list(summary.figures().contacts);
+  logged.is_cut_off = readCycles(path, gains, [&](const CycleRecord& record) { list.add(record); });
+  logged.contacts = list.figures();
+  return logged;
+}
+
+std::string linkOf(const Scene& scene, int module) {
+  const auto index = static_cast<std::size_t>(module);
+  return index < scene.module_links.size() ? scene.module_links[index] : "-";
+}
+
+std::string swingText(const ContactFigures& contact) {
+  constexpr double kRests_N = 0.1;
+  if (contact.swing_N < kRests_N) return "rests";
+  if (contact.swing_hz == 0.0) return fmt::format("{:.2f}, moves", contact.swing_N);
+  return fmt::format("{:.2f} at {:.1f} Hz", contact.swing_N, contact.swing_hz);
+}
+
+std::string contactsText(const LoggedContacts& logged) {
+  std::string text = fmt::format(
+      "{:>8} {:>8} {:<10} {:>6} {:>7} {:>7} {:>7} {:>7} {:<15} {:>9} {:>6} {:>5} {:>6} {:>5}\n",
+      "start_s", "end_s", "link", "x_mm", "peak_N", "above_s", "rests_s", "rest_N", "swing_N",
+      "c, N/m", "tcp_mm", "null%", "T_s", "d");
+  for (const ContactFigures& contact : logged.contacts) {
+    const ContactSummary& summary = contact.summary;
+    text += fmt::format(
+        "{:8.3f} {:8.3f} {:<10} {:6.0f} {:7.2f} {:7.3f} {:7.3f} {:7.2f} {:<15} {:9.0f} {:6.1f} "
+        "{:5.0f} {:6.3g} {:5.3g}\n",
+        summary.start_s, summary.end_s, escaped(linkOf(logged.scene, summary.module)),
+        1e3 * contact.position_m, summary.peak_force_N, contact.time_above_s, summary.settling_s,
+        contact.rest_force_N, swingText(contact), contact.stiffness_N_per_m,
+        1e3 * contact.tcp_error_max_m, 100.0 * contact.null_share,
+        contact.gains.force.time_constant_s, contact.gains.force.damping);
+  }
+  return logged.contacts.empty() ? "no contact\n" : text;
+}
+
+Json contactsJson(const LoggedContacts& logged) {
+  Json json = Json::array();
+  for (const ContactFigures& contact : logged.contacts) {
+    const ContactSummary& summary = contact.summary;
+    const ForceGains& gains = contact.gains.force;
+    json.push_back({{"start_s", summary.start_s},
+                    {"end_s", summary.end_s},
+                    {"tactile_module", linkOf(logged.scene, summary.module)},
+                    {"position_m", contact.position_m},
+                    {"peak_force_N", summary.peak_force_N},
+                    {"time_above_s", contact.time_above_s},
+                    {"settling_s", summary.settling_s},
+                    {"rest_force_N", contact.rest_force_N},
+                    {"swing_N", contact.swing_N},
+                    {"swing_hz", contact.swing_hz},
+                    {"stiffness_N_per_m", contact.stiffness_N_per_m},
+                    {"tcp_error_max_m", contact.tcp_error_max_m},
+                    {"null_space_share", contact.null_share},
+                    {"time_constant_s", gains.time_constant_s},
+                    {"damping", gains.damping},
+                    {"activation_force_N", gains.activation_force_N},
+                    {"contact_threshold_N", gains.contact_threshold_N}});
+  }
+  return json;
+}
+
+}  // namespace
+
+void addContactsCommand(CLI::App& app, int& exit_code) {
+  struct ContactsOptions {
+    std::string log;
+    bool json = false;
+  };
+  const auto options = std::make_shared<ContactsOptions>();
+  CLI::App* const command =
+      app.add_subcommand("contacts", "Show each contact of a run, a row each");
+  command->add_option("log", options->log, "Log of a run (run.ulg)")->required();
+  command->add_flag("--json", options->json, "Print JSON");
+  command->callback([options, &exit_code] {
+    const LoggedContacts logged = readContacts(options->log);
+    if (logged.is_cut_off) fmt::print(stderr, "{}: the log was cut off\n", escaped(options->log));
+    std::fputs((options->json ? jsonText(contactsJson(logged)) : contactsText(logged)).c_str(),
+               stdout);
+    exit_code = kExitDone;
+  });
+}
+
+}  // namespace tactus

@@ -1,0 +1,62 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/command_run.h"
+#include "support/shipped_scene.h"
+#include "support/telemetry.h"
+#include "tactus/cli/commands.h"
+#include "tactus/cli/simulation.h"
+#include "tactus/scene/json.h"
+
+namespace tactus {
+namespace {
+
+/// The log of a simulated scene, and what is known of its contacts otherwise.
+struct LoggedRun {
+  explicit LoggedRun(const std::string& name) : scene(test::shippedScene(name)) {
+    std::vector<CycleRecord> records;
+    figures =
+        simulate(scene, [&](const CycleRecord& record) { records.push_back(record); }).figures;
+    log.setContent(test::writeLog(describeLog(scene), records));
+  }
+
+  Json contacts() const {
+    std::string output;
+    EXPECT_EQ(test::runCommand(addContactsCommand, {"contacts", log.path(), "--json"}, output), 0);
+    return Json::parse(output);
+  }
+
+  Scene scene;
+  RunFigures figures;
+  test::TemporaryFile log{".ulg"};
+};
+
+TEST(Contacts, AreThoseOfTheSummary) {
+  const LoggedRun run("whole_arm/crops9_skin_two_links");
+  const Json contacts = run.contacts();
+  ASSERT_EQ(contacts.size(), run.figures.contacts.size());
+  ASSERT_GE(contacts.size(), 2u);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactSummary& expected = run.figures.contacts[i];
+    EXPECT_EQ(contacts[i].at("start_s"), expected.start_s);
+    EXPECT_EQ(contacts[i].at("peak_force_N"), expected.peak_force_N);
+    EXPECT_EQ(contacts[i].at("settling_s"), expected.settling_s);
+    EXPECT_EQ(contacts[i].at("tactile_module"),
+              run.scene.module_links[static_cast<std::size_t>(expected.module)]);
+    EXPECT_LE(contacts[i].at("rest_force_N"), expected.peak_force_N);
+    EXPECT_LE(contacts[i].at("tcp_error_max_m"), run.figures.tcp_error_max_m);
+  }
+}
+
+TEST(Contacts, OfARunWithoutAny) {
+  const LoggedRun run("free_motion");
+  EXPECT_TRUE(run.contacts().empty());
+  std::string output;
+  EXPECT_EQ(test::runCommand(addContactsCommand, {"contacts", run.log.path()}, output), 0);
+  EXPECT_EQ(output, "no contact\n");
+}
+
+}  // namespace
+}  // namespace tactus
