@@ -107,7 +107,7 @@ std::string compact(const Json& json) {
 }  // namespace
 
 ControlRequests::ControlRequests(const Scene& scene, LoopLink& link)
-    : link_(link), start_overrides_(scene.overrides), kept_(scene) {}
+    : link_(link), started_(scene), kept_(scene) {}
 
 std::string ControlRequests::answer(std::string_view request) {
   try {
@@ -131,11 +131,11 @@ Json ControlRequests::dispatch(const Json& request) {
 }
 
 Json ControlRequests::set(const Json& request) {
-  return order(planSettings(newest(), settingsOf(request)), request, false);
+  return order(planSettings(newest(), settingsOf(request), leastMargin()), request, false);
 }
 
 Json ControlRequests::reload(const Json& request) {
-  GainPlan plan = planReload(newest(), start_overrides_);
+  GainPlan plan = planReload(newest(), started_.overrides, leastMargin());
   if (!plan.keys.empty()) return order(std::move(plan), request, false);
   (trial_ ? trial_->scene : kept_) = std::move(plan.scene);  // comments may differ
   Json json = show();
@@ -145,7 +145,13 @@ Json ControlRequests::reload(const Json& request) {
 
 Json ControlRequests::undo(const Json& request) {
   if (!trial_ && before_.empty()) throw InputError("undo: nothing was changed");
-  return order(planChange(newest(), trial_ ? kept_ : before_.back()), request, !trial_);
+  return order(planChange(newest(), trial_ ? kept_ : before_.back(), leastMargin()), request,
+               !trial_);
+}
+
+double ControlRequests::leastMargin() {
+  if (!least_margin_deg_) least_margin_deg_ = leastMargin_deg(started_);
+  return *least_margin_deg_;
 }
 
 Json ControlRequests::show() const {

@@ -81,9 +81,8 @@ bool isRaised(const Gains& from, const Gains& to) {
          to.task.max_return_speed_rad_per_s > from.task.max_return_speed_rad_per_s;
 }
 
-void checkRamp(const Scene& running, const Scene& changed) {
+void checkRamp(const Scene& running, const Scene& changed, double least_deg) {
   const Gains& from = running.controller.gains;
-  const double least_deg = std::min(kMinPhaseMargin_deg, phaseMargin_deg(running));
   Scene point = changed;
   for (int i = 1; i <= kPointsOfTheRamp; ++i) {
     point.controller.gains =
@@ -116,7 +115,11 @@ std::vector<std::string> differingKeys(const Scene& one, const Scene& other) {
   return keys;
 }
 
-GainPlan planChange(const Scene& running, Scene changed) {
+double leastMargin_deg(const Scene& started) {
+  return std::min(kMinPhaseMargin_deg, phaseMargin_deg(started));
+}
+
+GainPlan planChange(const Scene& running, Scene changed, double least_deg) {
   GainPlan plan{.scene = std::move(changed), .keys = {}};
   plan.keys = differingKeys(running, plan.scene);
   for (const std::string& key : plan.keys) {
@@ -126,18 +129,20 @@ GainPlan planChange(const Scene& running, Scene changed) {
     plan.waits_for_free |= gain->spec.context == KeyContext::kFree;
   }
   plan.waits_for_free |= isRaised(running.controller.gains, plan.scene.controller.gains);
-  checkRamp(running, plan.scene);
+  checkRamp(running, plan.scene, least_deg);
   return plan;
 }
 
-GainPlan planSettings(const Scene& running, const std::vector<Override>& settings) {
+GainPlan planSettings(const Scene& running, const std::vector<Override>& settings,
+                      double least_deg) {
   std::vector<Override> overrides = running.overrides;
   overrides.insert(overrides.end(), settings.begin(), settings.end());
-  return planChange(running, loadScene(running.sources, overrides));
+  return planChange(running, loadScene(running.sources, overrides), least_deg);
 }
 
-GainPlan planReload(const Scene& running, const std::vector<Override>& overrides) {
-  return planChange(running, loadScene(running.sources.front().path, overrides));
+GainPlan planReload(const Scene& running, const std::vector<Override>& overrides,
+                    double least_deg) {
+  return planChange(running, loadScene(running.sources.front().path, overrides), least_deg);
 }
 
 }  // namespace tactus

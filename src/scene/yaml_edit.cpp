@@ -39,12 +39,14 @@ std::size_t tokenLength(std::string_view text) {
 
 /// "a: {b: value}"
 std::string flowText(const Words& words, std::size_t first, const std::string& value) {
-  std::string text = value;
-  for (std::size_t i = words.size(); i > first; --i) {
-    text = words[i - 1] + ": " + text;
-    if (i > first + 1) text = "{" + text + "}";
+  std::string text;
+  for (std::size_t i = first; i < words.size(); ++i) {
+    text += i > first ? "{" : "";
+    text += words[i];
+    text += ": ";
   }
-  return text;
+  text += value;
+  return text + std::string(words.size() - first - 1, '}');
 }
 
 /// "a:\n  b: value\n", as deep as `indentation`.

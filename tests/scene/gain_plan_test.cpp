@@ -19,10 +19,14 @@ namespace {
 
 using Settings = std::vector<Override>;
 
+GainPlan plan(const Scene& running, const Settings& settings) {
+  return planSettings(running, settings, leastMargin_deg(running));
+}
+
 /// What a change is refused with; empty: it is not.
 std::string refusal(const Scene& running, const Settings& settings) {
   try {
-    planSettings(running, settings);
+    plan(running, settings);
     return "";
   } catch (const InputError& error) {
     return error.what();
@@ -31,15 +35,15 @@ std::string refusal(const Scene& running, const Settings& settings) {
 
 TEST(GainPlan, LaysSettingsOverWhatRuns) {
   const Scene running = test::shippedScene("scenario2_tactus", {{"controller.damping", "0.9"}});
-  const GainPlan plan = planSettings(
-      running, {{"controller.time_constant_s", "0.15"}, {"task.drift_gain_per_s", "4"}});
-  EXPECT_EQ(plan.scene.controller.gains.force.time_constant_s, 0.15);
-  EXPECT_EQ(plan.scene.controller.gains.task.drift_gain_per_s, 4.0);
-  EXPECT_EQ(plan.scene.controller.gains.force.damping, 0.9);
-  EXPECT_FALSE(plan.waits_for_free);
-  EXPECT_EQ(plan.keys,
+  const GainPlan changed =
+      plan(running, {{"controller.time_constant_s", "0.15"}, {"task.drift_gain_per_s", "4"}});
+  EXPECT_EQ(changed.scene.controller.gains.force.time_constant_s, 0.15);
+  EXPECT_EQ(changed.scene.controller.gains.task.drift_gain_per_s, 4.0);
+  EXPECT_EQ(changed.scene.controller.gains.force.damping, 0.9);
+  EXPECT_FALSE(changed.waits_for_free);
+  EXPECT_EQ(changed.keys,
             (std::vector<std::string>{"controller.time_constant_s", "task.drift_gain_per_s"}));
-  const GainPlan next = planSettings(plan.scene, {{"controller.contact_threshold_N", "1"}});
+  const GainPlan next = plan(changed.scene, {{"controller.contact_threshold_N", "1"}});
   EXPECT_EQ(next.scene.controller.gains.force.time_constant_s, 0.15);
   EXPECT_TRUE(next.waits_for_free);
 }
@@ -47,7 +51,7 @@ TEST(GainPlan, LaysSettingsOverWhatRuns) {
 TEST(GainPlan, SpeedLimitsAreLoweredAtOnceAndRaisedWithoutContact) {
   const Scene running = test::shippedScene("scenario2_tactus");
   const auto waits = [&](const char* value) {
-    return planSettings(running, {{"controller.max_null_speed_rad_per_s", value}}).waits_for_free;
+    return plan(running, {{"controller.max_null_speed_rad_per_s", value}}).waits_for_free;
   };
   EXPECT_FALSE(waits("1"));
   EXPECT_TRUE(waits("6"));
@@ -123,7 +127,7 @@ TEST(GainPlan, WhatIsAcceptedIsFitOnTheWay) {
     const Settings settings = {{key.path, std::to_string(now * random.logUniform(0.5, 2.0))}};
     if (!refusal(running, settings).empty()) continue;
     ++accepted;
-    const Gains to = planSettings(running, settings).scene.controller.gains;
+    const Gains to = plan(running, settings).scene.controller.gains;
     for (int k = 0; k <= 20; ++k) {
       const Gains between = gainsBetween(running.controller.gains, to, k / 20.0);
       ASSERT_FALSE(findGainProblem(between, use, running.period_s)) << settings[0].key;
@@ -143,17 +147,18 @@ TEST(GainPlan, AReloadIsOfTheFilesAsTheyAre) {
   };
   write("controller:\n  damping: 0.7\n");
   const Scene running = loadScene(path, {});
-  EXPECT_TRUE(planReload(running, {}).keys.empty());
+  EXPECT_TRUE(planReload(running, {}, kMinPhaseMargin_deg).keys.empty());
   write("# a comment\ncontroller:\n  damping: 0.8\n");
-  const GainPlan plan = planReload(running, {});
-  EXPECT_EQ(plan.keys, std::vector<std::string>{"controller.damping"});
-  EXPECT_EQ(plan.scene.controller.gains.force.damping, 0.8);
-  EXPECT_TRUE(planReload(running, {{"controller.damping", "0.7"}}).keys.empty());
+  const GainPlan changed = planReload(running, {}, kMinPhaseMargin_deg);
+  EXPECT_EQ(changed.keys, std::vector<std::string>{"controller.damping"});
+  EXPECT_EQ(changed.scene.controller.gains.force.damping, 0.8);
+  EXPECT_TRUE(
+      planReload(running, {{"controller.damping", "0.7"}}, kMinPhaseMargin_deg).keys.empty());
   for (const char* wrong : {"controller:\n  variant: null_space\n", "controller:\n  damping: no\n",
                             "controller: [\n", "log:\n  keep: 3\n"}) {
     write(wrong);
     try {
-      planReload(running, {});
+      planReload(running, {}, kMinPhaseMargin_deg);
       ADD_FAILURE() << wrong;
     } catch (const InputError& error) {
       EXPECT_TRUE(std::string(error.what()).starts_with(path + ":")) << error.what();

@@ -109,7 +109,7 @@ Settings drawSettings(test::Random& random, const std::string& variant) {
 
 std::optional<Scene> accepted(const Scene& scene, const Settings& settings) {
   try {
-    return planSettings(scene, settings).scene;
+    return planSettings(scene, settings, kMinPhaseMargin_deg).scene;
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -39,10 +39,12 @@ class ControlRequests {
   Json show() const;
   Json order(GainPlan plan, const Json& request, bool is_undo);
   void settle(const GainReport& report);
+  double leastMargin();
   const Scene& newest() const { return trial_ ? trial_->scene : kept_; }
 
   LoopLink& link_;
-  std::vector<Override> start_overrides_;
+  const Scene started_;
+  std::optional<double> least_margin_deg_;  ///< takes a while to know
   Scene kept_;
   std::optional<Trial> trial_;
   std::vector<Scene> before_;  ///< what was kept, the newest last

@@ -15,17 +15,23 @@ struct GainPlan {
   std::vector<std::string> keys;  ///< that differ
 };
 
+/// The phase margin that a change of a scene's gains has to leave, deg: kMinPhaseMargin_deg, or
+/// what the scene had when it was started, if that is less.
+double leastMargin_deg(const Scene& started);
+
 /// Lays settings over a scene that runs. Throws InputError, as a start with them would, or
 ///   - for a key that needs a restart,
-///   - where the phase margin falls below kMinPhaseMargin_deg, and below what it is now, at one of
-///     five points of the ramp; it then says which T would do.
-GainPlan planSettings(const Scene& running, const std::vector<Override>& settings);
+///   - where the phase margin at one of five points of the ramp is less than least_deg; it then
+///   says
+///     which T would do.
+GainPlan planSettings(const Scene& running, const std::vector<Override>& settings,
+                      double least_deg);
 
 /// The same of the scene as its files are now, with these settings alone, those of its start.
-GainPlan planReload(const Scene& running, const std::vector<Override>& overrides);
+GainPlan planReload(const Scene& running, const std::vector<Override>& overrides, double least_deg);
 
 /// The same of a scene that was made otherwise.
-GainPlan planChange(const Scene& running, Scene changed);
+GainPlan planChange(const Scene& running, Scene changed, double least_deg);
 
 /// The keys whose values differ between two scenes, by dotted path; "robot" for all that is in
 /// files of the robot.
