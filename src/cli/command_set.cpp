@@ -61,7 +61,7 @@ int change(const Json& request, const ChangeOptions& options) {
     std::fputs(
         options.json ? jsonText(answer).c_str() : (changeText(answer) + stateText(answer)).c_str(),
         stdout);
-    return answer.at("trouble") == "" ? kExitDone : kExitFault;
+    return answer.at("trouble").get<std::string>().empty() ? kExitDone : kExitFault;
   } catch (const InputError& error) {
     if (options.json)
       std::fputs(jsonText({{"done", false}, {"error", error.what()}}).c_str(), stdout);

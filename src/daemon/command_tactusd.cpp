@@ -44,7 +44,7 @@ int runScene(const DaemonArguments& options) {
 /// Returns when the gains of the scene file are there, or wait for a moment without contact.
 int reload() {
   const Json answer = ControlClient(controlPath()).change({{"do", "reload"}}, false);
-  return answer.at("trouble") == "" ? kExitDone : kExitFault;
+  return answer.at("trouble").get<std::string>().empty() ? kExitDone : kExitFault;
 }
 
 }  // namespace
