@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -84,16 +83,23 @@ Json setRequest(const ChangeOptions& options) {
   return request;
 }
 
-int diff(const ChangeOptions& options) {
-  const Json answer = ControlClient(controlPath()).ask({{"do", "show"}});
-  const auto path = answer.at("scene").get<std::string>();
+/// The gains of a scene file that are not those that run: each key with `file` and `running`, null
+/// without a limit.
+Json differences(const std::string& path, const Json& running) {
   const Gains in_file = loadScene(path, {}).controller.gains;
   Json differing = Json::object();
   for (const GainKey& key : gainKeys()) {
     const Json file = gainAt(in_file, key.offset);
-    const Json running = answer.at("ordered").at(key.path);
-    if (file.dump() != running.dump()) differing[key.path] = {{"file", file}, {"running", running}};
+    const Json& now = running.at(key.path);
+    if (file.dump() != now.dump()) differing[key.path] = {{"file", file}, {"running", now}};
   }
+  return differing;
+}
+
+int diff(const ChangeOptions& options) {
+  const Json answer = ControlClient(controlPath()).ask({{"do", "show"}});
+  const auto path = answer.at("scene").get<std::string>();
+  const Json differing = differences(path, answer.at("ordered"));
   if (options.json) {
     std::fputs(jsonText(differing).c_str(), stdout);
     return kExitDone;
@@ -105,26 +111,22 @@ int diff(const ChangeOptions& options) {
   return kExitDone;
 }
 
-std::string yamlText(double value) { return std::isfinite(value) ? Json(value).dump() : "~"; }
-
 /// The scene file with the gains that run, all else of it as it is.
 std::string withGains(const std::string& path, std::string text, const Json& running) {
-  const Gains in_file = loadScene(path, {}).controller.gains;
-  for (const GainKey& key : gainKeys()) {
-    const Json& value = running.at(key.path);
-    const double wanted = value.is_null() ? kNoLimit : value.get<double>();
-    if (wanted != gainAt(in_file, key.offset))
-      text = withValue({path, text}, key.path, yamlText(wanted));
+  const Json differing = differences(path, running);
+  for (const auto& [key, values] : differing.items()) {
+    const Json& value = values.at("running");
+    text = withValue({path, text}, key, value.is_null() ? "~" : value.dump());
   }
   return text;
 }
 
 /// Whatever was changed: what is written has to be read as what runs.
 void checkGains(const std::string& path, const Json& running) {
-  const Gains gains = loadScene(path, {}).controller.gains;
-  for (const GainKey& key : gainKeys())
-    if (Json(gainAt(gains, key.offset)).dump() != running.at(key.path).dump())
-      throw RunError(fmt::format("{}: {} could not be written", escaped(path), key.path));
+  const Json differing = differences(path, running);
+  if (!differing.empty())
+    throw RunError(
+        fmt::format("{}: {} could not be written", escaped(path), differing.items().begin().key()));
 }
 
 /// Written as a whole, or not at all; the old file stays beside it.

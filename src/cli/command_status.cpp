@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -25,8 +24,6 @@
 namespace tactus {
 namespace {
 
-/// Where the unit's RuntimeDirectory= is.
-constexpr const char* kServiceFolder = "/run/tactus";
 /// The daemon writes each half second.
 constexpr double kMaxAge_s = 2.0;
 constexpr std::chrono::seconds kWatchPeriod{1};
@@ -35,11 +32,6 @@ struct StatusOptions {
   bool watch = false;
   bool json = false;
 };
-
-std::string statusPath() {
-  const char* folder = std::getenv("RUNTIME_DIRECTORY");
-  return fmt::format("{}/{}", folder && *folder ? folder : kServiceFolder, kStatusName);
-}
 
 std::string readStatus(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -132,7 +124,7 @@ Shown readShown(const std::string& path, bool as_json) {
 /// True: the daemon lives, and has no fault.
 bool showStatus(const StatusOptions& options) {
   const bool clears = options.watch && !options.json && ::isatty(STDOUT_FILENO) == 1;
-  const std::string path = statusPath();
+  const std::string path = runtimePath(kStatusName);
   const Shown shown = readShown(path, options.json);
   if (clears) std::fputs("\033[H\033[J", stdout);
   std::fputs(shown.text.c_str(), stdout);

@@ -1,6 +1,5 @@
 #include "tactus/daemon/control_socket.h"
 
-#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -17,24 +16,20 @@
 namespace tactus {
 namespace {
 
-constexpr const char* kServiceFolder = "/run/tactus";  ///< of the unit's RuntimeDirectory=
 constexpr int kLook_ms = 50;
 
-std::string runtimeFolder() {
+bool hasRuntimeFolder() {
   const char* folder = std::getenv("RUNTIME_DIRECTORY");
-  return folder ? folder : "";
+  return folder && *folder;
 }
 
 }  // namespace
 
-std::string controlPath() {
-  const std::string folder = runtimeFolder();
-  return fmt::format("{}/{}", folder.empty() ? kServiceFolder : folder, kControlName);
-}
+std::string controlPath() { return runtimePath(kControlName); }
 
 ControlSocket::ControlSocket(const Scene& scene, LoopLink& link)
     : requests_(scene, link), listening_(PacketSocket::ofManager()) {
-  if (!listening_.isOpen() && !runtimeFolder().empty()) {
+  if (!listening_.isOpen() && hasRuntimeFolder()) {
     made_path_ = controlPath();
     listening_ = PacketSocket::listenAt(made_path_, kMaxClients);
   }

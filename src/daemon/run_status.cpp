@@ -16,6 +16,7 @@ namespace tactus {
 namespace {
 
 constexpr double kStatusPeriod_s = 0.5;
+constexpr const char* kServiceFolder = "/run/tactus";  ///< of the unit's RuntimeDirectory=
 
 Json motionJson(const RunFigures& figures) {
   return {{"cycles", figures.cycles},
@@ -27,6 +28,11 @@ Json motionJson(const RunFigures& figures) {
 }
 
 }  // namespace
+
+std::string runtimePath(const char* name) {
+  const char* folder = std::getenv("RUNTIME_DIRECTORY");
+  return fmt::format("{}/{}", folder && *folder ? folder : kServiceFolder, name);
+}
 
 double monotonicTime_s() noexcept { return 1e-9 * static_cast<double>(now_ns()); }
 

@@ -46,6 +46,9 @@ class StatusFile {
   bool has_complained_ = false;
 };
 
+/// A file of the daemon that runs: in RUNTIME_DIRECTORY, or else where the service has its own.
+std::string runtimePath(const char* name);
+
 /// Name of the file in that folder.
 inline constexpr const char* kStatusName = "status.json";
 

@@ -21,8 +21,7 @@ double leastMargin_deg(const Scene& started);
 
 /// Lays settings over a scene that runs. Throws InputError, as a start with them would, or
 ///   - for a key that needs a restart,
-///   - where the phase margin at one of five points of the ramp is less than least_deg; it then
-///   says
+///   - where the phase margin at one of five points of the ramp is less than least_deg; it says
 ///     which T would do.
 GainPlan planSettings(const Scene& running, const std::vector<Override>& settings,
                       double least_deg);
