@@ -14,6 +14,7 @@
 #include "tactus/cli/commands.h"
 #include "tactus/record/log_parts.h"
 #include "tactus/record/replay.h"
+#include "tactus/record/ulog_format.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/gain_keys.h"
@@ -114,6 +115,13 @@ void checkGains(const std::string& path, const Scene& scene, const CycleRecord& 
          "expected " + problem->expectation);
 }
 
+void checkMotion(const std::string& path, const Scene& scene, const CycleRecord& recorded) {
+  if (!scene.controller.task.commands || isValid(recorded.tool_motion)) return;
+  failAt({std::make_shared<std::string>(path), 1, 1}, kToolMotionTopic,
+         fmt::format("no motion of a tool at {:.9g} s", recorded.t_s),
+         "expected finite numbers, and limits above 0");
+}
+
 /// A scene, and what becomes of it fed with logs, one after the other.
 class LogReplay {
  public:
@@ -138,6 +146,7 @@ class LogReplay {
     CycleRecord recorded;
     while (reader.next(recorded)) {
       if (!has_path_time) recorded.path_time_s = recorded.task_time_s;  // nothing waited then
+      checkMotion(path, scene_, recorded);
       tune(path, recorded);
       const CycleRecord replayed = replayer_.replay(recorded);
       if (!replayer_.isKnown()) {

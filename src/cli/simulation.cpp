@@ -74,7 +74,7 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
   RunSummary summary(scene.controller,
                      static_cast<std::size_t>(std::min(cycles, kMaxReservedCycles)));
   ControllerState state = controller.initialState();
-  const ToolRotationError rotation_error(scene.controller);
+  ToolRotationError rotation_error(scene.controller);
   RobotInput input;
   ControllerOutput output;
   CycleRecord record;
@@ -102,6 +102,7 @@ SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
     fillRecord(t_s, input, scene.controller.gains, output, error, record);
     rotation_error.fill(record);
     record.task_time_s = task_time_s;
+    if (state.tool_motion) record.tool_motion = state.tool_motion->plan();
     record.mode = static_cast<std::uint64_t>(mode);
     if (end.fault != Fault::kNone) record.fault = static_cast<std::uint64_t>(end.fault);
     sink(record);

@@ -21,6 +21,10 @@ void replaceRotation(const TaskConfig& task, const Vector3& rotation_vector,
     if (task.components[i] >= 3) w[i] = rotation_vector[task.components[i] - 3];
 }
 
+std::uint64_t motionNumber(const ControllerState& state) noexcept {
+  return state.tool_motion ? state.tool_motion->plan().number : 0;
+}
+
 }  // namespace
 
 Controller::Controller(const ControllerConfig& config)
@@ -57,6 +61,7 @@ ControllerState Controller::initialState(const JointVector& q) const {
     state.modules[i].contact.position_m = 0.5 * config_.tactile_modules[i].length_m;
   if (contact_controller_) state.contact = contact_controller_->initialState();
   if (several_contacts_) state.several = several_contacts_->initialState();
+  if (config_.task.commands) state.tool_motion.emplace(tipPose(config_.chain, q));
   return state;
 }
 
@@ -77,6 +82,7 @@ void Controller::prepare(const Gains& gains, double t_s, ControllerState& state,
   prepared.is_leaning = state.is_leaning;
   prepared.task_gains = gains.task;
   prepared.limit_gains = gains.joint_limit_avoidance;
+  prepared.tool_motion = motionNumber(state);
   computeMotion(gains, prepared.path_time_s, state, prepared);
 }
 
@@ -86,7 +92,8 @@ void Controller::update(const RobotInput& input, const Gains& gains, double t_s,
   output.path_time_s = t_s - state.waited_s;
   if (prepared.path_time_s != output.path_time_s || prepared.q_desired != state.q_desired ||
       prepared.push != state.contact.push || prepared.return_share != state.return_share ||
-      prepared.is_leaning != state.is_leaning || !isSame(prepared.task_gains, gains.task) ||
+      prepared.is_leaning != state.is_leaning || prepared.tool_motion != motionNumber(state) ||
+      !isSame(prepared.task_gains, gains.task) ||
       !isSame(prepared.limit_gains, gains.joint_limit_avoidance))
     computeMotion(gains, output.path_time_s, state, prepared);
   prepared.path_time_s = std::numeric_limits<double>::quiet_NaN();
@@ -198,12 +205,24 @@ void Controller::avoidJointLimits(const Gains& gains, const TaskKinematics& kine
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 
+ToolReference Controller::reference(double path_time_s,
+                                    const ControllerState& state) const noexcept {
+  return state.tool_motion ? state.tool_motion->evaluate(path_time_s)
+                           : trajectory_.evaluate(path_time_s);
+}
+
+ToolAcceleration Controller::referenceAcceleration(double path_time_s,
+                                                   const ControllerState& state) const noexcept {
+  return state.tool_motion ? state.tool_motion->evaluateAcceleration(path_time_s)
+                           : trajectory_.evaluateAcceleration(path_time_s);
+}
+
 void Controller::computeKinematics(double path_time_s, const ControllerState& state,
                                    PreparedCycle& prepared) const noexcept {
   const TaskConfig& task = config_.task;
   TaskKinematics& kinematics = prepared.kinematics;
   config_.chain.computePose(state.q_desired, kinematics.pose);
-  const ToolReference reference = trajectory_.evaluate(path_time_s);
+  const ToolReference reference = this->reference(path_time_s, state);
   Twist w = Twist::Zero();
   Twist w_d_dot;
   Twist error = Twist::Zero();

@@ -21,7 +21,7 @@ FreeAcceleration Controller::freeAcceleration(const Gains& gains, double path_ti
   const VelocityProduct curvature =
       velocityProduct(config_.chain, kinematics.pose, tip.joint,
                       framePosition(kinematics.pose, tip), state.velocity_before);
-  const ToolAcceleration reference = trajectory_.evaluateAcceleration(path_time_s);
+  const ToolAcceleration reference = referenceAcceleration(path_time_s, state);
   const TaskVector w_dot = kinematics.pseudoinverse.taskVelocity(free.y_before);
   const double beta = state.return_share * gains.task.drift_gain_per_s;
   const double progress = prepared.progress * prepared.progress;

@@ -107,7 +107,7 @@ std::string compact(const Json& json) {
 }  // namespace
 
 ControlRequests::ControlRequests(const Scene& scene, LoopLink& link)
-    : link_(link), started_(scene), kept_(scene) {}
+    : link_(link), started_(scene), tool_(started_, link), kept_(scene) {}
 
 std::string ControlRequests::answer(std::string_view request) {
   try {
@@ -127,7 +127,22 @@ Json ControlRequests::dispatch(const Json& request) {
   if (what == "reload") return reload(request);
   if (what == "undo") return undo(request);
   if (what == "show") return show();
-  refuse(fmt::format("do is {}", inQuotes(what)), "one of set, reload, undo, show");
+  return tell(what, request);
+}
+
+Json ControlRequests::tell(const std::string& what, const Json& request) {
+  Json task;
+  if (what == "move" || what == "stream") {
+    task = tool_.move(request);
+  } else if (what == "follow") {
+    task = tool_.follow(request);
+  } else if (what == "hold") {
+    task = tool_.hold();
+  } else {
+    refuse(fmt::format("do is {}", inQuotes(what)),
+           "one of set, reload, undo, show, move, follow, hold, stream");
+  }
+  return {{"done", true}, {"task", std::move(task)}};
 }
 
 Json ControlRequests::set(const Json& request) {
@@ -138,7 +153,7 @@ Json ControlRequests::reload(const Json& request) {
   GainPlan plan = planReload(newest(), started_.overrides, leastMargin());
   if (!plan.keys.empty()) return order(std::move(plan), request, false);
   (trial_ ? trial_->scene : kept_) = std::move(plan.scene);  // comments may differ
-  Json json = show();
+  Json json = showGains();
   json["changes"] = Json::object();
   return json;
 }
@@ -154,7 +169,13 @@ double ControlRequests::leastMargin() {
   return *least_margin_deg_;
 }
 
-Json ControlRequests::show() const {
+Json ControlRequests::show() {
+  Json json = showGains();
+  json["task"] = tool_.show();
+  return json;
+}
+
+Json ControlRequests::showGains() const {
   return {{"done", true},
           {"number", number_},
           {"state", stateName(report_.state)},
@@ -173,12 +194,17 @@ Json ControlRequests::order(GainPlan plan, const Json& request, bool is_undo) {
   link_.gain_orders.put(order);
   trial_ = Trial{std::move(plan.scene), is_undo};
   report_ = {.number = number_, .state = GainState::kWaiting};
-  Json json = show();
+  Json json = showGains();
   json["changes"] = changes;
   return json;
 }
 
 std::string ControlRequests::look() {
+  const std::string news = lookAtGains();
+  return news.empty() ? tool_.look() : news;
+}
+
+std::string ControlRequests::lookAtGains() {
   GainReport report;
   if (!link_.gain_reports.take(report) || report.number != number_) return "";
   const bool is_new = report.state != report_.state || report.trouble != report_.trouble;

@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -54,7 +55,9 @@ void ControlSocket::serve(const std::stop_token& stop) {
       const bool may_speak = client.may_speak_s <= now_s;
       polled.push_back({client.socket.fd(), static_cast<short>(may_speak ? POLLIN : 0), 0});
     }
-    ::poll(polled.data(), polled.size(), clients_.empty() ? kLook_ms : 1000 / kMessagesPerS);
+    const bool is_all_ears = std::ranges::all_of(
+        clients_, [now_s](const Client& client) { return client.may_speak_s <= now_s; });
+    ::poll(polled.data(), polled.size(), is_all_ears ? kLook_ms : 1000 / kMessagesPerS);
     auto client = clients_.begin();
     for (std::size_t i = 1; i < polled.size(); ++i) {
       const bool stays = polled[i].revents == 0 || hear(*client);

@@ -10,6 +10,9 @@
 namespace tactus {
 namespace {
 
+constexpr int kMaxOrdersACycle = 8;
+constexpr long long kCyclesToSeeTool = 16;
+
 std::int64_t threadTime_ns() noexcept {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -52,11 +55,31 @@ bool HardwareLoop::cycle(const Wake& wake) noexcept {
   publish(wake, read_ns - woken_ns, controlled_ns - read_ns, written_ns - controlled_ns);
   GainOrder order;
   if (link_.gain_orders.take(order)) cycle_.order(order);
+  takeToolOrders();
   cycle_.prepare();
   reportGains();
+  reportTool();
   if (!cycle_.isFinished()) return true;
   cpu_end_ns_ = threadTime_ns();
   return false;
+}
+
+void HardwareLoop::takeToolOrders() noexcept {
+  if (!cycle_.toolReport()) return;
+  for (int i = 0; i < kMaxOrdersACycle; ++i) {
+    const ToolOrder* const order = link_.tool_orders.front();
+    if (!order) return;
+    cycle_.order(*order);
+    link_.tool_orders.release();
+  }
+}
+
+void HardwareLoop::reportTool() noexcept {
+  const ToolReport* const report = cycle_.toolReport();
+  if (!report || (*report == reported_tool_ && cycles_ % kCyclesToSeeTool != 0)) return;
+  reported_tool_ = *report;
+  cycle_.fill(tool_sight_);
+  link_.tool_sights.put(tool_sight_);
 }
 
 void HardwareLoop::reportGains() noexcept {

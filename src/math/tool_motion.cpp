@@ -67,6 +67,19 @@ Matrix3 zeroOf(const ToolMotionPlan& plan) { return Eigen::Map<const Matrix3>(pl
 
 }  // namespace
 
+bool isValid(const ToolMotionPlan& plan) noexcept {
+  const auto isFinite = [](double x) { return std::isfinite(x); };
+  const auto isLimit = [](double x) { return std::isfinite(x) && x > 0.0; };
+  bool is_valid = plan.kind <= ToolMotionPlan::Kind::kStop && isFinite(plan.start_s);
+  for (const AxisState& state : plan.from)
+    is_valid &= isFinite(state.p) && isFinite(state.v) && isFinite(state.a);
+  for (const MotionLimits& limits : {plan.limits.position, plan.limits.rotation})
+    is_valid &=
+        isLimit(limits.max_speed) && isLimit(limits.max_acceleration) && isLimit(limits.max_jerk);
+  return is_valid && std::ranges::all_of(plan.target, isFinite) &&
+         std::ranges::all_of(plan.R_BaseZero, isFinite);
+}
+
 ToolMotion::ToolMotion(const Pose& X_BaseTool, std::uint64_t number) noexcept
     : ToolMotion([&] {
         ToolMotionPlan plan;

@@ -11,7 +11,7 @@ void checkLogSize(const Scene& scene) {
   constexpr std::size_t kMinCycles = 1000;
   if (scene.log.max_bytes == 0.0) return;
   const LogDescription description = describeLog(scene);
-  const std::size_t smallest = logDefinitions(description).size() + logBytesOfGains() +
+  const std::size_t smallest = logDefinitions(description).size() + logBytesOfSides(description) +
                                kMinCycles * logBytesACycle(description.shape);
   if (scene.log.max_bytes >= static_cast<double>(smallest)) return;
   failAt(locate(*scene.tree, "log.max_bytes"), "log.max_bytes",

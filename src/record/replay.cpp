@@ -53,6 +53,8 @@ CycleRecord Replayer::replay(const CycleRecord& recorded) {
   const int missed = continuity_.missedCycles();
   if (missed > 0) controller_.coast(missed, period_s_, state_);
   if (is_known_ && !was_known) state_.waited_s = 0.0;
+  if (state_.tool_motion && !isSame(state_.tool_motion->plan(), recorded.tool_motion))
+    state_.tool_motion.emplace(recorded.tool_motion);
   applyMode(controller_, mode, mode_before_, input, recorded.gains, state_);
   controller_.update(input, recorded.gains, recorded.task_time_s, period_s_, state_, output_);
   mode_before_ = mode;

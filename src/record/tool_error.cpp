@@ -31,12 +31,18 @@ ToolRotationError::ToolRotationError(const ControllerConfig& config)
     trajectory_.emplace(task_.trajectory, tipPose(config.chain, config.q_start));
 }
 
-void ToolRotationError::fill(CycleRecord& record) const {
+Matrix3 ToolRotationError::desired(const CycleRecord& record) {
+  if (!task_.commands) return trajectory_->evaluate(record.path_time_s).R_BaseTool;
+  if (!motion_ || motion_->plan().number != record.tool_motion.number)
+    motion_.emplace(record.tool_motion);
+  return motion_->evaluate(record.path_time_s).R_BaseTool;
+}
+
+void ToolRotationError::fill(CycleRecord& record) {
   if (!trajectory_) return;
   const JointVector q = Eigen::Map<const Eigen::VectorXd>(record.q_measured, chain_.size());
   const Matrix3 R_BaseTool = tipPose(chain_, q).R_AB;
-  const Matrix3 R_d = trajectory_->evaluate(record.path_time_s).R_BaseTool;
-  const Vector3 error = rotationVector(R_d * R_BaseTool.transpose());
+  const Vector3 error = rotationVector(desired(record) * R_BaseTool.transpose());
   double squared = 0.0;
   for (int i = 0; i < task_.size; ++i) {
     const int component = task_.components[i];

@@ -86,7 +86,8 @@ class DefinitionsReader {
   }
 
   void readFormat() {
-    if (topicName(message_.payload) == kGainsTopic) return readGainsFormat();
+    for (int i = 0; i < kSideTopics; ++i)
+      if (topicName(message_.payload) == sideTopics()[i].name) return readSideFormat(i);
     if (topicName(message_.payload) != kCycleTopic) return;
     if (has_format_) fail("a second format of the cycles, one is expected");
     const std::string complaint = parseTopicFormat(message_.payload, definitions_.topic);
@@ -95,11 +96,14 @@ class DefinitionsReader {
     has_format_ = true;
   }
 
-  void readGainsFormat() {
-    if (has_gains_format_) fail("a second format of the gains, one is expected");
-    const std::string complaint = parseGainsFormat(message_.payload, definitions_.gains);
+  void readSideFormat(int side) {
+    const SideTopic& topic = sideTopics()[side];
+    if (has_side_format_[side])
+      fail(fmt::format("a second format of {}, one is expected", topic.what));
+    const std::string complaint =
+        parseSideFormat(topic, message_.payload, definitions_.sides[side].layout);
     if (!complaint.empty()) fail(complaint);
-    has_gains_format_ = true;
+    has_side_format_[side] = true;
   }
 
   /// `bytes` begin with the key's length.
@@ -156,19 +160,31 @@ class DefinitionsReader {
     texts->back() += info.value;
   }
 
+  /// None of the topics that are subscribed has it yet.
+  void checkId(std::uint16_t id, int own) const {
+    for (int i = 0; i < kSideTopics; ++i) {
+      const UlogDefinitions::Side& side = definitions_.sides[i];
+      if (i != own && side.is_there && side.id == id)
+        fail(fmt::format("{} and another topic have one id, two are expected",
+                         sideTopics()[i].what));
+    }
+  }
+
   bool readSubscription() {
     if (message_.payload.size() < 3) fail("too short, ids and a topic are expected");
     const std::string_view topic = message_.payload.substr(3);
     const auto id = numberAt<std::uint16_t>(message_.payload, 1);
-    if (topic == kGainsTopic) {
-      if (!has_gains_format_) fail("no format of the gains came before, one is expected");
-      definitions_.has_gains = true;
-      definitions_.gains_id = id;
+    for (int i = 0; i < kSideTopics; ++i) {
+      if (topic != sideTopics()[i].name) continue;
+      if (!has_side_format_[i])
+        fail(fmt::format("no format of {} came before, one is expected", sideTopics()[i].what));
+      checkId(id, i);
+      definitions_.sides[i].is_there = true;
+      definitions_.sides[i].id = id;
     }
     if (topic != kCycleTopic) return false;
     if (!has_format_) fail("no format of the cycles came before, one is expected");
-    if (definitions_.has_gains && id == definitions_.gains_id)
-      fail("cycles and gains have one id, two are expected");
+    checkId(id, kSideTopics);
     definitions_.cycle_id = id;
     return true;
   }
@@ -192,7 +208,7 @@ class DefinitionsReader {
   UlogMessage message_;
   UlogDefinitions definitions_;
   bool has_format_ = false;
-  bool has_gains_format_ = false;
+  std::array<bool, kSideTopics> has_side_format_{};
   std::vector<std::string> source_paths_, source_texts_, override_keys_, override_values_;
   std::size_t embedded_size_ = 0;
 };

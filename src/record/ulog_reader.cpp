@@ -39,10 +39,14 @@ bool UlogReader::next(CycleRecord& record) {
       return true;
     }
   }
-  // A run that was interrupted ends within a cycle or its gains; anything else is a damaged size.
+  // A run that was interrupted ends within a cycle or a part of it; anything else is a damaged
+  // size.
   const std::size_t size = message.payload.size() - sizeof(std::uint16_t);
-  const bool is_whole = size == definitions_.topic.size ||
-                        (definitions_.has_gains && size == definitions_.gains.size);
+  const bool is_whole =
+      size == definitions_.topic.size ||
+      std::ranges::any_of(definitions_.sides, [size](const UlogDefinitions::Side& side) {
+        return side.is_there && size == side.layout.size;
+      });
   if (message.type != 0 && (message.type != 'D' || !is_whole)) {
     messages_.fail(message.offset, "message", "longer than the log, an undamaged log is expected");
   }
@@ -56,17 +60,25 @@ bool UlogReader::take(const UlogMessage& message, CycleRecord& record) {
   }
   std::memcpy(&id, message.payload.data(), sizeof(id));
   const std::string_view fields = message.payload.substr(sizeof(id));
-  if (definitions_.has_gains && id == definitions_.gains_id) {
-    checkSize(message, "gains", definitions_.gains.size);
-    copy(fields, definitions_.gains.runs, &gains_);
-    knows_gains_ = true;
+  for (int i = 0; i < kSideTopics; ++i) {
+    const UlogDefinitions::Side& side = definitions_.sides[i];
+    if (!side.is_there || id != side.id) continue;
+    checkSize(message, sideTopics()[i].what, side.layout.size);
+    copy(fields, side.layout.runs, reinterpret_cast<char*>(&sides_) + sideTopics()[i].offset);
+    is_known_[i] = true;
   }
   if (id != definitions_.cycle_id) return false;
   checkSize(message, "a cycle", definitions_.topic.size);
-  if (definitions_.has_gains && !knows_gains_)
-    messages_.fail(message.offset, "message D", "a cycle, its gains are expected before it");
+  for (int i = 0; i < kSideTopics; ++i) {
+    if (definitions_.sides[i].is_there && !is_known_[i])
+      messages_.fail(
+          message.offset, "message D",
+          fmt::format("a cycle, its {} expected before it", i == 0 ? "gains are" : "motion is"));
+  }
   copy(fields, definitions_.topic.runs, &record);
-  record.gains = gains_;
+  for (const SideTopic& topic : sideTopics())
+    std::memcpy(reinterpret_cast<char*>(&record) + topic.offset,
+                reinterpret_cast<const char*>(&sides_) + topic.offset, topic.size);
   return true;
 }
 

@@ -8,15 +8,9 @@
 #include <utility>
 
 #include "tactus/record/ulog_format.h"
-#include "tactus/scene/gain_keys.h"
 
 namespace tactus {
 namespace {
-
-struct LoggedField {
-  std::string_view type, name;
-  std::size_t entries, offset;
-};
 
 constexpr std::array<std::pair<std::string_view, std::size_t>, 12> kTypeSizes = {{
     {"int8_t", 1},
@@ -57,8 +51,41 @@ bool parseField(std::string_view text, LoggedField& field) noexcept {
   return field.entries >= 1 && field.entries <= kMaxMessageSize;
 }
 
-std::string parseFields(std::string_view text, std::vector<LoggedField>& fields,
+std::string findShape(const std::vector<LoggedField>& fields, RecordShape& shape) {
+  const LoggedField* q = findField(fields, "q");
+  const LoggedField* w = findField(fields, "w");
+  if (!q || q->entries < 2 || q->entries > kMaxJoints) {
+    return fmt::format("no field q with an entry for each joint, 2 to {} are expected", kMaxJoints);
+  }
+  if (!w || w->entries > kMaxTaskSize) {
+    return fmt::format("no field w with an entry for each task component, 1 to {} are expected",
+                       kMaxTaskSize);
+  }
+  const LoggedField* force = findField(fields, "force_sensor_N");
+  if (!force || force->entries > kMaxTactileModules) {
+    return fmt::format(
+        "no field force_sensor_N with an entry for each tactile module, 1 to {} are expected",
+        kMaxTactileModules);
+  }
+  shape = {static_cast<int>(q->entries),
+           static_cast<int>(w->entries),
+           findField(fields, "tool_rotation_error_rad") != nullptr,
+           static_cast<int>(force->entries),
+           findField(fields, "tactile_moment_x_Nm") != nullptr,
+           findField(fields, "modules_lost") != nullptr};
+  return {};
+}
+
+}  // namespace
+
+std::string_view topicName(std::string_view format) noexcept {
+  const std::size_t colon = format.find(':');
+  return format.substr(0, colon == std::string_view::npos ? 0 : colon);
+}
+
+std::string parseFields(std::string_view format, std::vector<LoggedField>& fields,
                         std::size_t& size) {
+  std::string_view text = format.substr(topicName(format).size() + 1);
   while (!text.empty()) {
     const std::size_t end = text.find(';');
     const std::string_view field_text = text.substr(0, end);
@@ -77,60 +104,22 @@ std::string parseFields(std::string_view text, std::vector<LoggedField>& fields,
   return {};
 }
 
-const LoggedField* find(const std::vector<LoggedField>& fields, std::string_view name) noexcept {
+const LoggedField* findField(const std::vector<LoggedField>& fields,
+                             std::string_view name) noexcept {
   for (const LoggedField& field : fields) {
     if (field.name == name) return &field;
   }
   return nullptr;
 }
 
-std::string findShape(const std::vector<LoggedField>& fields, RecordShape& shape) {
-  const LoggedField* q = find(fields, "q");
-  const LoggedField* w = find(fields, "w");
-  if (!q || q->entries < 2 || q->entries > kMaxJoints) {
-    return fmt::format("no field q with an entry for each joint, 2 to {} are expected", kMaxJoints);
-  }
-  if (!w || w->entries > kMaxTaskSize) {
-    return fmt::format("no field w with an entry for each task component, 1 to {} are expected",
-                       kMaxTaskSize);
-  }
-  const LoggedField* force = find(fields, "force_sensor_N");
-  if (!force || force->entries > kMaxTactileModules) {
-    return fmt::format(
-        "no field force_sensor_N with an entry for each tactile module, 1 to {} are expected",
-        kMaxTactileModules);
-  }
-  shape = {static_cast<int>(q->entries),
-           static_cast<int>(w->entries),
-           find(fields, "tool_rotation_error_rad") != nullptr,
-           static_cast<int>(force->entries),
-           find(fields, "tactile_moment_x_Nm") != nullptr,
-           find(fields, "modules_lost") != nullptr};
-  return {};
-}
-
-}  // namespace
-
-std::string gainFieldName(std::string_view path) {
-  std::string name(path);
-  std::ranges::replace(name, '.', '_');
-  return name;
-}
-
-std::string_view topicName(std::string_view format) noexcept {
-  const std::size_t colon = format.find(':');
-  return format.substr(0, colon == std::string_view::npos ? 0 : colon);
-}
-
 std::string parseTopicFormat(std::string_view format, TopicLayout& layout) {
   std::vector<LoggedField> logged;
   layout = {};
-  std::string problem =
-      parseFields(format.substr(topicName(format).size() + 1), logged, layout.size);
+  std::string problem = parseFields(format, logged, layout.size);
   if (problem.empty()) problem = findShape(logged, layout.shape);
   if (!problem.empty()) return problem;
   for (const RecordField& field : recordFields()) {
-    const LoggedField* found = find(logged, field.name);
+    const LoggedField* found = findField(logged, field.name);
     if (!found && field.may_be_absent) {
       layout.absent.push_back(field.name);
       continue;
@@ -141,22 +130,6 @@ std::string parseTopicFormat(std::string_view format, TopicLayout& layout) {
                          field.name, typeName(field.type), entries);
     }
     appendRun({field.offset, found->offset, entries * sizeof(double)}, layout.runs);
-  }
-  return {};
-}
-
-std::string parseGainsFormat(std::string_view format, GainsLayout& layout) {
-  std::vector<LoggedField> logged;
-  layout = {};
-  std::string problem =
-      parseFields(format.substr(topicName(format).size() + 1), logged, layout.size);
-  if (!problem.empty()) return problem;
-  for (const GainKey& key : gainKeys()) {
-    const LoggedField* found = find(logged, gainFieldName(key.path));
-    if (!found) continue;
-    if (found->type != "double" || found->entries != 1)
-      return fmt::format("gain {} is of type {}, a double is expected", found->name, found->type);
-    appendRun({key.offset, found->offset, sizeof(double)}, layout.runs);
   }
   return {};
 }

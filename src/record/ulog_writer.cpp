@@ -7,17 +7,16 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "tactus/record/side_topic.h"
 #include "tactus/record/tool_error.h"
 #include "tactus/record/ulog_format.h"
-#include "tactus/record/ulog_topic.h"
-#include "tactus/scene/gain_keys.h"
 
 namespace tactus {
 namespace {
 
 constexpr std::size_t kTextChunk = 32768;
 constexpr std::uint16_t kCycleId = 0;
-constexpr std::uint16_t kGainsId = 1;
+constexpr std::uint16_t kFirstSideId = 1;
 constexpr const char* kArraysInfo =
     "q[0], dq[0], q_measured[0] are of joint/1, q_1 and so on in CSV; w[0], wd[0], wd_dot[0] of "
     "component/1, w_1 and so on in CSV";
@@ -73,11 +72,14 @@ void appendFormat(std::string& bytes, const RecordShape& shape) {
   appendMessage(bytes, 'F', format);
 }
 
-void appendGainsFormat(std::string& bytes) {
-  std::string format = fmt::format("{}:uint64_t timestamp;", kGainsTopic);
-  for (const GainKey& key : gainKeys())
-    format += fmt::format("double {};", gainFieldName(key.path));
-  appendMessage(bytes, 'F', format);
+std::uint16_t sideId(int side) noexcept { return static_cast<std::uint16_t>(kFirstSideId + side); }
+
+bool isLogged(const SideTopic& topic, bool has_commands) noexcept {
+  return has_commands || !topic.is_of_commands;
+}
+
+const char* partOf(const CycleRecord& record, const SideTopic& topic) noexcept {
+  return reinterpret_cast<const char*>(&record) + topic.offset;
 }
 
 void appendSubscription(std::string& bytes, std::uint16_t id, const char* topic) {
@@ -138,6 +140,7 @@ LogDescription describeLog(const Scene& scene) {
       std::max(1, modules),
       std::ranges::any_of(scene.controller.tactile_modules, &TactileModuleConfig::feels_moment_x),
       scene.controller.module_loss.has_value()};
+  description.has_commands = task.commands.has_value();
   description.infos = {{"ver_sw", TACTUS_VERSION},
                        {"scene", scene.name},
                        {"variant", scene.variant},
@@ -179,8 +182,12 @@ std::string logDefinitions(const LogDescription& description) {
     appendMultiInfo(bytes, kOverrideKeyKey, override_.key);
     appendMultiInfo(bytes, kOverrideValueKey, override_.value);
   }
-  appendGainsFormat(bytes);
-  appendSubscription(bytes, kGainsId, kGainsTopic);
+  for (int i = 0; i < kSideTopics; ++i)
+    if (isLogged(sideTopics()[i], description.has_commands))
+      appendMessage(bytes, 'F', sideFormat(sideTopics()[i]));
+  for (int i = 0; i < kSideTopics; ++i)
+    if (isLogged(sideTopics()[i], description.has_commands))
+      appendSubscription(bytes, sideId(i), sideTopics()[i].name);
   appendSubscription(bytes, kCycleId, kCycleTopic);
   return bytes;
 }
@@ -190,23 +197,32 @@ std::size_t logBytesACycle(const RecordShape& shape) {
   return last.message_offset + last.size;
 }
 
-std::size_t logBytesOfGains() { return kDataHeaderSize + sizeof(Gains); }
+std::size_t logBytesOfSides(const LogDescription& description) {
+  std::size_t size = 0;
+  for (const SideTopic& topic : sideTopics())
+    if (isLogged(topic, description.has_commands)) size += kDataHeaderSize + topic.size;
+  return size;
+}
 
 UlogWriter::UlogWriter(const std::string& path, const LogDescription& description)
     : file_(path),
       runs_(packedRuns(description.shape, kDataHeaderSize)),
-      data_size_(logBytesACycle(description.shape)) {
+      data_size_(logBytesACycle(description.shape)),
+      has_commands_(description.has_commands) {
   file_.append(logDefinitions(description));
 }
 
 void UlogWriter::write(const CycleRecord& record) {
-  if (hasOtherGains(record)) {
-    char* const message = beginData(kGainsId, logBytesOfGains(), record.t_s);
-    std::memcpy(message + kDataHeaderSize, &record.gains, sizeof(Gains));
-    file_.commit(logBytesOfGains());
-    gains_ = record.gains;
-    has_gains_ = true;
+  for (int i = 0; i < kSideTopics; ++i) {
+    if (!isOther(record, i)) continue;
+    const SideTopic& topic = sideTopics()[i];
+    const std::size_t size = kDataHeaderSize + topic.size;
+    char* const message = beginData(sideId(i), size, record.t_s);
+    std::memcpy(message + kDataHeaderSize, partOf(record, topic), topic.size);
+    file_.commit(size);
+    std::memcpy(reinterpret_cast<char*>(&sides_) + topic.offset, partOf(record, topic), topic.size);
   }
+  has_sides_ = true;
   char* const message = beginData(kCycleId, data_size_, record.t_s);
   const char* bytes = reinterpret_cast<const char*>(&record);
   for (const CopyRun& run : runs_) {
@@ -216,11 +232,16 @@ void UlogWriter::write(const CycleRecord& record) {
 }
 
 std::size_t UlogWriter::sizeOf(const CycleRecord& record) const noexcept {
-  return data_size_ + (hasOtherGains(record) ? logBytesOfGains() : 0);
+  std::size_t size = data_size_;
+  for (int i = 0; i < kSideTopics; ++i)
+    if (isOther(record, i)) size += kDataHeaderSize + sideTopics()[i].size;
+  return size;
 }
 
-bool UlogWriter::hasOtherGains(const CycleRecord& record) const noexcept {
-  return !has_gains_ || !isSame(gains_, record.gains);
+bool UlogWriter::isOther(const CycleRecord& record, int side) const noexcept {
+  const SideTopic& topic = sideTopics()[side];
+  if (!isLogged(topic, has_commands_)) return false;
+  return !has_sides_ || std::memcmp(partOf(sides_, topic), partOf(record, topic), topic.size) != 0;
 }
 
 char* UlogWriter::beginData(std::uint16_t id, std::size_t size, double t_s) {

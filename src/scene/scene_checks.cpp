@@ -83,9 +83,26 @@ void checkWaypoint(const Checked& c, const Waypoint& waypoint, const std::string
   }
 }
 
+/// A tool that is held off must not be told to go further and further away.
+void checkCommands(const Checked& c) {
+  if (c.scene.trajectory)
+    c.fail("task.trajectory", "a trajectory besides task.source: commands", "one of both");
+  if (!c.scene.controller || c.scene.controller->variant == Variant::kNone) return;
+  const TaskGains& gains = c.scene.gains.task;
+  if (gains.wait_beyond_m == kNoLimit)
+    c.fail("task.wait_beyond_m", "is missing", "a lag for a task by commands, such as 0.02");
+  if (gains.max_return_speed_m_per_s == kNoLimit)
+    c.fail("task.max_return_speed_m_per_s", "is missing",
+           "a speed for a task by commands, such as 0.05");
+}
+
 void checkTrajectory(const Checked& c) {
+  if (c.scene.source == TaskSource::kCommands) return checkCommands(c);
+  if (c.scene.task.commands)
+    c.fail("task.commands", "is of no use", "task.source: commands besides");
   const std::string section = "task.trajectory";
-  const TrajectorySection& trajectory = c.scene.trajectory;
+  if (!c.scene.trajectory) c.fail(section, "is missing", "a section, or task.source: commands");
+  const TrajectorySection& trajectory = *c.scene.trajectory;
   std::vector<std::string> given;
   if (trajectory.line) given.push_back("line");
   if (!trajectory.waypoints.empty()) given.push_back("waypoints");

@@ -70,7 +70,11 @@ JointVector readStart(const YamlNode& root, const SceneConfig& config, const Loa
 
 TaskConfig makeTask(const SceneConfig& config) {
   TaskConfig task = config.task;
-  const TrajectorySection& trajectory = config.trajectory;
+  if (config.source == TaskSource::kCommands) {
+    if (!task.commands) task.commands.emplace();
+    return task;
+  }
+  const TrajectorySection& trajectory = *config.trajectory;
   task.trajectory = {trajectory.start_s, trajectory.waypoints};
   if (trajectory.line) task.trajectory.waypoints = {*trajectory.line};
   return task;

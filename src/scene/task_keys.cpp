@@ -90,17 +90,59 @@ Table<TrajectorySection> trajectoryKeys() {
   };
 }
 
+Table<MotionLimits> motionLimitKeys(const std::string& unit, const std::string& of) {
+  using Config = MotionLimits;
+  return {
+      number("max_speed_" + unit + "_per_s", unit + "/s", above(0, 10), "largest speed " + of,
+             &Config::max_speed),
+      number("max_acceleration_" + unit + "_per_s2", unit + "/s^2", above(0, 1000),
+             "largest acceleration " + of, &Config::max_acceleration),
+      number("max_jerk_" + unit + "_per_s3", unit + "/s^3", above(0, 1e5), "largest jerk " + of,
+             &Config::max_jerk),
+  };
+}
+
+Table<TaskCommandsConfig> commandKeys() {
+  using Config = TaskCommandsConfig;
+  return join(inside(&Config::limits,
+                     join(inside(&ToolMotionLimits::position,
+                                 motionLimitKeys("m", "of the reference's position")),
+                          inside(&ToolMotionLimits::rotation,
+                                 motionLimitKeys("rad", "of the reference's orientation")))),
+              Table<Config>{
+                  number("arrival_m", "m", above(0, 1), "so close to its target a tool has arrived",
+                         &Config::arrival_m),
+                  number("arrival_rad", "rad", above(0, 1), "and so close in orientation",
+                         &Config::arrival_rad),
+                  number("give_up_after_s", "s", above(0, kMaxTime_s),
+                         "a tool that is held off its way for this long rests where it is",
+                         &Config::give_up_after_s),
+                  number("stream_timeout_s", "s", above(0, 60),
+                         "a stream's tool stops unless the next target comes within this",
+                         &Config::stream_timeout_s),
+              });
+}
+
 }  // namespace
 
 Row<SceneConfig> taskSection() {
+  const Table<SceneConfig> source = {
+      choice("source",
+             "where the reference comes from: trajectory this file; commands the tool holds until "
+             "it is told, as by tactus move",
+             &SceneConfig::source, kTaskSourceWords)};
   const Table<SceneConfig> trajectory = {withSymbol(
-      "w_d", required(section("trajectory",
+      "w_d", optional(section("trajectory",
                               "where the tool shall be when; exactly one of line, waypoints, hold",
                               &SceneConfig::trajectory, trajectoryKeys())))};
-  return required(group(
-      "task", "what the tool shall do",
-      join(inside(&SceneConfig::task, {componentsRow()}),
-           inside(&SceneConfig::gains, inside(&Gains::task, live(correctionKeys()))), trajectory)));
+  const Table<TaskConfig> commands = {
+      optional(section("commands", "in place of trajectory, of source: commands",
+                       &TaskConfig::commands, commandKeys()))};
+  return required(
+      group("task", "what the tool shall do",
+            join(inside(&SceneConfig::task, {componentsRow()}),
+                 inside(&SceneConfig::gains, inside(&Gains::task, live(correctionKeys()))), source,
+                 trajectory, inside(&SceneConfig::task, commands))));
 }
 
 }  // namespace tactus

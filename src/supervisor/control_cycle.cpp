@@ -77,13 +77,14 @@ ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareCon
       mode_config_(modeConfig(controller.limits, hardware, period_s)),
       brake_config_(brakeConfig(hardware, period_s)),
       state_(controller_.initialState()) {
+  if (controller.task.commands) tool_orders_.emplace(*controller.task.commands, period_s);
   output_.velocity = JointVector::Zero(controller.q_start.size());
   output_.q_desired = controller.q_start;
 }
 
 void ControlCycle::update(const CycleInput& input) noexcept {
-  if (!has_next_gains_) goOnWithGains();
-  has_next_gains_ = false;
+  if (!has_next_orders_) goOnWithOrders();
+  has_next_orders_ = false;
   coast(input.missed_cycles);
   robot_.expect(isCommanding(mode_.mode) ? state_.q_desired : output_.q_desired);
   const auto samples_before = input_.tactile;
@@ -114,6 +115,47 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   heartbeat_ = !heartbeat_;
 }
 
+void ControlCycle::goOnWithOrders() noexcept {
+  goOnWithGains();
+  if (tool_orders_) goOnWithTool();
+}
+
+double ControlCycle::nextPathTime_s() const noexcept {
+  return static_cast<double>(nextTaskCycle()) * period_s_ - state_.waited_s;
+}
+
+void ControlCycle::fill(ToolSight& sight) const noexcept {
+  sight.report = tool_orders_->report();
+  sight.is_running = is_started_ && mode_.mode == Mode::kRunning;
+  std::copy_n(state_.q_desired.data(), state_.q_desired.size(), sight.q);
+  sight.progress = state_.progress;
+  Pose X_BaseTool = tipPose(controller_.config().chain, state_.q_desired);
+  if (state_.progress >= 1.0) {
+    const ToolReference reference = state_.tool_motion->evaluate(nextPathTime_s());
+    X_BaseTool = {reference.R_BaseTool, reference.p_BaseTool};
+  }
+  std::copy_n(X_BaseTool.p_AB.data(), 3, sight.p_BaseTool_m);
+  std::copy_n(X_BaseTool.R_AB.data(), 9, sight.R_BaseTool);
+  for (int i = 0; i < output_.modules; ++i) {
+    sight.force_N[i] = output_.sensed[i].force_N;
+    sight.position_m[i] = output_.sensed[i].position_m;
+  }
+}
+
+void ControlCycle::goOnWithTool() noexcept {
+  ToolWatch seen;
+  seen.path_time_s = nextPathTime_s();
+  seen.progress = state_.progress;
+  const TaskConfig& task = controller_.config().task;
+  for (int i = 0; i < output_.error.size(); ++i) {
+    double& lag = task.components[i] < 3 ? seen.lag_m : seen.lag_rad;
+    lag = std::hypot(lag, output_.error[i]);
+  }
+  seen.X_BaseTool = tipPose(controller_.config().chain, state_.q_desired);
+  seen.is_running = is_started_ && mode_.mode == Mode::kRunning;
+  tool_orders_->update(seen, *state_.tool_motion);
+}
+
 /// By what the last cycle saw.
 void ControlCycle::goOnWithGains() noexcept {
   GainWatchInput seen;
@@ -128,11 +170,10 @@ void ControlCycle::goOnWithGains() noexcept {
 }
 
 void ControlCycle::prepare() noexcept {
-  goOnWithGains();
-  has_next_gains_ = true;
+  goOnWithOrders();
+  has_next_orders_ = true;
   if (!is_started_) return;
-  const long long next = task_cycles_ + (mode_.mode == Mode::kRunning ? 1 : 0);
-  controller_.prepare(gains_, static_cast<double>(next) * period_s_, state_, prepared_);
+  controller_.prepare(gains_, static_cast<double>(nextTaskCycle()) * period_s_, state_, prepared_);
 }
 
 /// The drives kept the last command, and samples grew older.
@@ -208,6 +249,10 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   task_cycles_ += is_started_ && before == Mode::kRunning ? 1 + missed_cycles_ : 0;
   is_started_ = true;
   applyMode(controller_, mode_.mode, before, input_, gains_, state_);
+  const bool goes_on = is_running && before != Mode::kRunning;
+  if (goes_on && state_.tool_motion)  // nothing that was ordered before moves the tool
+    state_.tool_motion.emplace(tipPose(controller_.config().chain, state_.q_desired),
+                               state_.tool_motion->plan().number + 1);
   controller_.update(input_, gains_, taskTime_s(), period_s_, prepared_, state_, output_);
 }
 
@@ -221,6 +266,7 @@ void ControlCycle::begin() noexcept {
 void ControlCycle::fill(CycleRecord& record) const noexcept {
   fillRecord(time_s(), input_, gains_, output_, Vector3::Zero(), record);
   record.task_time_s = taskTime_s();
+  if (state_.tool_motion) record.tool_motion = state_.tool_motion->plan();
   record.mode = static_cast<std::uint64_t>(mode_.mode);
   record.missed_cycles = static_cast<std::uint64_t>(missed_cycles_);
   if (mode_.fault != Fault::kNone) record.fault = static_cast<std::uint64_t>(mode_.fault);

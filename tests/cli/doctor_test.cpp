@@ -70,7 +70,8 @@ TEST(UlogWriter, GrowsByAsMuchACycleAsItSays) {
     writer.close();
     return std::filesystem::file_size(file.path());
   };
-  EXPECT_EQ(sizeOfLog(1) - sizeOfLog(0), logBytesOfGains() + logBytesACycle(description.shape));
+  EXPECT_EQ(sizeOfLog(1) - sizeOfLog(0),
+            logBytesOfSides(description) + logBytesACycle(description.shape));
   EXPECT_EQ(sizeOfLog(8) - sizeOfLog(1), 7 * logBytesACycle(description.shape));
 }
 

@@ -49,7 +49,7 @@ class RunLogFiles : public ::testing::Test {
     description.infos.emplace_back("run", "0123456789abcdef");
     description.infos.emplace_back("part", "0");
     scene_.log.max_bytes =
-        static_cast<double>(logDefinitions(description).size() + logBytesOfGains() +
+        static_cast<double>(logDefinitions(description).size() + logBytesOfSides(description) +
                             cycles * logBytesACycle(description.shape));
   }
 

@@ -179,7 +179,7 @@ TEST(Ulog, WritesTheBytesOfTheSpecification) {
                        "char[6] sys_nametactus"s));
   const std::size_t data_size = 2 + 8 + 8 * (17 + 2 + 2 + 3 + 3 + 2 + 5 + 3 + 5 + 1);
   const std::size_t data_start = bytes.size() - data_size - 3;
-  EXPECT_TRUE(startsAt(data_start - logBytesOfGains() - 11, "\x08\0A\0\0\0cycle"s));
+  EXPECT_TRUE(startsAt(data_start - logBytesOfSides(description) - 11, "\x08\0A\0\0\0cycle"s));
   const std::string timestamp_250000_us = "\x90\xd0\x03\0\0\0\0\0"s;
   const std::string quarter_as_double = "\0\0\0\0\0\0\xd0\x3f"s;
   EXPECT_TRUE(startsAt(data_start,

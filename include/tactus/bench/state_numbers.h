@@ -26,7 +26,7 @@ struct StateVisitor {
   void all(const ControllerState& state) const {
     const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
                  way_out_before, way_out_added, is_leaning, speed_share, modules, contact, several,
-                 zones, retreat] = state;
+                 zones, retreat, tool_motion] = state;
     visit("speed_share", 0, speed_share);
     visit("waited_s", 0, waited_s);
     visit("progress", 0, progress);

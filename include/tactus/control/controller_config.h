@@ -10,6 +10,7 @@
 #include "tactus/control/gains.h"
 #include "tactus/control/link_observer.h"
 #include "tactus/math/serial_chain.h"
+#include "tactus/math/tool_motion.h"
 #include "tactus/math/trajectory.h"
 #include "tactus/math/types.h"
 
@@ -23,6 +24,15 @@ struct JointLimits {
   JointVector lower, upper;      ///< m or rad
   JointVector max_velocity;      ///< m/s or rad/s, > 0
   JointVector max_acceleration;  ///< m/s^2 or rad/s^2, > 0
+};
+
+/// Of a tool that is told where to go while it runs.
+struct TaskCommandsConfig {
+  ToolMotionLimits limits;
+  double arrival_m = 0.001;       ///< so close to its target it has arrived
+  double arrival_rad = 0.005;     ///< and so close in orientation
+  double give_up_after_s = 10.0;  ///< of being held off its way
+  double stream_timeout_s = 0.1;  ///< a stream's next target has to come within this
 };
 
 /// What the tool shall do. After a contact, TaskGains say how it gets back to its path; e, v and p
@@ -43,6 +53,9 @@ struct TaskConfig {
   std::array<int, kMaxTaskSize> components{};  ///< 0..5: x, y, z, rx, ry, rz of the tool
   int size = 0;
   TrajectoryConfig trajectory;
+  /// The reference is ControllerState::tool_motion instead; it rests at the start until it is
+  /// changed.
+  std::optional<TaskCommandsConfig> commands{};
 
   bool hasRotation() const noexcept {
     return std::any_of(components.begin(), components.begin() + size,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tactus/daemon/loop_link.h"
+#include "tactus/daemon/tool_requests.h"
 #include "tactus/scene/gain_plan.h"
 #include "tactus/scene/json.h"
 
@@ -36,7 +37,10 @@ class ControlRequests {
   Json set(const Json& request);
   Json reload(const Json& request);
   Json undo(const Json& request);
-  Json show() const;
+  Json tell(const std::string& what, const Json& request);
+  Json showGains() const;
+  Json show();
+  std::string lookAtGains();
   Json order(GainPlan plan, const Json& request, bool is_undo);
   void settle(const GainReport& report);
   double leastMargin();
@@ -45,6 +49,7 @@ class ControlRequests {
   LoopLink& link_;
   const Scene started_;
   std::optional<double> least_margin_deg_;  ///< takes a while to know
+  ToolRequests tool_;
   Scene kept_;
   std::optional<Trial> trial_;
   std::vector<Scene> before_;  ///< what was kept, the newest last

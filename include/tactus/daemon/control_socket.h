@@ -24,7 +24,7 @@ std::string controlPath();
 class ControlSocket {
  public:
   static constexpr int kMaxClients = 8;
-  static constexpr int kMessagesPerS = 200;
+  static constexpr int kMessagesPerS = 1000;
 
   /// Throws std::system_error.
   ControlSocket(const Scene& scene, LoopLink& link);

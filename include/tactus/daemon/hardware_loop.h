@@ -47,6 +47,8 @@ class HardwareLoop {
 
   void readAll(const Wake& wake) noexcept;
   void writeAll() noexcept;
+  void takeToolOrders() noexcept;
+  void reportTool() noexcept;
   void reportGains() noexcept;
   void publish(const Wake& wake, std::int64_t read_ns, std::int64_t control_ns,
                std::int64_t write_ns) noexcept;
@@ -61,6 +63,8 @@ class HardwareLoop {
   bool are_lines_written_ = true;
   ModeReport reported_;
   GainReport reported_gains_;
+  ToolReport reported_tool_;
+  ToolSight tool_sight_;
   long long cycles_ = 0;
   long long missed_cycles_ = 0;
   std::int64_t cpu_start_ns_ = 0, cpu_end_ns_ = 0;

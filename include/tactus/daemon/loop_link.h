@@ -27,11 +27,14 @@ struct LoopPulse {
 struct LoopLink {
   static constexpr std::size_t kRecords = 4096;  ///< four seconds at 1 kHz
   static constexpr std::size_t kReports = 256;
+  static constexpr std::size_t kToolOrders = 512;
 
   SpscQueue<LoopRecord> records{kRecords};
   SpscQueue<ModeReport> reports{kReports};  ///< one for each change of mode or fault
   NewestValue<GainOrder> gain_orders;
   NewestValue<GainReport> gain_reports;  ///< each time that one is new
+  SpscQueue<ToolOrder> tool_orders{kToolOrders};
+  NewestValue<ToolSight> tool_sights;  ///< of tasks by command, many times a second
   LoopPulse pulse;
   std::atomic<bool> stop_requested{false};
 };

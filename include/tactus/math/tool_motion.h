@@ -29,6 +29,10 @@ struct ToolMotionPlan {
   double R_BaseZero[9] = {};  ///< by columns: the orientation that turns are counted from
   ToolMotionLimits limits;
 };
+/// Whether there is a motion by it: numbers are finite, limits above zero. For plans that come
+/// from outside.
+bool isValid(const ToolMotionPlan& plan) noexcept;
+
 static_assert(std::is_trivially_copyable_v<ToolMotionPlan> &&
               sizeof(ToolMotionPlan) == 8 * (3 + 18 + 6 + 9 + 6));
 

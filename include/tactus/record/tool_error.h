@@ -21,12 +21,15 @@ class ToolRotationError {
   /// Fills in tool_rotation_error_rad of a record by its own q_measured and path_time_s: the length
   /// of what belongs to the task of the rotation vector of R_d R^T, base frame. Leaves it where the
   /// task has no rotation.
-  void fill(CycleRecord& record) const;
+  void fill(CycleRecord& record);
 
  private:
+  Matrix3 desired(const CycleRecord& record);
+
   SerialChain chain_;
   TaskConfig task_;
   std::optional<Trajectory> trajectory_;  ///< of a task with a rotation
+  std::optional<ToolMotion> motion_;      ///< of one by command, as last seen
 };
 
 }  // namespace tactus

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "tactus/record/side_topic.h"
 #include "tactus/record/ulog_messages.h"
 #include "tactus/record/ulog_topic.h"
 #include "tactus/record/ulog_writer.h"
@@ -14,9 +16,12 @@ struct UlogDefinitions {
   LogDescription description;
   TopicLayout topic;
   std::uint16_t cycle_id = 0;  ///< which data messages are cycles
-  bool has_gains = false;      ///< a log of an older version has none
-  GainsLayout gains;
-  std::uint16_t gains_id = 0;  ///< which data messages are gains
+  struct Side {
+    bool is_there = false;  ///< not in a log of an older version
+    SideLayout layout;
+    std::uint16_t id = 0;  ///< which data messages are of it
+  };
+  std::array<Side, kSideTopics> sides;  ///< as sideTopics()
 };
 
 /// Reads up to the subscription of the cycles. Throws InputError, also for a log that ends before.

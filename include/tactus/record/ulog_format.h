@@ -6,9 +6,8 @@
 #include <cstdint>
 
 /// What writer and reader of a log agree on: the PX4 ULog format, version 1
-/// (https://docs.px4.io/main/en/dev_log/ulog_file_format), with two topics: kCycleTopic, and
-/// kGainsTopic with the gains of all cycles from there on, once before the first one of each file
-/// and whenever they have changed.
+/// (https://docs.px4.io/main/en/dev_log/ulog_file_format), with the topic kCycleTopic, and those
+/// of side_topic.h with what stays as it is for many cycles.
 ///
 /// A file is a header (magic, version, uint64 start time in us) and messages: uint16 size of the
 /// payload, char type, payload; all little-endian. The files a run was made of are stored as pairs
@@ -30,6 +29,7 @@ inline constexpr std::size_t kFlagBitsSize = 40;
 
 inline constexpr char kCycleTopic[] = "cycle";
 inline constexpr char kGainsTopic[] = "gains";
+inline constexpr char kToolMotionTopic[] = "tool_motion";
 inline constexpr char kSourcePathKey[] = "source_path";
 inline constexpr char kSourceTextKey[] = "source_text";
 inline constexpr char kOverrideKeyKey[] = "override_key";

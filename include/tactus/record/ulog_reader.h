@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -24,7 +25,7 @@ class UlogReader {
   bool has(std::string_view field) const noexcept;
 
   /// What the gains are as far as the log does not say: those of its scene.
-  void assumeGains(const Gains& gains) noexcept { gains_ = gains; }
+  void assumeGains(const Gains& gains) noexcept { sides_.gains = gains; }
 
   /// False at the end of the log. Entries of arrays beyond the shape, and fields that the log does
   /// not have, keep what they held.
@@ -34,14 +35,14 @@ class UlogReader {
   bool cutOff() const noexcept { return messages_.cutOff(); }
 
  private:
-  /// Takes over gains; true for a cycle.
+  /// Takes over what is of a side topic; true for a cycle.
   bool take(const UlogMessage& message, CycleRecord& record);
   void checkSize(const UlogMessage& message, const char* what, std::size_t fields_size) const;
 
   UlogMessages messages_;
   UlogDefinitions definitions_;
-  Gains gains_;
-  bool knows_gains_ = false;  ///< the log has said what they are
+  CycleRecord sides_;                         ///< of which the parts of side topics count
+  std::array<bool, kSideTopics> is_known_{};  ///< the log has said what they are
 };
 
 /// Opens a log for reading; throws InputError.

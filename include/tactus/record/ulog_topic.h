@@ -17,14 +17,11 @@ struct TopicLayout {
   std::vector<std::string_view> absent;  ///< of recordFields(), from a log of an older version
 };
 
-/// Where a log's data messages hold the gains.
-struct GainsLayout {
-  std::vector<CopyRun> runs;  ///< from Gains, in place of a record
-  std::size_t size = 0;       ///< of all fields, bytes
+/// A field of a format message.
+struct LoggedField {
+  std::string_view type, name;
+  std::size_t entries, offset;
 };
-
-/// The field of a gain: "controller_damping" of "controller.damping".
-std::string gainFieldName(std::string_view path);
 
 /// "cycle" of "cycle:uint64_t timestamp;..."; empty if there is no colon.
 std::string_view topicName(std::string_view format) noexcept;
@@ -33,7 +30,12 @@ std::string_view topicName(std::string_view format) noexcept;
 /// Returns an empty string, or what is wrong with the format and what is expected.
 std::string parseTopicFormat(std::string_view format, TopicLayout& layout);
 
-/// Likewise of the gains. A gain that the log does not know has no run.
-std::string parseGainsFormat(std::string_view format, GainsLayout& layout);
+/// The fields of a format message, and the size of all; returns as above.
+std::string parseFields(std::string_view format, std::vector<LoggedField>& fields,
+                        std::size_t& size);
+
+/// Null: there is none.
+const LoggedField* findField(const std::vector<LoggedField>& fields,
+                             std::string_view name) noexcept;
 
 }  // namespace tactus

@@ -15,6 +15,7 @@ namespace tactus {
 /// What a log says before its first cycle.
 struct LogDescription {
   RecordShape shape;
+  bool has_commands = false;  ///< the task is by command, and its motion logged
   /// Names of a-z A-Z 0-9 _ - / only, each once.
   std::vector<std::pair<std::string, std::string>> infos;
   /// For the reader at a plot: the format holds them as float, and a.b[0] as a/b/0. The exact
@@ -32,8 +33,8 @@ std::string logDefinitions(const LogDescription& description);
 /// What a log grows by each cycle.
 std::size_t logBytesACycle(const RecordShape& shape);
 
-/// And before the first cycle of a file, and each cycle with other gains than the one before.
-std::size_t logBytesOfGains();
+/// And before the first cycle of a file; later less, where something of it has changed.
+std::size_t logBytesOfSides(const LogDescription& description);
 
 /// Writes cycles to a ULog file. A log cut off anywhere is readable up to the cut.
 class UlogWriter {
@@ -61,14 +62,15 @@ class UlogWriter {
   void close() { file_.close(); }
 
  private:
-  bool hasOtherGains(const CycleRecord& record) const noexcept;
+  bool isOther(const CycleRecord& record, int side) const noexcept;
   char* beginData(std::uint16_t id, std::size_t size, double t_s);
 
   OutputFile file_;
   std::vector<CopyRun> runs_;  ///< from a record to a data message, header included
   std::size_t data_size_;      ///< of a data message, header included, bytes
-  bool has_gains_ = false;     ///< written any
-  Gains gains_;                ///< as written at last
+  bool has_commands_;
+  bool has_sides_ = false;  ///< written any
+  CycleRecord sides_;       ///< of which the parts of side topics are as written at last
 };
 
 }  // namespace tactus

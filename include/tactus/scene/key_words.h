@@ -38,6 +38,11 @@ inline constexpr std::array kLimitAtWords = {
     Word<LimitAt>{"module_ends", LimitAt::kModuleEnds},
 };
 
+inline constexpr std::array kTaskSourceWords = {
+    Word<TaskSource>{"trajectory", TaskSource::kTrajectory},
+    Word<TaskSource>{"commands", TaskSource::kCommands},
+};
+
 /// Of TaskConfig::components.
 inline constexpr std::array kComponentWords = {
     Word<int>{"x", 0},  Word<int>{"y", 1},  Word<int>{"z", 2},

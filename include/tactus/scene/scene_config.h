@@ -25,6 +25,8 @@ struct TrajectorySection {
   std::optional<HoldSection> hold;
 };
 
+enum class TaskSource : std::uint8_t { kTrajectory, kCommands };
+
 struct StiffnessSection {
   std::optional<double> stiffest_N_per_m;
   bool has_estimate = false;
@@ -108,7 +110,8 @@ struct SceneConfig {
   std::optional<std::vector<double>> start;  ///< absent: the robot's home
   Gains gains;                               ///< of all sections below
   TaskConfig task = positionTask();          ///< without trajectory
-  TrajectorySection trajectory;
+  TaskSource source = TaskSource::kTrajectory;
+  std::optional<TrajectorySection> trajectory;
   std::optional<std::vector<double>> weights;  ///< absent: all 1
   bool has_joint_limit_avoidance = false;
   std::optional<ForceControlConfig> controller;  ///< without what `stiffness` says

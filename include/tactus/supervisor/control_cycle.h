@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "tactus/canopen/can_robot.h"
 #include "tactus/control/controller.h"
@@ -12,6 +13,7 @@
 #include "tactus/supervisor/line_states.h"
 #include "tactus/supervisor/mode.h"
 #include "tactus/supervisor/mode_report.h"
+#include "tactus/supervisor/tool_orders.h"
 
 namespace tactus {
 
@@ -39,6 +41,13 @@ class ControlCycle {
   /// Leads them there over the next cycles. After fill().
   void order(const GainOrder& order) noexcept { gain_change_.order(order); }
   const GainReport& gainReport() const noexcept { return gain_change_.report(); }
+  /// Leads the tool there; only for tasks by command. After fill().
+  void order(const ToolOrder& order) noexcept { tool_orders_->order(order); }
+  const ToolReport* toolReport() const noexcept {
+    return tool_orders_ ? &tool_orders_->report() : nullptr;
+  }
+  /// Only for tasks by command. After prepare().
+  void fill(ToolSight& sight) const noexcept;
 
   void receive(int bus, std::span<const CanFrame> frames) noexcept { robot_.receive(bus, frames); }
   void update(const CycleInput& input) noexcept;
@@ -78,12 +87,18 @@ class ControlCycle {
   bool hasFreshSample(int module) const noexcept;
   bool isReady(int module) const noexcept;
   void begin() noexcept;
+  void goOnWithOrders() noexcept;
   void goOnWithGains() noexcept;
+  void goOnWithTool() noexcept;
   void startTares() noexcept;
   void repeatRefusedTares() noexcept;
   void noteCulprit() noexcept;
   void control(const CycleInput& input, Mode before) noexcept;
   double time_s() const noexcept { return static_cast<double>(cycles_) * period_s_; }
+  long long nextTaskCycle() const noexcept {
+    return task_cycles_ + (mode_.mode == Mode::kRunning ? 1 : 0);
+  }
+  double nextPathTime_s() const noexcept;
   double taskTime_s() const noexcept { return static_cast<double>(task_cycles_) * period_s_; }
   DriveGoal driveGoal() const noexcept;
   void updateBrakes() noexcept;
@@ -99,7 +114,8 @@ class ControlCycle {
   Controller controller_;
   Gains gains_;
   GainChange gain_change_;
-  bool has_next_gains_ = false;
+  std::optional<ToolOrders> tool_orders_;  ///< of tasks by command
+  bool has_next_orders_ = false;
   CanRobot robot_;
   JointPlaces places_;
   std::array<const char*, kMaxJoints> joint_units_;

@@ -5,6 +5,7 @@
 
 #include "tactus/control/controller.h"
 #include "tactus/control/robot.h"
+#include "tactus/math/tool_motion.h"
 #include "tactus/math/types.h"
 #include "tactus/supervisor/mode.h"
 
@@ -51,13 +52,14 @@ struct CycleRecord {
   // Of an arm that goes on without a tactile module, as ControllerOutput:
   std::uint64_t modules_lost = 0;  ///< bit i: module i
   double speed_share = 1.0;
-  Gains gains;  ///< of this cycle; the log has them where they change
+  Gains gains;                 ///< of this cycle; the log has them where they change
+  ToolMotionPlan tool_motion;  ///< of a task by command; logged like gains
 };
 
 static_assert(std::is_trivially_copyable_v<CycleRecord> && std::is_standard_layout_v<CycleRecord>);
 static_assert(sizeof(CycleRecord) ==
               8 * (12 + 11 * kMaxTactileModules + 3 * kMaxJoints + 3 * kMaxTaskSize + 15) +
-                  sizeof(Gains));
+                  sizeof(Gains) + sizeof(ToolMotionPlan));
 
 /// Copies one cycle into a record; wake_latency_ns and step_ns are left to the caller, who alone
 /// knows a clock, and tool_rotation_error_rad. tool_error_m: see CycleRecord. Entries of arrays

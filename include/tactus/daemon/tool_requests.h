@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "tactus/daemon/loop_link.h"
+#include "tactus/scene/json.h"
+#include "tactus/scene/scene.h"
+
+namespace tactus {
+
+/// The part of ControlRequests that tells the tool where to go. Requests that are refused throw an
+/// InputError, and nothing of them happens.
+class ToolRequests {
+ public:
+  ToolRequests(const Scene& scene, LoopLink& link) : scene_(scene), link_(link) {}
+
+  Json move(const Json& request);  ///< also for `stream`
+  Json follow(const Json& request);
+  Json hold();
+
+  /// The member "task" of `show`: null for a task that nobody tells.
+  Json show();
+
+  /// As ControlRequests::look().
+  std::string look();
+
+ private:
+  /// What a request says of a target, and from where it counts.
+  struct Target {
+    ToolOrder order;
+    Pose X_BaseTool;
+  };
+
+  void requireArm();
+  Target target(const Json& request, const Pose& from, ToolOrder::Kind kind) const;
+  Json order(const ToolOrder& order, double duration_s);
+  void refresh();
+  std::string eventText() const;
+  int leaning() const;
+
+  const Scene& scene_;
+  LoopLink& link_;
+  ToolSight sight_;
+  std::uint32_t number_ = 0;
+  ToolReport told_;    ///< to whoever asks, until the loop has reported
+  ToolReport looked_;  ///< as told to the journal
+};
+
+}  // namespace tactus

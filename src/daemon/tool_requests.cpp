@@ -1,0 +1,268 @@
+#include "tactus/daemon/tool_requests.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "tactus/math/rotation.h"
+#include "tactus/scene/located_error.h"
+#include "tactus/scene/reach_check.h"
+
+namespace tactus {
+namespace {
+
+using Kind = ToolOrder::Kind;
+
+constexpr double kMaxPosition_m = 100.0;
+constexpr double kMaxTurn_rad = 4.0;
+constexpr double kMaxPause_s = 86400.0;
+
+[[noreturn]] void refuse(const std::string& problem, const std::string& expectation) {
+  throw InputError(fmt::format("request: {}, expected {}", problem, expectation));
+}
+
+const char* stateName(ToolState state) noexcept {
+  switch (state) {
+    case ToolState::kMoving:
+      return "moving";
+    case ToolState::kBlocked:
+      return "blocked";
+    case ToolState::kArrived:
+      return "arrived";
+    case ToolState::kGivenUp:
+      return "given_up";
+    case ToolState::kLate:
+      return "late";
+    case ToolState::kStopped:
+      return "stopped";
+    case ToolState::kHolding:
+      break;
+  }
+  return "holding";
+}
+
+double numberOf(const Json& value, const std::string& name, double least, double most) {
+  if (!value.is_number()) refuse(name + " is no number", "one");
+  const double number = value.get<double>();
+  if (number >= least && number <= most) return number;
+  refuse(fmt::format("{} is {}", name, value.dump()), fmt::format("{:g} to {:g}", least, most));
+}
+
+/// Three entries; null: as it is.
+std::optional<std::array<std::optional<double>, 3>> vectorOf(const Json& request, const char* name,
+                                                             double most) {
+  const auto found = request.find(name);
+  if (found == request.end()) return std::nullopt;
+  if (!found->is_array() || found->size() != 3)
+    refuse(fmt::format("{} is no vector", name), "three numbers");
+  std::array<std::optional<double>, 3> vector;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!found->at(i).is_null())
+      vector[i] = numberOf(found->at(i), fmt::format("{}[{}]", name, i), -most, most);
+  return vector;
+}
+
+bool controls(const TaskConfig& task, int component) {
+  const auto end = task.components.begin() + task.size;
+  return std::find(task.components.begin(), end, component) != end;
+}
+
+void setSpeed(const Json& request, const char* name, MotionLimits& limits) {
+  const auto found = request.find(name);
+  if (found == request.end()) return;
+  const double speed = numberOf(*found, name, 0.0, limits.max_speed);
+  if (!(speed > 0.0)) refuse(fmt::format("{} is 0", name), "more");
+  limits.max_speed = speed;
+}
+
+void refuseUnknown(const Json& request, std::initializer_list<const char*> known) {
+  for (const auto& [name, value] : request.items()) {
+    if (std::ranges::find(known, name) == known.end())
+      refuse(fmt::format("{} is not known here", inQuotes(name)),
+             fmt::format("{}", fmt::join(known, ", ")));
+  }
+}
+
+Json vectorJson(const Vector3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+Pose poseOf(const ToolSight& sight) {
+  return {Eigen::Map<const Matrix3>(sight.R_BaseTool),
+          Eigen::Map<const Vector3>(sight.p_BaseTool_m)};
+}
+
+}  // namespace
+
+void ToolRequests::refresh() { link_.tool_sights.take(sight_); }
+
+void ToolRequests::requireArm() {
+  if (!scene_.controller.task.commands)
+    throw InputError("the scene's task is a trajectory, expected task.source: commands");
+  refresh();
+  if (!sight_.is_running)
+    throw InputError("the arm does not run, expected mode running; `tactus status` says why");
+}
+
+ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from, Kind kind) const {
+  const TaskConfig& task = scene_.controller.task;
+  const bool is_relative = request.value("relative", Json(false)) == true;
+  const auto to_m = vectorOf(request, "to_m", kMaxPosition_m);
+  const auto rotate_rad = vectorOf(request, "rotate_rad", kMaxTurn_rad);
+  if (!to_m && !rotate_rad) refuse("no target", "to_m or rotate_rad");
+  Target target{{.kind = kind, .limits = task.commands->limits}, from};
+  for (int i = 0; to_m && i < 3; ++i) {
+    const std::optional<double>& value = (*to_m)[i];
+    if (!value || (is_relative && *value == 0.0)) continue;
+    if (!controls(task, i))
+      refuse(fmt::format("to_m[{}] is given, but the task does not control {}", i, "xyz"[i]),
+             "null");
+    target.X_BaseTool.p_AB[i] = *value + (is_relative ? from.p_AB[i] : 0.0);
+  }
+  if (rotate_rad) {
+    if (!task.hasRotation())
+      refuse("rotate_rad is given, but the task does not control the orientation", "to_m alone");
+    Vector3 turn;
+    for (int i = 0; i < 3; ++i) {
+      if (!(*rotate_rad)[i]) refuse(fmt::format("rotate_rad[{}] is null", i), "three numbers");
+      turn[i] = *(*rotate_rad)[i];
+    }
+    const Matrix3 R = rotationMatrix(turn);
+    target.X_BaseTool.R_AB = is_relative ? Matrix3(R * from.R_AB) : R;
+  }
+  ToolOrder& order = target.order;
+  setSpeed(request, "speed_m_per_s", order.limits.position);
+  setSpeed(request, "speed_rad_per_s", order.limits.rotation);
+  if (request.contains("pause_s"))
+    order.pause_s = numberOf(request.at("pause_s"), "pause_s", 0.0, kMaxPause_s);
+  std::copy_n(target.X_BaseTool.p_AB.data(), 3, order.p_BaseTool_m);
+  std::copy_n(target.X_BaseTool.R_AB.data(), 9, order.R_BaseTool);
+  return target;
+}
+
+Json ToolRequests::move(const Json& request) {
+  refuseUnknown(request,
+                {"do", "to_m", "rotate_rad", "relative", "speed_m_per_s", "speed_rad_per_s"});
+  requireArm();
+  const bool is_stream = request.at("do") == "stream";
+  const Target goal = target(request, poseOf(sight_), is_stream ? Kind::kStream : Kind::kGo);
+  double duration_s = 0.0;
+  if (!is_stream) {
+    const std::string problem =
+        findUnreachable(scene_.controller,
+                        Eigen::Map<const Eigen::VectorXd>(sight_.q, scene_.controller.chain.size()),
+                        goal.X_BaseTool, goal.order.limits, scene_.period_s, duration_s);
+    if (!problem.empty()) throw InputError("move: " + problem);
+  }
+  return order(goal.order, duration_s);
+}
+
+Json ToolRequests::follow(const Json& request) {
+  refuseUnknown(request, {"do", "waypoints"});
+  requireArm();
+  const auto found = request.find("waypoints");
+  if (found == request.end() || !found->is_array() || found->empty())
+    refuse("no waypoints", "a list of them");
+  if (found->size() > ToolOrders::kMaxWaiting)
+    refuse(fmt::format("{} waypoints", found->size()),
+           fmt::format("at most {}", ToolOrders::kMaxWaiting));
+  std::vector<ToolOrder> orders;
+  Pose from = poseOf(sight_);
+  for (const Json& waypoint : *found) {
+    if (!waypoint.is_object()) refuse("a waypoint is no object", "to_m and more");
+    refuseUnknown(waypoint, {"to_m", "rotate_rad", "relative", "speed_m_per_s", "speed_rad_per_s",
+                             "pause_s"});
+    const Target next = target(waypoint, from, orders.empty() ? Kind::kGo : Kind::kGoNext);
+    orders.push_back(next.order);
+    from = next.X_BaseTool;
+  }
+  ++number_;
+  for (ToolOrder& order : orders) {
+    order.number = number_;
+    if (!link_.tool_orders.push(order)) throw InputError("too many orders at once, try again");
+  }
+  told_ = {number_, ToolState::kMoving, static_cast<int>(orders.size()) - 1};
+  return show();
+}
+
+Json ToolRequests::hold() {
+  requireArm();
+  ToolOrder hold;
+  hold.limits = scene_.controller.task.commands->limits;
+  return order(hold, 0.0);
+}
+
+Json ToolRequests::order(const ToolOrder& order, double duration_s) {
+  ToolOrder numbered = order;
+  numbered.number = number_ + 1;
+  if (!link_.tool_orders.push(numbered)) throw InputError("too many orders at once, try again");
+  ++number_;
+  told_ = {number_, order.kind == Kind::kHold ? ToolState::kHolding : ToolState::kMoving, 0};
+  Json json = show();
+  if (duration_s > 0.0) json["duration_s"] = duration_s;
+  return json;
+}
+
+/// The module that feels most, if it is in contact; else -1.
+int ToolRequests::leaning() const {
+  const auto modules = static_cast<int>(scene_.controller.tactile_modules.size());
+  if (modules == 0) return -1;
+  const int most =
+      static_cast<int>(std::max_element(sight_.force_N, sight_.force_N + modules) - sight_.force_N);
+  const double least_N = scene_.controller.gains.force.transition.release_force_N;
+  return sight_.force_N[most] > least_N ? most : -1;
+}
+
+Json ToolRequests::show() {
+  if (!scene_.controller.task.commands) return nullptr;
+  refresh();
+  // What the loop says may be of an order before the last one.
+  const ToolReport& report = sight_.report.number == number_ ? sight_.report : told_;
+  const Pose X = poseOf(sight_);
+  Json json = {{"number", number_},
+               {"state", stateName(report.state)},
+               {"waiting", report.waiting},
+               {"is_running", sight_.is_running},
+               {"p_BaseTool_m", vectorJson(X.p_AB)},
+               {"rotation_vector_rad", vectorJson(rotationVector(X.R_AB))},
+               {"contact", nullptr}};
+  const int module = leaning();
+  if (module < 0) return json;
+  const TactileModuleConfig& config = scene_.controller.tactile_modules[module];
+  ChainPose pose;
+  scene_.controller.chain.computePose(
+      Eigen::Map<const Eigen::VectorXd>(sight_.q, scene_.controller.chain.size()), pose);
+  const Pose X_BaseModule = framePose(pose, config.link);
+  const Vector3 p = X_BaseModule.p_AB + X_BaseModule.R_AB.col(0) * sight_.position_m[module];
+  json["contact"] = {{"module", scene_.module_links[module]},
+                     {"force_N", sight_.force_N[module]},
+                     {"position_m", sight_.position_m[module]},
+                     {"p_BaseContact_m", vectorJson(p)}};
+  return json;
+}
+
+std::string ToolRequests::eventText() const {
+  std::string text =
+      fmt::format("task: order {} {}", sight_.report.number, stateName(sight_.report.state));
+  if (sight_.report.state != ToolState::kBlocked && sight_.report.state != ToolState::kGivenUp)
+    return text;
+  const int module = leaning();
+  if (module < 0) return text + ", held off by no contact";
+  return text + fmt::format(" by a contact of {:.2f} N on {}, {:.3f} m along it",
+                            sight_.force_N[module], scene_.module_links[module],
+                            sight_.position_m[module]);
+}
+
+std::string ToolRequests::look() {
+  if (!scene_.controller.task.commands || number_ == 0) return "";
+  refresh();
+  const ToolReport& report = sight_.report;
+  if (report.number == 0 || (report.number == looked_.number && report.state == looked_.state))
+    return "";
+  looked_ = report;
+  return eventText();
+}
+
+}  // namespace tactus

@@ -1,0 +1,68 @@
+#include "tactus/scene/reach_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tactus/analysis/path_contacts.h"
+#include "tactus/control/controller.h"
+#include "tactus/control/path_progress.h"
+#include "tactus/math/rotation.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kMaxSteps = 3000.0;  ///< some milliseconds
+constexpr double kSettling_s = 1.0;
+
+/// What a task asks for and the tool does not have, m and rad.
+struct Missing {
+  double position_m = 0.0, rotation_rad = 0.0;
+};
+
+Missing missingTo(const TaskConfig& task, const Pose& target, const Pose& is) {
+  const Vector3 line = target.p_AB - is.p_AB;
+  const Vector3 turn = rotationVector(target.R_AB * is.R_AB.transpose());
+  Missing missing;
+  for (int i = 0; i < task.size; ++i) {
+    const int component = task.components[i];
+    double& sum = component < 3 ? missing.position_m : missing.rotation_rad;
+    sum = std::hypot(sum, component < 3 ? line[component] : turn[component - 3]);
+  }
+  return missing;
+}
+
+bool isAtItsLimit(const ControllerConfig& config, const JointVector& q) {
+  constexpr double kClose = 1e-6;
+  return ((q - config.limits.lower).array() < kClose).any() ||
+         ((config.limits.upper - q).array() < kClose).any();
+}
+
+}  // namespace
+
+std::string findUnreachable(const ControllerConfig& config, const JointVector& q,
+                            const Pose& X_BaseTool, const ToolMotionLimits& limits, double period_s,
+                            double& duration_s) {
+  const ControllerConfig alone = undisturbed(config);
+  const Controller controller(alone);
+  ControllerState state = controller.initialState(q);
+  ControllerOutput output;
+  state.tool_motion = state.tool_motion->to(0.0, X_BaseTool, limits);
+  duration_s = state.tool_motion->end_s();
+  const double step_s = std::max(period_s, duration_s / kMaxSteps);
+  const auto steps = std::llround((duration_s + kSettling_s) / step_s);
+  for (long long i = 0; i < steps; ++i)
+    controller.update(RobotInput{}, alone.gains, static_cast<double>(i) * step_s, step_s, state,
+                      output);
+  const TaskConfig& task = config.task;
+  const Missing missing = missingTo(task, X_BaseTool, tipPose(config.chain, state.q_desired));
+  if (missing.position_m <= task.commands->arrival_m &&
+      missing.rotation_rad <= task.commands->arrival_rad)
+    return "";
+  return fmt::format("out of reach: the way there ends {:.3g} mm and {:.3g} mrad off{}",
+                     1e3 * missing.position_m, 1e3 * missing.rotation_rad,
+                     isAtItsLimit(config, state.q_desired) ? ", with a joint at its limit" : "");
+}
+
+}  // namespace tactus

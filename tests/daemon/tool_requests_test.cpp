@@ -1,0 +1,182 @@
+#include "tactus/daemon/tool_requests.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/random.h"
+#include "support/shipped_scene.h"
+#include "tactus/daemon/control_requests.h"
+
+namespace tactus {
+namespace {
+
+/// What tells the tool, and the loop's side of the link.
+class ToolRequestsTest : public ::testing::Test {
+ protected:
+  ToolRequestsTest() { see(true); }
+
+  void see(bool is_running) {
+    const ControllerConfig& config = scene.controller;
+    const Pose X = tipPose(config.chain, config.q_start);
+    sight.is_running = is_running;
+    std::copy_n(config.q_start.data(), config.q_start.size(), sight.q);
+    std::copy_n(X.p_AB.data(), 3, sight.p_BaseTool_m);
+    std::copy_n(X.R_AB.data(), 9, sight.R_BaseTool);
+    link.tool_sights.put(sight);
+  }
+
+  Json ask(const Json& request) { return Json::parse(requests.answer(request.dump())); }
+
+  std::string refusal(const Json& request) {
+    const Json answer = ask(request);
+    EXPECT_EQ(answer.at("done"), false) << request;
+    ToolOrder order;
+    EXPECT_FALSE(link.tool_orders.pop(order)) << "half of it is done: " << request;
+    return answer.value("error", "");
+  }
+
+  const Scene scene = test::shippedScene("commands");
+  LoopLink link;
+  ControlRequests requests{scene, link};
+  ToolSight sight;
+};
+
+TEST_F(ToolRequestsTest, MovesToAPlaceAndTellsHowLongItTakes) {
+  const Json answer = ask({{"do", "move"}, {"to_m", {0.95, 0.4, 0.25}}});
+  ASSERT_EQ(answer.at("done"), true) << answer;
+  EXPECT_EQ(answer.at("task").at("state"), "moving");
+  const Vector3 line = Vector3(0.95, 0.4, 0.25) - Vector3(sight.p_BaseTool_m);
+  EXPECT_NEAR(answer.at("task").at("duration_s").get<double>(), line.norm() / 0.1 + 0.3, 1e-9);
+  ToolOrder order;
+  ASSERT_TRUE(link.tool_orders.pop(order));
+  EXPECT_EQ(order.number, answer.at("task").at("number"));
+  EXPECT_EQ(order.kind, ToolOrder::Kind::kGo);
+  EXPECT_EQ(Vector3(order.p_BaseTool_m), Vector3(0.95, 0.4, 0.25));
+  EXPECT_EQ(order.R_BaseTool[0], sight.R_BaseTool[0]);
+}
+
+TEST_F(ToolRequestsTest, CountsFromWhereTheToolIs) {
+  ASSERT_EQ(ask({{"do", "move"},
+                 {"to_m", {0.0, 0.1, nullptr}},
+                 {"relative", true},
+                 {"speed_m_per_s", 0.05}})
+                .at("done"),
+            true);
+  ToolOrder order;
+  ASSERT_TRUE(link.tool_orders.pop(order));
+  EXPECT_EQ(order.p_BaseTool_m[0], sight.p_BaseTool_m[0]);
+  EXPECT_EQ(order.p_BaseTool_m[1], sight.p_BaseTool_m[1] + 0.1);
+  EXPECT_EQ(order.p_BaseTool_m[2], sight.p_BaseTool_m[2]);
+  EXPECT_EQ(order.limits.position.max_speed, 0.05);
+}
+
+TEST_F(ToolRequestsTest, FollowsWaypointsEachFromTheOneBefore) {
+  const Json step = {{"to_m", {0.0, 0.05, 0.0}}, {"relative", true}, {"pause_s", 0.5}};
+  const Json answer = ask({{"do", "follow"}, {"waypoints", {step, step, step}}});
+  ASSERT_EQ(answer.at("done"), true) << answer;
+  EXPECT_EQ(answer.at("task").at("waiting"), 2);
+  ToolOrder order;
+  for (int i = 1; i <= 3; ++i) {
+    ASSERT_TRUE(link.tool_orders.pop(order));
+    EXPECT_NEAR(order.p_BaseTool_m[1], sight.p_BaseTool_m[1] + 0.05 * i, 1e-12);
+    EXPECT_EQ(order.kind, i == 1 ? ToolOrder::Kind::kGo : ToolOrder::Kind::kGoNext);
+    EXPECT_EQ(order.pause_s, 0.5);
+  }
+}
+
+TEST_F(ToolRequestsTest, RefusesInOneLineAndDoesNothing) {
+  const Json out = {{"do", "move"}, {"to_m", {3.0, 0.0, 0.0}}};
+  EXPECT_NE(refusal(out).find("out of reach"), std::string::npos) << refusal(out);
+  EXPECT_NE(refusal({{"do", "move"}}).find("no target"), std::string::npos);
+  EXPECT_NE(refusal({{"do", "move"}, {"to_m", {0.9, 0.3}}}).find("three numbers"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "move"}, {"to_m", {0.9, "x", 0.3}}}).find("to_m[1]"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "move"}, {"to_m", {0.9, 1e300, 0.3}}}).find("-100 to 100"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "move"}, {"to_m", {0.9, 0.3, 0.3}}, {"speed_m_per_s", 5}}).find("0.1"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "move"}, {"to_m", {0.9, 0.3, 0.3}}, {"sped", 5}}).find("sped"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "move"}, {"rotate_rad", {0, 0, 1}}}).find("orientation"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "follow"}, {"waypoints", Json::array()}}).find("waypoints"),
+            std::string::npos);
+  const Json far = {{"to_m", {0.9, 0.3, 0.3}}};
+  EXPECT_NE(refusal({{"do", "follow"}, {"waypoints", {far, 5}}}).find("no object"),
+            std::string::npos);
+  Json many = Json::array();
+  for (int i = 0; i < 257; ++i) many.push_back(far);
+  EXPECT_NE(refusal({{"do", "follow"}, {"waypoints", many}}).find("at most 256"),
+            std::string::npos);
+}
+
+TEST_F(ToolRequestsTest, RefusesWhileTheArmDoesNotRun) {
+  see(false);
+  EXPECT_NE(refusal({{"do", "move"}, {"to_m", {0.9, 0.3, 0.3}}}).find("does not run"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "hold"}}).find("does not run"), std::string::npos);
+}
+
+TEST_F(ToolRequestsTest, TellsWhatHoldsTheToolOff) {
+  ASSERT_EQ(ask({{"do", "move"}, {"to_m", {0.95, 0.4, 0.25}}}).at("done"), true);
+  sight.report = {1, ToolState::kBlocked, 0};
+  sight.force_N[0] = 4.5;
+  sight.position_m[0] = 0.2;
+  see(true);
+  const Json task = ask({{"do", "show"}}).at("task");
+  EXPECT_EQ(task.at("state"), "blocked");
+  EXPECT_EQ(task.at("contact").at("force_N"), 4.5);
+  EXPECT_EQ(task.at("contact").at("module"), "link4");
+  EXPECT_EQ(requests.look(),
+            "task: order 1 blocked by a contact of 4.50 N on link4, 0.200 m along it");
+  EXPECT_EQ(requests.look(), "");
+}
+
+TEST_F(ToolRequestsTest, FullQueuesAreTold) {
+  int taken = 0;
+  while (ask({{"do", "stream"}, {"to_m", {0.95, 0.3, 0.25}}}).at("done") == true) ++taken;
+  EXPECT_EQ(taken, static_cast<int>(LoopLink::kToolOrders));
+}
+
+TEST(ToolRequestsOfAPath, AreRefused) {
+  const Scene scene = test::shippedScene("scenario2_tactus");
+  LoopLink link;
+  ControlRequests requests(scene, link);
+  const Json answer = Json::parse(requests.answer(R"({"do":"move","to_m":[0.9,0.3,0.3]})"));
+  EXPECT_NE(answer.at("error").get<std::string>().find("task.source: commands"), std::string::npos);
+  EXPECT_EQ(Json::parse(requests.answer(R"({"do":"show"})")).at("task"), nullptr);
+}
+
+/// Whatever comes: an answer, and never an order that is not finite and within its limits.
+TEST_F(ToolRequestsTest, SurviveDamage) {
+  test::Random random(5001);
+  const std::vector<std::string> good = {
+      R"({"do":"move","to_m":[0.95,0.4,0.25],"speed_m_per_s":0.05,"relative":false})",
+      R"({"do":"stream","to_m":[0.95,null,0.25]})", R"({"do":"hold"})",
+      R"({"do":"follow","waypoints":[{"to_m":[0.95,0.4,0.25],"pause_s":1},{"to_m":[0,0,0.01],"relative":true}]})"};
+  for (int run = 0; run < 3000; ++run) {
+    std::string request = good[random.index(4)];
+    for (int i = random.integer(1, 4); i > 0; --i) {
+      const auto at = static_cast<std::size_t>(random.index(static_cast<int>(request.size())));
+      if (random.chance(0.5))
+        request[at] = static_cast<char>(random.integer(32, 126));
+      else
+        request.erase(at, 1);
+      if (request.empty()) request = " ";
+    }
+    const Json answer = Json::parse(requests.answer(request));
+    ASSERT_TRUE(answer.at("done").is_boolean());
+    ToolOrder order;
+    while (link.tool_orders.pop(order)) {
+      for (const double p : order.p_BaseTool_m) ASSERT_LE(std::abs(p), 200.0);
+      ASSERT_GT(order.limits.position.max_speed, 0.0);
+      ASSERT_LE(order.limits.position.max_speed, 0.1);
+      ASSERT_GE(order.pause_s, 0.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,145 @@
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "support/random.h"
+#include "support/shipped_scene.h"
+#include "support/telemetry.h"
+#include "support/virtual_robot_cell.h"
+#include "tactus/record/replay.h"
+
+/// The daemon's cycle with a tool that is told where to go, against the plant.
+namespace tactus {
+namespace {
+
+using test::VirtualRobotCell;
+
+Scene toldScene(std::vector<Override> overrides = {}) {
+  Scene scene = test::shippedScene("commands", overrides);
+  scene.hardware->gpio.emplace();
+  scene.hardware->gpio->enable.emplace();
+  return scene;
+}
+
+Pose toolPose(const VirtualRobotCell& cell, const Scene& scene) {
+  const CycleRecord record = cell.record();
+  return tipPose(scene.controller.chain,
+                 Eigen::Map<const Eigen::VectorXd>(record.q, scene.controller.chain.size()));
+}
+
+void tell(VirtualRobotCell& cell, const Pose& to, std::uint32_t number,
+          ToolOrder::Kind kind = ToolOrder::Kind::kGo) {
+  ToolOrder order;
+  order.number = number;
+  order.kind = kind;
+  std::copy_n(to.p_AB.data(), 3, order.p_BaseTool_m);
+  std::copy_n(to.R_AB.data(), 9, order.R_BaseTool);
+  cell.cycle.order(order);
+}
+
+/// As the loop does it.
+void stepPrepared(VirtualRobotCell& cell) {
+  cell.step();
+  cell.cycle.prepare();
+}
+
+TEST(CommandedCycle, LeadsTheToolToItsTarget) {
+  const Scene scene = toldScene({{"simulation.obstacles", "[]"}});
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  for (int i = 0; i < 500; ++i) stepPrepared(cell);
+  Pose target = toolPose(cell, scene);
+  target.p_AB += Vector3(0.02, 0.1, -0.03);
+  tell(cell, target, 1);
+  for (int i = 0; i < 3000; ++i) stepPrepared(cell);
+  EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kArrived);
+  EXPECT_LT((toolPose(cell, scene).p_AB - target.p_AB).norm(), 1e-3);
+}
+
+/// 20 targets and 50 sets of gains in contact, a hold, an e-stop and missed cycles.
+TEST(CommandedCycle, ReplaysToTheBitFromItsLog) {
+  const Scene scene = toldScene();
+  test::Random random(4001);
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  std::vector<CycleRecord> records{cell.record()};
+  const Pose start = toolPose(cell, scene);
+  std::uint32_t targets = 0, changes = 0;
+  double largest_N = 0.0;
+  for (int i = 0; i < 22000; ++i) {
+    if (i % 1000 == 500 && targets < 20) {
+      Pose target = start;
+      target.p_AB += Vector3(random.uniform(-0.05, 0.05), random.uniform(0.0, 0.44),
+                             random.uniform(-0.05, 0.05));
+      ++targets;
+      tell(cell, target, targets,
+           targets % 5 == 4 ? ToolOrder::Kind::kGoNext : ToolOrder::Kind::kGo);
+    }
+    if (i % 400 == 100 && changes < 50) {
+      GainOrder order{.number = ++changes, .gains = scene.controller.gains};
+      order.gains.force.time_constant_s = random.uniform(0.08, 0.15);
+      order.gains.task.drift_gain_per_s = random.uniform(3.0, 6.0);
+      cell.cycle.order(order);
+    }
+    cell.input.lines.enable = !(i > 6000 && i < 6300);
+    cell.input.lines.emergency_stop = i > 9000 && i < 9300;
+    const bool is_missed = i == 4567;
+    cell.input.missed_cycles = is_missed ? 2 : 0;
+    if (is_missed) cell.plant.advance(cell.t_ns += 2'000'000);
+    cell.step();
+    records.push_back(cell.record());
+    cell.cycle.prepare();
+    largest_N = std::max(largest_N, records.back().force_sensor_N[0]);
+  }
+  EXPECT_EQ(targets, 20u);
+  EXPECT_EQ(changes, 50u);
+  EXPECT_GT(largest_N, 1.0) << "no contact: this test is blind";
+  const auto log = test::readLog(test::writeLog(describeLog(scene), records));
+  ASSERT_EQ(log.records.size(), records.size());
+  const Controller controller(scene.controller);
+  Replayer replayer(controller, 9, scene.period_s);
+  ReplayComparison comparison({9, 3});
+  for (const CycleRecord& record : log.records) comparison.add(record, replayer.replay(record));
+  EXPECT_EQ(comparison.differingCycles(), 0)
+      << comparison.first()->column << " in cycle " << comparison.first()->cycle;
+  // Without what the tool was told it would be another run.
+  Replayer deaf(controller, 9, scene.period_s);
+  ReplayComparison other({9, 3});
+  for (CycleRecord record : log.records) {
+    record.tool_motion = log.records.front().tool_motion;
+    other.add(record, deaf.replay(record));
+  }
+  EXPECT_GT(other.differingCycles(), 1000) << "targets make no difference: this test is blind";
+}
+
+/// Nothing that was ordered before a stop moves the arm after it.
+TEST(CommandedCycle, RestsWhereAStopHasLeftIt) {
+  const Scene scene = toldScene({{"simulation.obstacles", "[]"}});
+  for (const bool is_emergency : {false, true}) {
+    VirtualRobotCell cell(scene);
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+    Pose target = toolPose(cell, scene);
+    target.p_AB.y() += 0.3;
+    tell(cell, target, 1);
+    tell(cell, toolPose(cell, scene), 1, ToolOrder::Kind::kGoNext);
+    for (int i = 0; i < 1000; ++i) stepPrepared(cell);
+    (is_emergency ? cell.input.lines.emergency_stop : cell.input.lines.enable) = is_emergency;
+    for (int i = 0; i < 1000; ++i) stepPrepared(cell);
+    EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kStopped);
+    const Vector3 rest = toolPose(cell, scene).p_AB;
+    EXPECT_GT((target.p_AB - rest).norm(), 0.1) << "it was stopped under way";
+    cell.input.lines.emergency_stop = false;
+    if (is_emergency) cell.switchEnable();
+    cell.input.lines.enable = true;
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 10000));
+    for (int i = 0; i < 3000; ++i) stepPrepared(cell);
+    EXPECT_LT((toolPose(cell, scene).p_AB - rest).norm(), 1e-3) << is_emergency;
+    tell(cell, target, 2);
+    for (int i = 0; i < 6000; ++i) stepPrepared(cell);
+    EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kArrived);
+    EXPECT_LT((toolPose(cell, scene).p_AB - target.p_AB).norm(), 2e-3);
+  }
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,205 @@
+#include "tactus/supervisor/tool_orders.h"
+
+#include <gtest/gtest.h>
+
+namespace tactus {
+namespace {
+
+constexpr double kOrdersPeriod_s = 0.001;
+
+/// Orders, a reference, and a tool that follows it but for what the test says.
+struct OrdersRig {
+  TaskCommandsConfig config = [] {
+    TaskCommandsConfig c;
+    c.give_up_after_s = 2.0;
+    return c;
+  }();
+  ToolOrders orders{config, kOrdersPeriod_s};
+  ToolMotion motion{Pose{Matrix3::Identity(), Vector3::Zero()}};
+  ToolWatch seen = [] {
+    ToolWatch watch;
+    watch.X_BaseTool = {Matrix3::Identity(), Vector3::Zero()};
+    watch.is_running = true;
+    return watch;
+  }();
+  bool is_held_off = false;
+
+  void step() {
+    const ToolReference reference = motion.evaluate(seen.path_time_s);
+    if (!is_held_off) seen.X_BaseTool = {reference.R_BaseTool, reference.p_BaseTool};
+    seen.lag_m = (reference.p_BaseTool - seen.X_BaseTool.p_AB).norm();
+    seen.progress = is_held_off && seen.lag_m > 0.02 ? 0.0 : 1.0;
+    seen.path_time_s += seen.progress * kOrdersPeriod_s;
+    orders.update(seen, motion);
+  }
+
+  void run(double duration_s) {
+    for (int i = 0; i < duration_s / kOrdersPeriod_s; ++i) step();
+  }
+
+  ToolState state() const { return orders.report().state; }
+  Vector3 place() const { return motion.evaluate(seen.path_time_s).p_BaseTool; }
+};
+
+ToolOrder orderTo(const Vector3& p, std::uint32_t number,
+                  ToolOrder::Kind kind = ToolOrder::Kind::kGo) {
+  ToolOrder order;
+  order.number = number;
+  order.kind = kind;
+  std::copy_n(p.data(), 3, order.p_BaseTool_m);
+  return order;
+}
+
+TEST(ToolOrders, HoldUntilTheyAreTold) {
+  OrdersRig rig;
+  rig.run(1.0);
+  EXPECT_EQ(rig.state(), ToolState::kHolding);
+  EXPECT_EQ(rig.place(), Vector3(Vector3::Zero()));
+}
+
+TEST(ToolOrders, LeadToATargetAndSaySo) {
+  OrdersRig rig;
+  const Vector3 target(0.1, -0.05, 0.02);
+  rig.orders.order(orderTo(target, 7));
+  rig.step();
+  EXPECT_EQ(rig.state(), ToolState::kMoving);
+  EXPECT_EQ(rig.orders.report().number, 7u);
+  rig.run(5.0);
+  EXPECT_EQ(rig.state(), ToolState::kArrived);
+  EXPECT_EQ(rig.place(), target);
+}
+
+TEST(ToolOrders, GoFromWaypointToWaypointWithTheirPauses) {
+  OrdersRig rig;
+  ToolOrder first = orderTo({0.1, 0.0, 0.0}, 1);
+  first.pause_s = 1.0;
+  rig.orders.order(first);
+  for (int i = 0; i < 3; ++i)
+    rig.orders.order(orderTo({0.1, 0.1 * (i + 1), 0.0}, 1, ToolOrder::Kind::kGoNext));
+  rig.step();
+  EXPECT_EQ(rig.orders.report().waiting, 3);
+  while (rig.state() != ToolState::kArrived) rig.step();
+  rig.run(0.95);
+  EXPECT_EQ(rig.state(), ToolState::kArrived);
+  EXPECT_EQ(rig.place(), Vector3(0.1, 0.0, 0.0));
+  rig.run(0.1);
+  EXPECT_EQ(rig.state(), ToolState::kMoving);
+  rig.run(10.0);
+  EXPECT_EQ(rig.place(), Vector3(0.1, 0.1 * 3, 0.0));
+  EXPECT_EQ(rig.orders.report().waiting, 0);
+}
+
+TEST(ToolOrders, ANewOneTakesThePlaceOfAll) {
+  OrdersRig rig;
+  rig.orders.order(orderTo({0.3, 0.0, 0.0}, 1));
+  rig.orders.order(orderTo({0.0, 0.3, 0.0}, 1, ToolOrder::Kind::kGoNext));
+  rig.run(0.5);
+  rig.orders.order(orderTo({0.0, 0.0, 0.2}, 2));
+  rig.run(6.0);
+  EXPECT_EQ(rig.place(), Vector3(0.0, 0.0, 0.2));
+  EXPECT_EQ(rig.orders.report(), (ToolReport{2, ToolState::kArrived, 0}));
+}
+
+TEST(ToolOrders, HoldStopsWithinTheLimitsAndForgets) {
+  OrdersRig rig;
+  rig.orders.order(orderTo({0.3, 0.0, 0.0}, 1));
+  rig.orders.order(orderTo({0.0, 0.3, 0.0}, 1, ToolOrder::Kind::kGoNext));
+  rig.run(1.0);
+  const double x = rig.place().x();
+  ToolOrder hold;
+  hold.number = 2;
+  rig.orders.order(hold);
+  rig.run(5.0);
+  EXPECT_EQ(rig.state(), ToolState::kHolding);
+  EXPECT_NEAR(rig.place().x(), x + 0.1 * 0.3 / 2.0, 1e-3);  // from 0.1 m/s, in 0.3 s
+  EXPECT_EQ(rig.motion.evaluate(rig.seen.path_time_s).v_BaseTool, Vector3(Vector3::Zero()));
+}
+
+TEST(ToolOrders, GiveUpWhereTheToolIsHeldOff) {
+  OrdersRig rig;
+  rig.orders.order(orderTo({0.3, 0.0, 0.0}, 1));
+  rig.orders.order(orderTo({0.0, 0.3, 0.0}, 1, ToolOrder::Kind::kGoNext));
+  rig.run(1.0);
+  rig.is_held_off = true;
+  const Vector3 held = rig.seen.X_BaseTool.p_AB;
+  rig.run(1.0);
+  EXPECT_EQ(rig.state(), ToolState::kBlocked);
+  EXPECT_GT((rig.place() - held).norm(), 0.01) << "the reference waits in front of the tool";
+  rig.run(2.0);
+  EXPECT_EQ(rig.state(), ToolState::kGivenUp);
+  EXPECT_EQ(rig.place(), held);
+  EXPECT_EQ(rig.orders.report().waiting, 0);
+  rig.is_held_off = false;
+  rig.run(1.0);
+  EXPECT_EQ(rig.place(), held) << "what was given up is forgotten";
+}
+
+TEST(ToolOrders, LeadAwayFromWhatHoldsTheToolOff) {
+  OrdersRig rig;
+  rig.orders.order(orderTo({0.3, 0.0, 0.0}, 1));
+  rig.run(1.0);
+  rig.is_held_off = true;
+  rig.run(1.0);
+  rig.orders.order(orderTo({0.0, 0.0, 0.0}, 2));
+  rig.step();
+  EXPECT_EQ(rig.place(), rig.seen.X_BaseTool.p_AB) << "from the tool, not from what it waited for";
+  rig.is_held_off = false;
+  rig.run(3.0);
+  EXPECT_EQ(rig.state(), ToolState::kArrived);
+}
+
+TEST(ToolOrders, BlockedGoesOnOnceTheWayIsFree) {
+  OrdersRig rig;
+  rig.orders.order(orderTo({0.3, 0.0, 0.0}, 1));
+  rig.run(1.0);
+  rig.is_held_off = true;
+  rig.run(1.0);
+  rig.is_held_off = false;
+  rig.run(5.0);
+  EXPECT_EQ(rig.orders.report(), (ToolReport{1, ToolState::kArrived, 0}));
+}
+
+TEST(ToolOrders, AStreamThatFallsSilentStops) {
+  OrdersRig rig;
+  for (int i = 1; i <= 100; ++i) {
+    rig.orders.order(orderTo({0.005 * i, 0.0, 0.0}, 3, ToolOrder::Kind::kStream));
+    rig.run(0.01);
+  }
+  EXPECT_EQ(rig.state(), ToolState::kMoving);
+  const double x = rig.place().x();
+  rig.run(0.2);
+  EXPECT_EQ(rig.state(), ToolState::kLate);
+  rig.run(2.0);
+  EXPECT_EQ(rig.motion.evaluate(rig.seen.path_time_s).v_BaseTool, Vector3(Vector3::Zero()));
+  EXPECT_LT(rig.place().x(), x + 0.03);
+}
+
+TEST(ToolOrders, AStopForgetsAll) {
+  OrdersRig rig;
+  rig.orders.order(orderTo({0.3, 0.0, 0.0}, 1));
+  rig.orders.order(orderTo({0.0, 0.3, 0.0}, 1, ToolOrder::Kind::kGoNext));
+  rig.run(1.0);
+  rig.seen.is_running = false;
+  rig.step();
+  EXPECT_EQ(rig.orders.report(), (ToolReport{1, ToolState::kStopped, 0}));
+  rig.orders.order(orderTo({0.1, 0.0, 0.0}, 2));  // comes while the arm does not run
+  rig.step();
+  EXPECT_EQ(rig.orders.report(), (ToolReport{2, ToolState::kStopped, 0}));
+  rig.seen.is_running = true;
+  const std::uint64_t number = rig.motion.plan().number;
+  rig.run(1.0);
+  EXPECT_EQ(rig.motion.plan().number, number);
+}
+
+TEST(ToolOrders, MoreThanFitAreRefusedAsAWhole) {
+  OrdersRig rig;
+  rig.orders.order(orderTo({0.3, 0.0, 0.0}, 1));
+  for (std::size_t i = 0; i <= ToolOrders::kMaxWaiting; ++i)
+    rig.orders.order(orderTo({0.0, 0.3, 0.0}, 1, ToolOrder::Kind::kGoNext));
+  EXPECT_EQ(rig.state(), ToolState::kStopped);
+  rig.run(1.0);
+  EXPECT_EQ(rig.place(), Vector3(Vector3::Zero()));
+}
+
+}  // namespace
+}  // namespace tactus
