@@ -53,6 +53,9 @@ int tactusProgram(int argc, char** argv) {
   addUndoCommand(app, exit_code);
   addDiffCommand(app, exit_code);
   addSaveCommand(app, exit_code);
+  addMoveCommand(app, exit_code);
+  addFollowCommand(app, exit_code);
+  addHoldCommand(app, exit_code);
   try {
     if (argc > 1) refuseUnknownCommand(app, argv[1]);
     app.parse(argc, argv);

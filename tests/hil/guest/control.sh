@@ -1,6 +1,7 @@
 # Gains set, undone and reloaded while the arm moves in contact, beside clients that mean harm.
 . "$ROOT/guest/common.sh"
 . "$ROOT/guest/daemon.sh"
+. "$ROOT/guest/asking.sh"
 
 export RUNTIME_DIRECTORY=/tmp/run
 out=$ROOT/out/control
@@ -9,25 +10,6 @@ scene=/tmp/control.yaml
 # write_scene DAMPING
 write_scene() {
   printf 'extends: %s\ncontroller:\n  damping: %s\n' "$ROOT/tests/hil/scenes/in_contact.yaml" "$1" >$scene
-}
-
-# refused WORD COMMAND...: with exit status 1 and this word.
-refused() {
-  word=$1
-  shift
-  "$@" >>"$out/told.txt" 2>"$out/refused.txt"
-  equal "exit status of $*" $? 1
-  grep -q "$word" "$out/refused.txt" || fail "$*: $(cat "$out/refused.txt")"
-  cat "$out/refused.txt" >>"$out/told.txt"
-}
-
-# told WORD COMMAND...
-told() {
-  word=$1
-  shift
-  "$@" >"$out/answer.txt" 2>&1 || fail "$*: $(cat "$out/answer.txt")"
-  cat "$out/answer.txt" >>"$out/told.txt"
-  grep -q "$word" "$out/answer.txt" || fail "$*: no '$word' in $(cat "$out/answer.txt")"
 }
 
 mkdir -p $RUNTIME_DIRECTORY

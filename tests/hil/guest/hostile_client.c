@@ -18,7 +18,10 @@ enum { kConnections = 12, kLongest = 20000 };
 static const char* const kRequests[] = {
     "{\"do\":\"set\",\"values\":{\"controller.damping\":0.6},\"for_s\":60}",
     "{\"do\":\"set\",\"values\":{\"controller.time_constant_s\":1e-9,\"robot.tip\":\"x\"}}",
-    "{\"do\":\"show\"}", "{\"do\":\"undo\",\"for_s\":0}", "[[[[[[[[[[[[[[[[[[[[[[[["};
+    "{\"do\":\"show\"}", "{\"do\":\"undo\",\"for_s\":0}",
+    "{\"do\":\"move\",\"to_m\":[0,0.02,0],\"relative\":true,\"speed_m_per_s\":0.05}",
+    "{\"do\":\"follow\",\"waypoints\":[{\"to_m\":[0,0.01,0],\"relative\":true}]}",
+    "{\"do\":\"hold\"}", "[[[[[[[[[[[[[[[[[[[[[[[["};
 
 static uint64_t state;
 

@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "tactus/cli/commands.h"
+#include "tactus/daemon/control_client.h"
+#include "tactus/daemon/control_socket.h"
+#include "tactus/scene/located_error.h"
+#include "tactus/scene/source_reader.h"
+#include "tactus/scene/yaml_tree.h"
+
+/// Where the tool of the running daemon shall go: move, follow, hold.
+namespace tactus {
+namespace {
+
+constexpr std::chrono::milliseconds kLookAgain{50};
+
+struct MoveOptions {
+  std::string to, rotate, waypoints;
+  bool is_relative = false;
+  std::optional<double> speed_m_per_s, speed_rad_per_s;
+  bool waits = false;
+  bool json = false;
+};
+
+/// "0.9,-,0.25": a dash stays as it is.
+Json vectorOf(const char* option, const std::string& text) {
+  Json vector = Json::array();
+  std::size_t start = 0;
+  while (start <= text.size()) {
+    const std::size_t comma = std::min(text.find(',', start), text.size());
+    const std::string word = text.substr(start, comma - start);
+    start = comma + 1;
+    if (word == "-") {
+      vector.push_back(nullptr);
+      continue;
+    }
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || end != word.data() + word.size())
+      throw InputError(fmt::format("{} {}: {} is no number, expected three, such as 0.9,-,0.25",
+                                   option, escaped(text), inQuotes(word)));
+    vector.push_back(number);
+  }
+  return vector;
+}
+
+Json moveRequest(const MoveOptions& options) {
+  Json request = {{"do", "move"}};
+  if (!options.to.empty()) request["to_m"] = vectorOf("--to", options.to);
+  if (!options.rotate.empty()) request["rotate_rad"] = vectorOf("--rotate", options.rotate);
+  if (options.is_relative) request["relative"] = true;
+  if (options.speed_m_per_s) request["speed_m_per_s"] = *options.speed_m_per_s;
+  if (options.speed_rad_per_s) request["speed_rad_per_s"] = *options.speed_rad_per_s;
+  return request;
+}
+
+/// What a file says, as JSON; whether that is right, the daemon judges.
+Json jsonOf(const YamlNode& node) {
+  switch (node.kind) {
+    case YamlNode::Kind::kList: {
+      Json list = Json::array();
+      for (const YamlNode& item : node.items) list.push_back(jsonOf(item));
+      return list;
+    }
+    case YamlNode::Kind::kMap: {
+      Json map = Json::object();
+      for (const YamlEntry& entry : node.entries) map[entry.key] = jsonOf(entry.value);
+      return map;
+    }
+    case YamlNode::Kind::kScalar: {
+      const Json value = Json::parse(node.text, nullptr, false);
+      return !node.quoted && (value.is_number() || value.is_boolean()) ? value : Json(node.text);
+    }
+    default:
+      return nullptr;
+  }
+}
+
+std::string contactText(const Json& contact) {
+  if (contact.is_null()) return "";
+  return fmt::format(" by a contact of {:.2f} N on {}, {:.3f} m along it",
+                     contact.at("force_N").get<double>(),
+                     escaped(contact.at("module").get<std::string>()),
+                     contact.at("position_m").get<double>());
+}
+
+std::string taskText(const Json& task) {
+  const auto state = task.at("state").get<std::string>();
+  if (state == "moving") return "on its way\n";
+  if (state == "arrived") return "arrived\n";
+  if (state == "holding") return "holding\n";
+  if (state == "blocked") return fmt::format("blocked{}\n", contactText(task.at("contact")));
+  if (state == "given_up")
+    return fmt::format("given up, was blocked{}\n", contactText(task.at("contact")));
+  if (state == "stopped") return "the arm was stopped\n";
+  return escaped(state) + "\n";
+}
+
+bool isUnderWay(const Json& task) {
+  return task.at("state") == "moving" || task.at("state") == "blocked" ||
+         task.at("waiting").get<int>() > 0;
+}
+
+/// The task's last state; of another order than ours it says nothing.
+Json waitFor(const ControlClient& daemon, Json task) {
+  const Json number = task.at("number");
+  while (isUnderWay(task)) {
+    std::this_thread::sleep_for(kLookAgain);
+    task = daemon.ask({{"do", "show"}}).at("task");
+    if (task.at("number") != number)
+      throw InputError("another order has taken the place of this one");
+  }
+  return task;
+}
+
+int tell(const Json& request, const MoveOptions& options) {
+  try {
+    const ControlClient daemon(controlPath());
+    Json task = daemon.ask(request).at("task");
+    if (options.waits) task = waitFor(daemon, std::move(task));
+    std::fputs((options.json ? jsonText(task) : taskText(task)).c_str(), stdout);
+    const bool is_well = task.at("state") != "given_up" && task.at("state") != "stopped";
+    return is_well ? kExitDone : kExitFault;
+  } catch (const InputError& error) {
+    if (options.json)
+      std::fputs(jsonText({{"done", false}, {"error", error.what()}}).c_str(), stdout);
+    throw;
+  }
+}
+
+CLI::App* addOrder(CLI::App& app, const char* name, const char* help, MoveOptions& options) {
+  CLI::App* command = app.add_subcommand(name, help);
+  command->add_flag("--json", options.json, "Print JSON");
+  return command;
+}
+
+}  // namespace
+
+void addMoveCommand(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<MoveOptions>();
+  CLI::App* command =
+      addOrder(app, "move", "Tell the tool of the running daemon where to go", *options);
+  command->add_option("--to", options->to, "X,Y,Z in m, base frame; - for one that stays");
+  command->add_option("--rotate", options->rotate,
+                      "RX,RY,RZ in rad: axis times angle, base frame");
+  command->add_flag("--relative", options->is_relative, "Both from where the tool is");
+  command->add_option("--speed", options->speed_m_per_s, "At most so many m/s");
+  command->add_option("--turn-speed", options->speed_rad_per_s, "At most so many rad/s");
+  command->add_flag("--wait", options->waits, "Until it has arrived, or given up");
+  command->callback([options, &exit_code] { exit_code = tell(moveRequest(*options), *options); });
+}
+
+void addFollowCommand(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<MoveOptions>();
+  CLI::App* command =
+      addOrder(app, "follow", "Lead the tool of the running daemon along waypoints", *options);
+  command->add_option("waypoints", options->waypoints, "YAML: a list of what move is told")
+      ->required();
+  command->add_flag("--wait", options->waits, "Until it has arrived at the last, or given up");
+  command->callback([options, &exit_code] {
+    const std::string& path = options->waypoints;
+    const Json waypoints = jsonOf(parseYaml({path, readFromDisk(path)}));
+    exit_code = tell({{"do", "follow"}, {"waypoints", waypoints}}, *options);
+  });
+}
+
+void addHoldCommand(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<MoveOptions>();
+  CLI::App* command =
+      addOrder(app, "hold", "Stop the tool of the running daemon where it is", *options);
+  command->callback([options, &exit_code] { exit_code = tell({{"do", "hold"}}, *options); });
+}
+
+}  // namespace tactus

@@ -1,0 +1,57 @@
+# A tool that is told where to go: moves, waypoints, a stream that breaks off, a stop in between.
+. "$ROOT/guest/common.sh"
+. "$ROOT/guest/daemon.sh"
+. "$ROOT/guest/asking.sh"
+
+export RUNTIME_DIRECTORY=/tmp/run
+out=$ROOT/out/told
+scene=$ROOT/tests/hil/scenes/told.yaml
+
+mkdir -p $RUNTIME_DIRECTORY
+start_buses
+start_plant told "$scene"
+permit_motion
+tactusd "$scene" -o "$ROOT/out" 2>"$out/tactusd.txt" & daemon=$!
+wait_for running "$out/tactusd.txt"
+sleep 0.2
+
+told arrived tactus move --relative --to -,0.05,0.01 --wait
+refused 'out of reach' tactus move --to 5,0,0
+refused 'does not control' tactus move --rotate 0,0,0.1
+refused 'no number' tactus move --to 0.9,north,0.2
+cat >/tmp/waypoints.yaml <<END
+- {to_m: [0, 0.06, 0], relative: true, pause_s: 0.1}
+- {to_m: [0.02, 0, ~], relative: true, speed_m_per_s: 0.05}
+- {to_m: [-0.02, -0.05, 0], relative: true}
+END
+told arrived tactus follow /tmp/waypoints.yaml --wait
+printf -- '- {to_m: [0, 0.1, 0], relative: true}\n- {to: [1, 2, 3]}\n' >/tmp/waypoints.yaml
+refused 'to_m' tactus follow /tmp/waypoints.yaml
+
+told way tactus move --relative --to 0,0.1,0
+sleep 0.5
+told holding tactus hold
+
+stream_client 400 $RUNTIME_DIRECTORY/control || fail "stream_client exits with $?"
+wait_for late "$out/tactusd.txt"
+stream_client 100000 $RUNTIME_DIRECTORY/control & killed=$!
+sleep 0.3
+kill -9 $killed
+wait_for late "$out/tactusd.txt" 2
+
+told way tactus move --relative --to 0,-0.1,0
+sleep 0.3
+line $enable 0 >/dev/null
+wait_for holding "$out/tactusd.txt"
+wait_for stopped "$out/tactusd.txt"
+refused 'does not run' tactus move --relative --to 0,-0.1,0
+line $enable 1 >/dev/null
+wait_for running "$out/tactusd.txt" 2
+sleep 0.3
+told arrived tactus move --relative --to 0,-0.02,0 --wait
+hostile_client 3 3000 $RUNTIME_DIRECTORY/control || fail "hostile_client exits with $?"
+
+kill $daemon
+wait $daemon || fail "tactusd exits with $?"
+stop_plant
+tactus replay "$out/run.ulg" >"$out/replay.txt" || fail "the replay differs: $(cat "$out/replay.txt")"
