@@ -87,10 +87,9 @@ Json jsonOf(const YamlNode& node) {
 
 std::string contactText(const Json& contact) {
   if (contact.is_null()) return "";
-  return fmt::format(" by a contact of {:.2f} N on {}, {:.3f} m along it",
-                     contact.at("force_N").get<double>(),
-                     escaped(contact.at("module").get<std::string>()),
-                     contact.at("position_m").get<double>());
+  return fmt::format(
+      " by a contact of {:.2f} N on {}, {:.3f} m along it", contact.at("force_N").get<double>(),
+      escaped(contact.at("module").get<std::string>()), contact.at("position_m").get<double>());
 }
 
 std::string taskText(const Json& task) {
@@ -150,8 +149,7 @@ void addMoveCommand(CLI::App& app, int& exit_code) {
   CLI::App* command =
       addOrder(app, "move", "Tell the tool of the running daemon where to go", *options);
   command->add_option("--to", options->to, "X,Y,Z in m, base frame; - for one that stays");
-  command->add_option("--rotate", options->rotate,
-                      "RX,RY,RZ in rad: axis times angle, base frame");
+  command->add_option("--rotate", options->rotate, "RX,RY,RZ in rad: axis times angle, base frame");
   command->add_flag("--relative", options->is_relative, "Both from where the tool is");
   command->add_option("--speed", options->speed_m_per_s, "At most so many m/s");
   command->add_option("--turn-speed", options->speed_rad_per_s, "At most so many rad/s");

@@ -119,6 +119,12 @@ std::optional<PeakReport> worstPeak(const Scene& scene, const PathContacts& cont
   return worst;
 }
 
+/// Where a tool that is told leads the arm is not known: covers may be as fast as it.
+void assumeSpeeds(const TaskCommandsConfig& commands, PathContacts& contacts) {
+  for (FastestCover& fastest : contacts.fastest)
+    if (fastest.speed_m_per_s > 0.0) fastest.speed_m_per_s = commands.limits.position.max_speed;
+}
+
 MovingObstacle bearableMotion(const ForceGains& gains, double stiffest_N_per_m) {
   const double m = std::max(stiffest_N_per_m, gains.min_approach_stiffness_N_per_m);
   const double limit_N = gains.activation_force_N + gains.contact_threshold_N;
@@ -161,7 +167,7 @@ std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& cont
   for (std::size_t i = 0; i < contacts.touches.size(); ++i) {
     const std::optional<PathTouch>& touch = contacts.touches[i];
     if (!touch && contacts.is_complete && !scene.controller.tactile_modules.empty() &&
-        isOnPath(scene, contacts, scene.plant.obstacles[i])) {
+        !scene.controller.task.commands && isOnPath(scene, contacts, scene.plant.obstacles[i])) {
       warnings.push_back(
           fmt::format("obstacle {} is never touched: no cover comes to it on the scene's path", i));
     }
@@ -190,8 +196,9 @@ double PeakReport::peak_N() const { return std::max(delay_peak_N, blow_peak_N.va
 ExpectedContact checkContacts(const Scene& scene, double stiffest_N_per_m) {
   ExpectedContact report;
   if (scene.controller.tactile_modules.empty() && scene.plant.capsules.empty()) return report;
-  const PathContacts contacts =
+  PathContacts contacts =
       followPath(scene.controller, scene.plant, scene.period_s, scene.duration_s);
+  if (scene.controller.task.commands) assumeSpeeds(*scene.controller.task.commands, contacts);
   if (scene.controller.force_control) {
     report.touches = touchesOf(scene, contacts);
     report.peak = worstPeak(scene, contacts, stiffest_N_per_m);

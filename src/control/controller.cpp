@@ -21,10 +21,6 @@ void replaceRotation(const TaskConfig& task, const Vector3& rotation_vector,
     if (task.components[i] >= 3) w[i] = rotation_vector[task.components[i] - 3];
 }
 
-std::uint64_t motionNumber(const ControllerState& state) noexcept {
-  return state.tool_motion ? state.tool_motion->plan().number : 0;
-}
-
 }  // namespace
 
 Controller::Controller(const ControllerConfig& config)
@@ -82,7 +78,6 @@ void Controller::prepare(const Gains& gains, double t_s, ControllerState& state,
   prepared.is_leaning = state.is_leaning;
   prepared.task_gains = gains.task;
   prepared.limit_gains = gains.joint_limit_avoidance;
-  prepared.tool_motion = motionNumber(state);
   computeMotion(gains, prepared.path_time_s, state, prepared);
 }
 
@@ -92,8 +87,7 @@ void Controller::update(const RobotInput& input, const Gains& gains, double t_s,
   output.path_time_s = t_s - state.waited_s;
   if (prepared.path_time_s != output.path_time_s || prepared.q_desired != state.q_desired ||
       prepared.push != state.contact.push || prepared.return_share != state.return_share ||
-      prepared.is_leaning != state.is_leaning || prepared.tool_motion != motionNumber(state) ||
-      !isSame(prepared.task_gains, gains.task) ||
+      prepared.is_leaning != state.is_leaning || !isSame(prepared.task_gains, gains.task) ||
       !isSame(prepared.limit_gains, gains.joint_limit_avoidance))
     computeMotion(gains, output.path_time_s, state, prepared);
   prepared.path_time_s = std::numeric_limits<double>::quiet_NaN();
@@ -205,12 +199,6 @@ void Controller::avoidJointLimits(const Gains& gains, const TaskKinematics& kine
   motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 
-ToolReference Controller::reference(double path_time_s,
-                                    const ControllerState& state) const noexcept {
-  return state.tool_motion ? state.tool_motion->evaluate(path_time_s)
-                           : trajectory_.evaluate(path_time_s);
-}
-
 ToolAcceleration Controller::referenceAcceleration(double path_time_s,
                                                    const ControllerState& state) const noexcept {
   return state.tool_motion ? state.tool_motion->evaluateAcceleration(path_time_s)
@@ -222,7 +210,9 @@ void Controller::computeKinematics(double path_time_s, const ControllerState& st
   const TaskConfig& task = config_.task;
   TaskKinematics& kinematics = prepared.kinematics;
   config_.chain.computePose(state.q_desired, kinematics.pose);
-  const ToolReference reference = this->reference(path_time_s, state);
+  ToolReference reference = trajectory_.evaluate(path_time_s);
+  if (state.tool_motion) [[unlikely]]
+    reference = state.tool_motion->evaluate(path_time_s);
   Twist w = Twist::Zero();
   Twist w_d_dot;
   Twist error = Twist::Zero();

@@ -142,6 +142,18 @@ ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from,
   return target;
 }
 
+JointVector ToolRequests::jointsOf(const ToolSight& sight) const {
+  return Eigen::Map<const Eigen::VectorXd>(sight.q, scene_.controller.chain.size());
+}
+
+Reach ToolRequests::reach(const std::string& what, const JointVector& q,
+                          const Target& target) const {
+  Reach reach =
+      followTo(scene_.controller, q, target.X_BaseTool, target.order.limits, scene_.period_s);
+  if (!reach.problem.empty()) throw InputError(fmt::format("{}: {}", what, reach.problem));
+  return reach;
+}
+
 Json ToolRequests::move(const Json& request) {
   refuseUnknown(request,
                 {"do", "to_m", "rotate_rad", "relative", "speed_m_per_s", "speed_rad_per_s"});
@@ -149,13 +161,7 @@ Json ToolRequests::move(const Json& request) {
   const bool is_stream = request.at("do") == "stream";
   const Target goal = target(request, poseOf(sight_), is_stream ? Kind::kStream : Kind::kGo);
   double duration_s = 0.0;
-  if (!is_stream) {
-    const std::string problem =
-        findUnreachable(scene_.controller,
-                        Eigen::Map<const Eigen::VectorXd>(sight_.q, scene_.controller.chain.size()),
-                        goal.X_BaseTool, goal.order.limits, scene_.period_s, duration_s);
-    if (!problem.empty()) throw InputError("move: " + problem);
-  }
+  if (!is_stream) duration_s = reach("move", jointsOf(sight_), goal).duration_s;
   return order(goal.order, duration_s);
 }
 
@@ -170,11 +176,13 @@ Json ToolRequests::follow(const Json& request) {
            fmt::format("at most {}", ToolOrders::kMaxWaiting));
   std::vector<ToolOrder> orders;
   Pose from = poseOf(sight_);
+  JointVector q = jointsOf(sight_);
   for (const Json& waypoint : *found) {
     if (!waypoint.is_object()) refuse("a waypoint is no object", "to_m and more");
     refuseUnknown(waypoint, {"to_m", "rotate_rad", "relative", "speed_m_per_s", "speed_rad_per_s",
                              "pause_s"});
     const Target next = target(waypoint, from, orders.empty() ? Kind::kGo : Kind::kGoNext);
+    q = reach(fmt::format("waypoint {}", orders.size() + 1), q, next).q_end;
     orders.push_back(next.order);
     from = next.X_BaseTool;
   }

@@ -13,7 +13,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kMaxSteps = 3000.0;  ///< some milliseconds
+constexpr double kMaxSteps = 2000.0;  ///< some milliseconds
 constexpr double kSettling_s = 1.0;
 
 /// What a task asks for and the tool does not have, m and rad.
@@ -41,28 +41,30 @@ bool isAtItsLimit(const ControllerConfig& config, const JointVector& q) {
 
 }  // namespace
 
-std::string findUnreachable(const ControllerConfig& config, const JointVector& q,
-                            const Pose& X_BaseTool, const ToolMotionLimits& limits, double period_s,
-                            double& duration_s) {
+Reach followTo(const ControllerConfig& config, const JointVector& q, const Pose& X_BaseTool,
+               const ToolMotionLimits& limits, double period_s) {
   const ControllerConfig alone = undisturbed(config);
   const Controller controller(alone);
   ControllerState state = controller.initialState(q);
   ControllerOutput output;
   state.tool_motion = state.tool_motion->to(0.0, X_BaseTool, limits);
-  duration_s = state.tool_motion->end_s();
+  const double duration_s = state.tool_motion->end_s();
   const double step_s = std::max(period_s, duration_s / kMaxSteps);
   const auto steps = std::llround((duration_s + kSettling_s) / step_s);
   for (long long i = 0; i < steps; ++i)
     controller.update(RobotInput{}, alone.gains, static_cast<double>(i) * step_s, step_s, state,
                       output);
+  Reach reach{"", duration_s, state.q_desired};
   const TaskConfig& task = config.task;
   const Missing missing = missingTo(task, X_BaseTool, tipPose(config.chain, state.q_desired));
   if (missing.position_m <= task.commands->arrival_m &&
       missing.rotation_rad <= task.commands->arrival_rad)
-    return "";
-  return fmt::format("out of reach: the way there ends {:.3g} mm and {:.3g} mrad off{}",
-                     1e3 * missing.position_m, 1e3 * missing.rotation_rad,
-                     isAtItsLimit(config, state.q_desired) ? ", with a joint at its limit" : "");
+    return reach;
+  reach.problem =
+      fmt::format("out of reach: the way there ends {:.3g} mm and {:.3g} mrad off{}",
+                  1e3 * missing.position_m, 1e3 * missing.rotation_rad,
+                  isAtItsLimit(config, state.q_desired) ? ", with a joint at its limit" : "");
+  return reach;
 }
 
 }  // namespace tactus

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tactus/canopen/cycle_count.h"
 #include "tactus/supervisor/apply_mode.h"
@@ -250,10 +251,15 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   is_started_ = true;
   applyMode(controller_, mode_.mode, before, input_, gains_, state_);
   const bool goes_on = is_running && before != Mode::kRunning;
-  if (goes_on && state_.tool_motion)  // nothing that was ordered before moves the tool
-    state_.tool_motion.emplace(tipPose(controller_.config().chain, state_.q_desired),
-                               state_.tool_motion->plan().number + 1);
+  if (goes_on && state_.tool_motion) forgetOrders();
   controller_.update(input_, gains_, taskTime_s(), period_s_, prepared_, state_, output_);
+}
+
+/// Nothing that was ordered before moves a tool that goes on.
+void ControlCycle::forgetOrders() noexcept {
+  state_.tool_motion.emplace(tipPose(controller_.config().chain, state_.q_desired),
+                             state_.tool_motion->plan().number + 1);
+  prepared_.path_time_s = std::numeric_limits<double>::quiet_NaN();
 }
 
 /// As a replay begins, which knows of no sample before. Of these the age is remembered.

@@ -192,6 +192,12 @@ class Case(unittest.TestCase):
         stops["task"]["trajectory"] = {"waypoints": [dict(scene["task"]["trajectory"]["line"], pause_s=1)]}
         rests = copy.deepcopy(scene)
         rests["task"]["trajectory"] = {"hold": {}}
+        told = copy.deepcopy(scene)
+        del told["task"]["trajectory"]
+        limits = ("max_speed_m_per_s", "max_acceleration_m_per_s2", "max_jerk_m_per_s3",
+                  "max_speed_rad_per_s", "max_acceleration_rad_per_s2", "max_jerk_rad_per_s3",
+                  "arrival_m", "arrival_rad", "give_up_after_s", "stream_timeout_s")  # fmt: skip
+        told["task"] |= {"source": "commands", "commands": {key: 0.5 for key in limits}}
         shaped = []
         for shape in SHAPES:
             shaped.append(copy.deepcopy(scene))
@@ -207,7 +213,7 @@ class Case(unittest.TestCase):
         torques = ("max_torque", "coulomb_friction", "viscous_friction", "backlash")
         heavy["simulation"]["drives"] = {key: [0.01] * 9 for key in torques}
         extending = scene | {"extends": str(CONFIG / "scenes/free_motion.yaml")}
-        self.trees = {"scene": [scene, stops, rests, heavy, extending, *shaped],
+        self.trees = {"scene": [scene, stops, rests, told, heavy, extending, *shaped],
                       "robot": [robot, revolute_first, listed]}
 
     def tree_with(self, row):

@@ -55,8 +55,8 @@ struct ControllerState {
   SeveralContactsState several;  ///< instead, see hasContactRows()
   JointLimitZones zones;         ///< of the last gains
   RetreatState retreat;
-  /// Of tasks by command alone: the reference by its own clock. Set by the caller, to another one
-  /// with another number, between two cycles.
+  /// Of tasks by command alone: the reference, by its clock. Set by the caller between two cycles,
+  /// before prepare().
   std::optional<ToolMotion> tool_motion;
 
   bool mayMove() const noexcept { return fault == Fault::kNone && !is_stopping; }
@@ -73,7 +73,6 @@ struct PreparedCycle {
   bool is_leaning = false;
   TaskGains task_gains;  ///< and these gains
   JointLimitAvoidanceGains limit_gains;
-  std::uint64_t tool_motion = 0;  ///< and this number of a motion
   TaskKinematics kinematics;
   Motion motion;  ///< of task, joint limits and clearance, without contact
   PaddedTaskVector w, w_d_dot;
@@ -146,7 +145,6 @@ class Controller {
   void respond(const RobotInput& input, const Gains& gains, double period_s,
                PreparedCycle& prepared, ControllerState& state,
                ControllerOutput& output) const noexcept;
-  ToolReference reference(double path_time_s, const ControllerState& state) const noexcept;
   ToolAcceleration referenceAcceleration(double path_time_s,
                                          const ControllerState& state) const noexcept;
   void computeKinematics(double path_time_s, const ControllerState& state,

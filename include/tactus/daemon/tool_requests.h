@@ -5,6 +5,7 @@
 
 #include "tactus/daemon/loop_link.h"
 #include "tactus/scene/json.h"
+#include "tactus/scene/reach_check.h"
 #include "tactus/scene/scene.h"
 
 namespace tactus {
@@ -34,6 +35,8 @@ class ToolRequests {
 
   void requireArm();
   Target target(const Json& request, const Pose& from, ToolOrder::Kind kind) const;
+  JointVector jointsOf(const ToolSight& sight) const;
+  Reach reach(const std::string& what, const JointVector& q, const Target& target) const;
   Json order(const ToolOrder& order, double duration_s);
   void refresh();
   std::string eventText() const;

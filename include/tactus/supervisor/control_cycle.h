@@ -88,6 +88,7 @@ class ControlCycle {
   bool isReady(int module) const noexcept;
   void begin() noexcept;
   void goOnWithOrders() noexcept;
+  void forgetOrders() noexcept;
   void goOnWithGains() noexcept;
   void goOnWithTool() noexcept;
   void startTares() noexcept;
