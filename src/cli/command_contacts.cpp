@@ -2,13 +2,17 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <istream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "tactus/cli/commands.h"
+#include "tactus/cli/running_log.h"
 #include "tactus/record/contact_figures.h"
+#include "tactus/record/contact_watch.h"
+#include "tactus/record/growing_file.h"
 #include "tactus/record/run_summary.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/located_error.h"
@@ -71,49 +75,86 @@ std::string swingText(const ContactFigures& contact) {
   return fmt::format("{:.2f} at {:.1f} Hz", contact.swing_N, contact.swing_hz);
 }
 
-std::string contactsText(const LoggedContacts& logged) {
-  std::string text = fmt::format(
+std::string headerText() {
+  return fmt::format(
       "{:>8} {:>8} {:<10} {:>6} {:>7} {:>7} {:>7} {:>7} {:<15} {:>9} {:>6} {:>5} {:>6} {:>5}\n",
       "start_s", "end_s", "link", "x_mm", "peak_N", "above_s", "rests_s", "rest_N", "swing_N",
       "c, N/m", "tcp_mm", "null%", "T_s", "d");
-  for (const ContactFigures& contact : logged.contacts) {
-    const ContactSummary& summary = contact.summary;
-    text += fmt::format(
-        "{:8.3f} {:8.3f} {:<10} {:6.0f} {:7.2f} {:7.3f} {:7.3f} {:7.2f} {:<15} {:9.0f} {:6.1f} "
-        "{:5.0f} {:6.3g} {:5.3g}\n",
-        summary.start_s, summary.end_s, escaped(linkOf(logged.scene, summary.module)),
-        1e3 * contact.position_m, summary.peak_force_N, contact.time_above_s, summary.settling_s,
-        contact.rest_force_N, swingText(contact), contact.stiffness_N_per_m,
-        1e3 * contact.tcp_error_max_m, 100.0 * contact.null_share,
-        contact.gains.force.time_constant_s, contact.gains.force.damping);
-  }
-  return logged.contacts.empty() ? "no contact\n" : text;
+}
+
+std::string contactText(const Scene& scene, const ContactFigures& contact) {
+  const ContactSummary& summary = contact.summary;
+  return fmt::format(
+      "{:8.3f} {:8.3f} {:<10} {:6.0f} {:7.2f} {:7.3f} {:7.3f} {:7.2f} {:<15} {:9.0f} {:6.1f} "
+      "{:5.0f} {:6.3g} {:5.3g}\n",
+      summary.start_s, summary.end_s, escaped(linkOf(scene, summary.module)),
+      1e3 * contact.position_m, summary.peak_force_N, contact.time_above_s, summary.settling_s,
+      contact.rest_force_N, swingText(contact), contact.stiffness_N_per_m,
+      1e3 * contact.tcp_error_max_m, 100.0 * contact.null_share,
+      contact.gains.force.time_constant_s, contact.gains.force.damping);
+}
+
+std::string contactsText(const LoggedContacts& logged) {
+  if (logged.contacts.empty()) return "no contact\n";
+  std::string text = headerText();
+  for (const ContactFigures& contact : logged.contacts) text += contactText(logged.scene, contact);
+  return text;
+}
+
+Json contactJson(const Scene& scene, const ContactFigures& contact) {
+  const ContactSummary& summary = contact.summary;
+  const ForceGains& gains = contact.gains.force;
+  return {{"start_s", summary.start_s},
+          {"end_s", summary.end_s},
+          {"tactile_module", linkOf(scene, summary.module)},
+          {"position_m", contact.position_m},
+          {"peak_force_N", summary.peak_force_N},
+          {"time_above_s", contact.time_above_s},
+          {"settling_s", summary.settling_s},
+          {"rest_force_N", contact.rest_force_N},
+          {"swing_N", contact.swing_N},
+          {"swing_hz", contact.swing_hz},
+          {"stiffness_N_per_m", contact.stiffness_N_per_m},
+          {"tcp_error_max_m", contact.tcp_error_max_m},
+          {"null_space_share", contact.null_share},
+          {"time_constant_s", gains.time_constant_s},
+          {"damping", gains.damping},
+          {"activation_force_N", gains.activation_force_N},
+          {"contact_threshold_N", gains.contact_threshold_N}};
 }
 
 Json contactsJson(const LoggedContacts& logged) {
   Json json = Json::array();
-  for (const ContactFigures& contact : logged.contacts) {
-    const ContactSummary& summary = contact.summary;
-    const ForceGains& gains = contact.gains.force;
-    json.push_back({{"start_s", summary.start_s},
-                    {"end_s", summary.end_s},
-                    {"tactile_module", linkOf(logged.scene, summary.module)},
-                    {"position_m", contact.position_m},
-                    {"peak_force_N", summary.peak_force_N},
-                    {"time_above_s", contact.time_above_s},
-                    {"settling_s", summary.settling_s},
-                    {"rest_force_N", contact.rest_force_N},
-                    {"swing_N", contact.swing_N},
-                    {"swing_hz", contact.swing_hz},
-                    {"stiffness_N_per_m", contact.stiffness_N_per_m},
-                    {"tcp_error_max_m", contact.tcp_error_max_m},
-                    {"null_space_share", contact.null_share},
-                    {"time_constant_s", gains.time_constant_s},
-                    {"damping", gains.damping},
-                    {"activation_force_N", gains.activation_force_N},
-                    {"contact_threshold_N", gains.contact_threshold_N}});
-  }
+  for (const ContactFigures& contact : logged.contacts)
+    json.push_back(contactJson(logged.scene, contact));
   return json;
+}
+
+void printContacts(const Scene& scene, const std::vector<ContactFigures>& contacts, bool as_json) {
+  for (const ContactFigures& contact : contacts) {
+    const std::string line =
+        as_json ? contactJson(scene, contact).dump() + "\n" : contactText(scene, contact);
+    std::fputs(line.c_str(), stdout);
+  }
+  if (!contacts.empty()) std::fflush(stdout);
+}
+
+/// Each contact when it is over, of those that were there already and of those that come.
+void followContacts(const std::string& path, bool as_json) {
+  const Scene scene = loadLogged(path);
+  ContactWatch watch(scene.controller);
+  if (!as_json) std::fputs(headerText().c_str(), stdout);
+  std::fflush(stdout);
+  for (bool goes_on = true; goes_on;) {
+    GrowingFile file(path);
+    std::istream in(&file);
+    UlogReader reader(in, path);
+    reader.assumeGains(scene.controller.gains);
+    CycleRecord record;
+    while (reader.next(record)) printContacts(scene, watch.add(record), as_json);
+    goes_on = file.goesOn();
+  }
+  printContacts(scene, watch.present(), as_json);
 }
 
 }  // namespace
@@ -121,19 +162,24 @@ Json contactsJson(const LoggedContacts& logged) {
 void addContactsCommand(CLI::App& app, int& exit_code) {
   struct ContactsOptions {
     std::string log;
+    bool follows = false;
     bool json = false;
   };
   const auto options = std::make_shared<ContactsOptions>();
   CLI::App* const command =
       app.add_subcommand("contacts", "Show each contact of a run, a row each");
-  command->add_option("log", options->log, "Log of a run (run.ulg)")->required();
-  command->add_flag("--json", options->json, "Print JSON");
+  command->add_option("log", options->log,
+                      "Log of a run (run.ulg); else that of the daemon that runs");
+  command->add_flag("--follow", options->follows, "Go on with those that come, until the run ends");
+  command->add_flag("--json", options->json, "Print JSON; with --follow an object a line");
   command->callback([options, &exit_code] {
+    exit_code = kExitDone;
+    if (options->log.empty()) options->log = runningLog();
+    if (options->follows) return followContacts(options->log, options->json);
     const LoggedContacts logged = readContacts(options->log);
     if (logged.is_cut_off) fmt::print(stderr, "{}: the log was cut off\n", escaped(options->log));
     std::fputs((options->json ? jsonText(contactsJson(logged)) : contactsText(logged)).c_str(),
                stdout);
-    exit_code = kExitDone;
   });
 }
 

@@ -53,6 +53,7 @@ int tactusProgram(int argc, char** argv) {
   addUndoCommand(app, exit_code);
   addDiffCommand(app, exit_code);
   addSaveCommand(app, exit_code);
+  addStreamCommand(app, exit_code);
   addMoveCommand(app, exit_code);
   addFollowCommand(app, exit_code);
   addHoldCommand(app, exit_code);

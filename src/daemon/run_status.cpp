@@ -53,7 +53,9 @@ Json statusJson(const RunStatus& status, double monotonic_s) {
   if (status.scene.controller.module_loss)
     json["modules_lost"] =
         lostModules(status.scene, status.figures ? status.figures->modules_lost : std::uint64_t{0});
-  if (status.log) json["log"] = logJson(*status.log, "writing");
+  if (!status.log) return json;
+  json["log"] = logJson(*status.log, "writing");
+  json["log"]["folder"] = status.log->folder;
   return json;
 }
 

@@ -1,9 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "support/command_run.h"
+#include "support/run_folder.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/cli/commands.h"
@@ -47,6 +53,27 @@ TEST(Contacts, AreThoseOfTheSummary) {
               run.scene.module_links[static_cast<std::size_t>(expected.module)]);
     EXPECT_LE(contacts[i].at("rest_force_N"), expected.peak_force_N);
     EXPECT_LE(contacts[i].at("tcp_error_max_m"), run.figures.tcp_error_max_m);
+  }
+}
+
+/// A run that has ended, by its summary.
+TEST(Contacts, FollowedAreTheSame) {
+  for (const char* name : {"whole_arm/crops9_skin_two_links", "scenario2_tactus"}) {
+    const LoggedRun run(name);
+    const test::RunFolder folder;
+    std::filesystem::copy_file(run.log.path(), folder.path() + "/run.ulg");
+    std::ofstream(folder.path() + "/summary.json") << "{}";
+    std::string output;
+    ASSERT_EQ(
+        test::runCommand(addContactsCommand,
+                         {"contacts", folder.path() + "/run.ulg", "--json", "--follow"}, output),
+        0);
+    std::istringstream lines(output);
+    std::vector<Json> followed;
+    for (std::string line; std::getline(lines, line);) followed.push_back(Json::parse(line));
+    std::ranges::sort(followed, {},
+                      [](const Json& contact) { return contact.at("start_s").get<double>(); });
+    EXPECT_EQ(Json(followed), run.contacts());
   }
 }
 

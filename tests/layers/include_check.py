@@ -44,7 +44,7 @@ PURE_LAYERS = {"math", "control", "sim", "analysis", "canopen", "supervisor", "p
 
 POSIX = re.compile(r"(sys|linux|net|netinet|arpa)/.+|"
                    r"(unistd|fcntl|poll|pthread|sched|semaphore|signal|stdlib|time|errno)\.h")
-SOCKETS = re.compile(r"(sys/(socket|un)|linux/can.*|net/.+|netinet/.+|arpa/.+)(\.h)?")
+SOCKETS = re.compile(r"(sys/(socket|un)|linux/can.*|net/.+|netinet/.+|arpa/.+|netdb)(\.h)?")
 POSIX_LAYERS = {"io", "rt", "record", "daemon", "cli", "bench"}
 SOCKET_LAYERS = {"io"}
 

@@ -3,7 +3,8 @@
 
 - A pure layer calls nothing but memory, mathematics, exceptions and other pure layers. So no system
   call, clock, file or thread can be reached from it, also not through a header that allows it.
-- tactusd holds nothing that the commands, the plant or the benchmarks define.
+- tactusd holds nothing that the commands, the plant or the benchmarks define, and finds no hosts: it
+  has no network.
 
 usage: link_check.py TACTUSD ARCHIVE...     ARCHIVE: libtactus_<layer>.a of all pure layers, of cli and
                                             plant, and of bench where it is built"""
@@ -78,12 +79,18 @@ def strangers(daemon, archives):
             for name in sorted(defined(path) & inside)]
 
 
+def networks(daemon):
+    wanted = (name.partition("@")[0] for _, name in symbols(daemon, "-u"))
+    return [f"tactusd must not use {name}, it has no network" for name in wanted
+            if re.match("getaddrinfo|gethost|inet_", name)]
+
+
 def main():
     daemon, *archives = map(pathlib.Path, sys.argv[1:])
     layers = [layer_of(path) for path in archives]
     found = [f"no archive of {layer}" for layer in sorted(REQUIRED - set(layers))]
     found += [f"{path} defines nothing" for path in archives if not defined(path)]
-    found += impurities(archives) + strangers(daemon, archives)
+    found += impurities(archives) + strangers(daemon, archives) + networks(daemon)
     print("\n".join(found) or f"{len(archives)} layers: the pure ones are pure, and tactusd holds "
                               f"nothing of {', '.join(x for x in NOT_IN_DAEMON if x in layers)}")
     return 1 if found else 0

@@ -114,6 +114,9 @@ class LinkCheck(unittest.TestCase):
         self.compile("int main() {}", "-s", "-o", self.folder / "d")
         self.assertIn("stripped", link_check.strangers(self.folder / "d", [])[0])
 
+    def test_finds_a_network(self):
+        self.assertIn("getaddrinfo", link_check.networks(pathlib.Path(TACTUS))[0])
+
     def test_finds_each_layer_in_the_program_that_has_it(self):
         archives = [pathlib.Path(path) for path in ARCHIVES]
         found = link_check.strangers(pathlib.Path(TACTUS), archives)

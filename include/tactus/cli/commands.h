@@ -29,6 +29,7 @@ void addReloadCommand(CLI::App& app, int& exit_code);
 void addUndoCommand(CLI::App& app, int& exit_code);
 void addDiffCommand(CLI::App& app, int& exit_code);
 void addSaveCommand(CLI::App& app, int& exit_code);
+void addStreamCommand(CLI::App& app, int& exit_code);
 void addMoveCommand(CLI::App& app, int& exit_code);
 void addFollowCommand(CLI::App& app, int& exit_code);
 void addHoldCommand(CLI::App& app, int& exit_code);

@@ -37,6 +37,10 @@ class ContactList {
 
   /// The contacts so far; one that still lasts ends with the last cycle.
   std::vector<ContactSummary> contacts() const;
+  /// Those that are over.
+  const std::vector<ContactSummary>& finished() const noexcept { return finished_; }
+  /// One may have begun.
+  bool isTouching() const noexcept { return present_.cycles > 0; }
 
  private:
   struct Sample {

@@ -12,6 +12,7 @@ namespace tactus {
 
 /// What has become of a run's log.
 struct LogState {
+  std::string folder;       ///< of all its files
   int files = 1;            ///< run.ulg and the older ones that are still there
   int removed_files = 0;    ///< the oldest ones, for LogConfig::keep
   std::string stop_reason;  ///< empty: the log has not stopped before the run

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <streambuf>
+#include <string>
+
+namespace tactus {
+
+/// A log that somebody else writes: where others are at its end, this waits for more. It ends where
+/// the run has ended, told by the summary beside it, and where the log goes on in another file.
+class GrowingFile final : public std::streambuf {
+ public:
+  /// Throws InputError as openLog().
+  explicit GrowingFile(std::string path);
+  ~GrowingFile() override;
+  GrowingFile(const GrowingFile&) = delete;
+  GrowingFile& operator=(const GrowingFile&) = delete;
+
+  /// All that was there has been read; what comes is new.
+  bool isLive() const noexcept { return is_live_; }
+  /// At the end: another file of this name has the rest.
+  bool goesOn() const noexcept { return goes_on_; }
+
+ protected:
+  int_type underflow() override;
+
+ private:
+  long fill();
+  bool isOther() const;
+  bool isOver() const;
+
+  std::string path_;
+  int fd_ = -1;
+  bool is_live_ = false;
+  bool goes_on_ = false;
+  std::array<char, 1 << 16> buffer_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstring>
+#include <istream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "tactus/cli/commands.h"
+#include "tactus/cli/running_log.h"
+#include "tactus/io/datagram_socket.h"
+#include "tactus/record/growing_file.h"
+#include "tactus/record/run_error.h"
+#include "tactus/record/ulog_reader.h"
+#include "tactus/scene/located_error.h"
+
+/// The run that goes on, to those who plot it.
+namespace tactus {
+namespace {
+
+constexpr std::size_t kMaxDatagram = 1400;
+
+struct StreamOptions {
+  std::string log;
+  std::string to = "127.0.0.1:9870";
+  double rate_hz = 100.0;
+};
+
+double numberAt(const CycleRecord& record, const RecordColumn& column) {
+  const char* const at = reinterpret_cast<const char*>(&record) + column.offset;
+  if (column.type == FieldType::kDouble) {
+    double number;
+    std::memcpy(&number, at, sizeof(number));
+    return number;
+  }
+  std::int64_t number;
+  std::memcpy(&number, at, sizeof(number));
+  return static_cast<double>(number);
+}
+
+/// As PlotJuggler's UDP server takes it: flat JSON objects with the time as `timestamp`; each other
+/// member is a series, of that name behind a slash. What is not finite is left out, for JSON has no
+/// word for it. A cycle takes several objects, as that server reads 2048 bytes of a datagram, and
+/// networks carry 1500 in one piece.
+void send(const CycleRecord& record, const std::vector<RecordColumn>& columns,
+          const DatagramSocket& socket) {
+  const std::string start = fmt::format("{{\"timestamp\":{}", record.t_s);
+  std::string json = start;
+  for (const RecordColumn& column : columns) {
+    const double number = numberAt(record, column);
+    if (!std::isfinite(number)) continue;
+    const std::string member = fmt::format(",\"{}\":{}", column.name, number);
+    if (json.size() + member.size() >= kMaxDatagram) {
+      socket.send(json + "}");
+      json = start;
+    }
+    json += member;
+  }
+  socket.send(json + "}");
+}
+
+/// One file of the log; true: it goes on in another one.
+bool streamFile(const StreamOptions& options, const std::string& path,
+                const DatagramSocket& socket) {
+  GrowingFile file(path);
+  std::istream in(&file);
+  UlogReader reader(in, path);
+  const std::vector<RecordColumn> columns = recordColumns(reader.description().shape);
+  CycleRecord record;
+  double next_s = 0.0;
+  while (reader.next(record)) {
+    if (!file.isLive() || record.t_s < next_s) continue;
+    next_s = record.t_s + 1.0 / options.rate_hz - 1e-9;
+    send(record, columns, socket);
+  }
+  return file.goesOn();
+}
+
+int stream(const StreamOptions& options) {
+  const std::string path = options.log.empty() ? runningLog() : options.log;
+  try {
+    const DatagramSocket socket(options.to);
+    while (streamFile(options, path, socket)) {
+    }
+  } catch (const std::system_error& error) {
+    throw RunError(fmt::format("{}: {}", escaped(options.to), error.code().message()));
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("--plotjuggler {}, expected HOST:PORT", escaped(error.what())));
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void addStreamCommand(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<StreamOptions>();
+  CLI::App* const command =
+      app.add_subcommand("stream", "Send the run that goes on to PlotJuggler");
+  command->add_option("log", options->log, "Log of the run; else that of the daemon that runs");
+  command->add_option("--plotjuggler", options->to, "HOST:PORT of its UDP server")
+      ->expected(0, 1)
+      ->capture_default_str();
+  command->add_option("--rate", options->rate_hz, "Cycles a second")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  command->callback([options, &exit_code] { exit_code = stream(*options); });
+}
+
+}  // namespace tactus

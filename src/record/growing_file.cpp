@@ -1,0 +1,64 @@
+#include "tactus/record/growing_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+#include <utility>
+
+#include "tactus/record/ulog_reader.h"
+
+namespace tactus {
+namespace {
+
+/// The log's writer leaves its cycles with the kernel every 100 ms.
+constexpr std::chrono::milliseconds kPause{20};
+constexpr const char* kSummaryName = "summary.json";
+
+}  // namespace
+
+GrowingFile::GrowingFile(std::string path) : path_(std::move(path)) {
+  openLog(path_);  // says what is wrong with it
+  fd_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+}
+
+GrowingFile::~GrowingFile() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+long GrowingFile::fill() { return ::read(fd_, buffer_.data(), buffer_.size()); }
+
+bool GrowingFile::isOther() const {
+  struct stat own {
+  }, there{};
+  if (::fstat(fd_, &own) != 0) return false;
+  return ::stat(path_.c_str(), &there) != 0 || own.st_ino != there.st_ino;
+}
+
+bool GrowingFile::isOver() const {
+  return std::filesystem::exists(std::filesystem::path(path_).parent_path() / kSummaryName);
+}
+
+GrowingFile::int_type GrowingFile::underflow() {
+  if (gptr() < egptr()) return traits_type::to_int_type(*gptr());
+  while (true) {
+    // What was written before the end is there once the end is seen.
+    const bool is_other = isOther(), is_over = isOver();
+    const long size = fill();
+    if (size > 0) {
+      setg(buffer_.data(), buffer_.data(), buffer_.data() + size);
+      return traits_type::to_int_type(*gptr());
+    }
+    is_live_ = true;
+    if (size < 0 || is_other || is_over) {
+      goes_on_ = is_other && !is_over;
+      return traits_type::eof();
+    }
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
+}  // namespace tactus
