@@ -21,7 +21,7 @@ constexpr double kMaxPosition_m = 100.0;
 constexpr double kMaxTurn_rad = 4.0;
 constexpr double kMaxPause_s = 86400.0;
 
-[[noreturn]] void refuse(const std::string& problem, const std::string& expectation) {
+[[noreturn]] void refuseRequest(const std::string& problem, const std::string& expectation) {
   throw InputError(fmt::format("request: {}, expected {}", problem, expectation));
 }
 
@@ -46,10 +46,11 @@ const char* stateName(ToolState state) noexcept {
 }
 
 double numberOf(const Json& value, const std::string& name, double least, double most) {
-  if (!value.is_number()) refuse(name + " is no number", "one");
+  if (!value.is_number()) refuseRequest(name + " is no number", "one");
   const double number = value.get<double>();
   if (number >= least && number <= most) return number;
-  refuse(fmt::format("{} is {}", name, value.dump()), fmt::format("{:g} to {:g}", least, most));
+  refuseRequest(fmt::format("{} is {}", name, value.dump()),
+                fmt::format("{:g} to {:g}", least, most));
 }
 
 /// Three entries; null: as it is.
@@ -58,7 +59,7 @@ std::optional<std::array<std::optional<double>, 3>> vectorOf(const Json& request
   const auto found = request.find(name);
   if (found == request.end()) return std::nullopt;
   if (!found->is_array() || found->size() != 3)
-    refuse(fmt::format("{} is no vector", name), "three numbers");
+    refuseRequest(fmt::format("{} is no vector", name), "three numbers");
   std::array<std::optional<double>, 3> vector;
   for (std::size_t i = 0; i < 3; ++i)
     if (!found->at(i).is_null())
@@ -75,15 +76,15 @@ void setSpeed(const Json& request, const char* name, MotionLimits& limits) {
   const auto found = request.find(name);
   if (found == request.end()) return;
   const double speed = numberOf(*found, name, 0.0, limits.max_speed);
-  if (!(speed > 0.0)) refuse(fmt::format("{} is 0", name), "more");
+  if (!(speed > 0.0)) refuseRequest(fmt::format("{} is 0", name), "more");
   limits.max_speed = speed;
 }
 
 void refuseUnknown(const Json& request, std::initializer_list<const char*> known) {
   for (const auto& [name, value] : request.items()) {
     if (std::ranges::find(known, name) == known.end())
-      refuse(fmt::format("{} is not known here", inQuotes(name)),
-             fmt::format("{}", fmt::join(known, ", ")));
+      refuseRequest(fmt::format("{} is not known here", inQuotes(name)),
+                    fmt::format("{}", fmt::join(known, ", ")));
   }
 }
 
@@ -111,22 +112,24 @@ ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from,
   const bool is_relative = request.value("relative", Json(false)) == true;
   const auto to_m = vectorOf(request, "to_m", kMaxPosition_m);
   const auto rotate_rad = vectorOf(request, "rotate_rad", kMaxTurn_rad);
-  if (!to_m && !rotate_rad) refuse("no target", "to_m or rotate_rad");
+  if (!to_m && !rotate_rad) refuseRequest("no target", "to_m or rotate_rad");
   Target target{{.kind = kind, .limits = task.commands->limits}, from};
   for (int i = 0; to_m && i < 3; ++i) {
     const std::optional<double>& value = (*to_m)[i];
     if (!value || (is_relative && *value == 0.0)) continue;
     if (!controls(task, i))
-      refuse(fmt::format("to_m[{}] is given, but the task does not control {}", i, "xyz"[i]),
-             "null");
+      refuseRequest(fmt::format("to_m[{}] is given, but the task does not control {}", i, "xyz"[i]),
+                    "null");
     target.X_BaseTool.p_AB[i] = *value + (is_relative ? from.p_AB[i] : 0.0);
   }
   if (rotate_rad) {
     if (!task.hasRotation())
-      refuse("rotate_rad is given, but the task does not control the orientation", "to_m alone");
+      refuseRequest("rotate_rad is given, but the task does not control the orientation",
+                    "to_m alone");
     Vector3 turn;
     for (int i = 0; i < 3; ++i) {
-      if (!(*rotate_rad)[i]) refuse(fmt::format("rotate_rad[{}] is null", i), "three numbers");
+      if (!(*rotate_rad)[i])
+        refuseRequest(fmt::format("rotate_rad[{}] is null", i), "three numbers");
       turn[i] = *(*rotate_rad)[i];
     }
     const Matrix3 R = rotationMatrix(turn);
@@ -170,15 +173,15 @@ Json ToolRequests::follow(const Json& request) {
   requireArm();
   const auto found = request.find("waypoints");
   if (found == request.end() || !found->is_array() || found->empty())
-    refuse("no waypoints", "a list of them");
+    refuseRequest("no waypoints", "a list of them");
   if (found->size() > ToolOrders::kMaxWaiting)
-    refuse(fmt::format("{} waypoints", found->size()),
-           fmt::format("at most {}", ToolOrders::kMaxWaiting));
+    refuseRequest(fmt::format("{} waypoints", found->size()),
+                  fmt::format("at most {}", ToolOrders::kMaxWaiting));
   std::vector<ToolOrder> orders;
   Pose from = poseOf(sight_);
   JointVector q = jointsOf(sight_);
   for (const Json& waypoint : *found) {
-    if (!waypoint.is_object()) refuse("a waypoint is no object", "to_m and more");
+    if (!waypoint.is_object()) refuseRequest("a waypoint is no object", "to_m and more");
     refuseUnknown(waypoint, {"to_m", "rotate_rad", "relative", "speed_m_per_s", "speed_rad_per_s",
                              "pause_s"});
     const Target next = target(waypoint, from, orders.empty() ? Kind::kGo : Kind::kGoNext);

@@ -112,6 +112,34 @@ TEST(CommandedCycle, ReplaysToTheBitFromItsLog) {
   EXPECT_GT(other.differingCycles(), 1000) << "targets make no difference: this test is blind";
 }
 
+/// A stiff post that the null space cannot give way to: the arm leans on it no harder than the law
+/// allows, however far it was told to go, and a way back is free.
+TEST(CommandedCycle, IsHeldOffAtTheForceOfTheLaw) {
+  const Scene scene =
+      toldScene({{"simulation.obstacles", "[{x_m: 0.70771, y_m: -0.125, stiffness_N_per_m: 7000}]"},
+                 {"task.commands", "{give_up_after_s: 3}"}});
+  const ForceGains& gains = scene.controller.gains.force;
+  const double rest_N = gains.activation_force_N + gains.contact_threshold_N;
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  const Pose start = toolPose(cell, scene);
+  Pose target = start;
+  target.p_AB.y() += 0.8;
+  tell(cell, target, 1);
+  for (int i = 0; i < 3500; ++i) stepPrepared(cell);
+  EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kBlocked);
+  for (int i = 0; i < 8000; ++i) {
+    stepPrepared(cell);
+    ASSERT_LT(cell.record().force_sensor_N[0], 1.02 * rest_N) << i;
+  }
+  EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kGivenUp);
+  EXPECT_GT(cell.record().force_sensor_N[0], 0.9 * rest_N) << "nothing holds it off";
+  tell(cell, start, 2);
+  for (int i = 0; i < 4000; ++i) stepPrepared(cell);
+  EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kArrived);
+  EXPECT_EQ(cell.record().force_sensor_N[0], 0.0);
+}
+
 /// Nothing that was ordered before a stop moves the arm after it.
 TEST(CommandedCycle, RestsWhereAStopHasLeftIt) {
   const Scene scene = toldScene({{"simulation.obstacles", "[]"}});

@@ -31,6 +31,16 @@ start_buses
 permit_motion
 run_scene in_contact "$scene" $((cycles / 1000))
 
+# The same beside a client that asks a hundred times a second.
+mkdir -p /tmp/run
+printf 'extends: %s\n' "$scene" >/tmp/asked.yaml
+start_plant asked /tmp/asked.yaml
+RUNTIME_DIRECTORY=/tmp/run tactusd /tmp/asked.yaml --duration $((cycles / 1000)) -o "$ROOT/out" 2>/tmp/asked.txt & daemon=$!
+wait_for running /tmp/asked.txt
+asking_client $((cycles / 10 - 20)) 10000 '{"do":"show"}' /tmp/run/control || fail "asking_client exits with $?"
+wait $daemon || fail "asked: tactusd exits with $?"
+stop_plant
+
 # A traced cycle takes more than a millisecond.
 printf 'extends: %s\nperiod_s: 0.005\n' "$scene" >/tmp/traced.yaml
 run_meanwhile /tmp/traced.yaml traced

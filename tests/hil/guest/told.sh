@@ -32,9 +32,11 @@ told way tactus move --relative --to 0,0.1,0
 sleep 0.5
 told holding tactus hold
 
-stream_client 400 $RUNTIME_DIRECTORY/control || fail "stream_client exits with $?"
+# Each target some millimetres on, 500 a second.
+target='{"do":"stream","to_m":[0,0.008,0],"relative":true}'
+asking_client 400 2000 "$target" $RUNTIME_DIRECTORY/control || fail "asking_client exits with $?"
 wait_for late "$out/tactusd.txt"
-stream_client 100000 $RUNTIME_DIRECTORY/control & killed=$!
+asking_client 100000 2000 "$target" $RUNTIME_DIRECTORY/control & killed=$!
 sleep 0.3
 kill -9 $killed
 wait_for late "$out/tactusd.txt" 2

@@ -1,7 +1,6 @@
-// Tells the daemon's tool where to go, 500 times a second: each target some millimetres on. Fails where
-// one is refused. Ends in the middle of it, without a word.
+// Asks the daemon the same again and again. Fails where that is refused; ends without a word.
 //
-// usage: stream_client COUNT SOCKET
+// usage: asking_client COUNT PERIOD_US REQUEST SOCKET
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,21 +9,20 @@
 #include <time.h>
 
 int main(int argc, char** argv) {
-  if (argc != 3) return 2;
+  if (argc != 5) return 2;
   struct sockaddr_un address = {.sun_family = AF_UNIX};
-  strncpy(address.sun_path, argv[2], sizeof(address.sun_path) - 1);
+  strncpy(address.sun_path, argv[4], sizeof(address.sun_path) - 1);
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET, 0);
   if (connect(fd, (const struct sockaddr*)&address, sizeof(address)) != 0) return 3;
-  const char* target = "{\"do\":\"stream\",\"to_m\":[0,0.008,0],\"relative\":true}";
   static char answer[1 << 18];
-  const struct timespec period = {.tv_nsec = 2000000};
+  const struct timespec period = {.tv_nsec = strtol(argv[2], NULL, 10) * 1000};
   for (long i = strtol(argv[1], NULL, 10); i > 0; --i) {
-    if (send(fd, target, strlen(target), MSG_NOSIGNAL) < 0) return 4;
+    if (send(fd, argv[3], strlen(argv[3]), MSG_NOSIGNAL) < 0) return 4;
     const long size = recv(fd, answer, sizeof(answer) - 1, 0);
     if (size <= 0) return 5;
     answer[size] = '\0';
     if (!strstr(answer, "\"done\":true")) {
-      fprintf(stderr, "stream_client: %s\n", answer);
+      fprintf(stderr, "asking_client: %s\n", answer);
       return 1;
     }
     nanosleep(&period, NULL);
