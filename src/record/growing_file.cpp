@@ -16,7 +16,7 @@ namespace {
 
 /// The log's writer leaves its cycles with the kernel every 100 ms.
 constexpr std::chrono::milliseconds kPause{20};
-constexpr const char* kSummaryName = "summary.json";
+constexpr const char* kSignOfTheEnd = "summary.json";
 
 }  // namespace
 
@@ -39,7 +39,7 @@ bool GrowingFile::isOther() const {
 }
 
 bool GrowingFile::isOver() const {
-  return std::filesystem::exists(std::filesystem::path(path_).parent_path() / kSummaryName);
+  return std::filesystem::exists(std::filesystem::path(path_).parent_path() / kSignOfTheEnd);
 }
 
 GrowingFile::int_type GrowingFile::underflow() {
