@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -45,7 +46,8 @@ Json vectorOf(const char* option, const std::string& text) {
     }
     double number = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc() || end != word.data() + word.size())
+    const bool is_number = error == std::errc() && end == word.data() + word.size();
+    if (!is_number || !std::isfinite(number))
       throw InputError(fmt::format("{} {}: {} is no number, expected three, such as 0.9,-,0.25",
                                    option, escaped(text), inQuotes(word)));
     vector.push_back(number);

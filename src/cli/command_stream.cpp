@@ -23,10 +23,11 @@ namespace tactus {
 namespace {
 
 constexpr std::size_t kMaxDatagram = 1400;
+constexpr const char* kPlotJuggler = "127.0.0.1:9870";
 
 struct StreamOptions {
   std::string log;
-  std::string to = "127.0.0.1:9870";
+  std::string to = kPlotJuggler;
   double rate_hz = 100.0;
 };
 
@@ -80,7 +81,15 @@ bool streamFile(const StreamOptions& options, const std::string& path,
   return file.goesOn();
 }
 
-int stream(const StreamOptions& options) {
+/// --plotjuggler may have no value, and the log come behind it.
+void putInOrder(StreamOptions& options) {
+  if (!options.log.empty() || !options.to.ends_with(".ulg")) return;
+  options.log = options.to;
+  options.to = kPlotJuggler;
+}
+
+int stream(StreamOptions options) {
+  putInOrder(options);
   const std::string path = options.log.empty() ? runningLog() : options.log;
   try {
     const DatagramSocket socket(options.to);

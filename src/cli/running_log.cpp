@@ -20,7 +20,8 @@ std::string runningLog() {
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const Json status = Json::parse(text, nullptr, false);
   const auto log = status.is_object() ? status.find("log") : status.end();
-  if (log == status.end() || !log->is_object() || !log->contains("folder"))
+  if (log == status.end() || !log->is_object() || !log->contains("folder") ||
+      !log->at("folder").is_string())
     throw RunError(fmt::format("{}: the daemon writes no log", escaped(path)));
   return log->at("folder").get<std::string>() + "/" + logName(0);
 }

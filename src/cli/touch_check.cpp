@@ -120,9 +120,19 @@ std::optional<PeakReport> worstPeak(const Scene& scene, const PathContacts& cont
 }
 
 /// Where a tool that is told leads the arm is not known: covers may be as fast as it.
-void assumeSpeeds(const TaskCommandsConfig& commands, PathContacts& contacts) {
-  for (FastestCover& fastest : contacts.fastest)
-    if (fastest.speed_m_per_s > 0.0) fastest.speed_m_per_s = commands.limits.position.max_speed;
+void assumeSpeeds(const ControllerConfig& config, PathContacts& contacts) {
+  ChainPose pose;
+  config.chain.computePose(config.q_start, pose);
+  for (std::size_t i = 0; i < contacts.fastest.size(); ++i) {
+    FastestCover& fastest = contacts.fastest[i];
+    const TactileModuleConfig& module = config.tactile_modules[i];
+    const Pose X_BaseModule = framePose(pose, module.link);
+    fastest.speed_m_per_s = config.task.commands->limits.position.max_speed;
+    fastest.module = static_cast<int>(i);
+    fastest.q = config.q_start;
+    fastest.p_Base = X_BaseModule.p_AB + 0.5 * module.length_m * X_BaseModule.R_AB.col(0);
+    fastest.direction = X_BaseModule.R_AB.col(1);
+  }
 }
 
 MovingObstacle bearableMotion(const ForceGains& gains, double stiffest_N_per_m) {
@@ -198,7 +208,7 @@ ExpectedContact checkContacts(const Scene& scene, double stiffest_N_per_m) {
   if (scene.controller.tactile_modules.empty() && scene.plant.capsules.empty()) return report;
   PathContacts contacts =
       followPath(scene.controller, scene.plant, scene.period_s, scene.duration_s);
-  if (scene.controller.task.commands) assumeSpeeds(*scene.controller.task.commands, contacts);
+  if (scene.controller.task.commands) assumeSpeeds(scene.controller, contacts);
   if (scene.controller.force_control) {
     report.touches = touchesOf(scene, contacts);
     report.peak = worstPeak(scene, contacts, stiffest_N_per_m);

@@ -89,7 +89,7 @@ bool ControlSocket::hear(Client& client) {
 
 std::string ControlSocket::answer(std::span<char> room, long size) {
   const auto length = static_cast<std::size_t>(size);
-  if (length > room.size()) return R"({"done":false,"error":"request: longer than 16384 bytes"})";
+  if (length > room.size()) return R"({"done":false,"error":"request: longer than 32768 bytes"})";
   return requests_.answer({room.data(), length});
 }
 

@@ -20,6 +20,8 @@ using Kind = ToolOrder::Kind;
 constexpr double kMaxPosition_m = 100.0;
 constexpr double kMaxTurn_rad = 4.0;
 constexpr double kMaxPause_s = 86400.0;
+constexpr double kLeastSpeed = 1e-5;  ///< m/s or rad/s
+constexpr const char* kNoRoom = "too many orders at once, expected some milliseconds between them";
 
 [[noreturn]] void refuseRequest(const std::string& problem, const std::string& expectation) {
   throw InputError(fmt::format("request: {}, expected {}", problem, expectation));
@@ -75,9 +77,7 @@ bool controls(const TaskConfig& task, int component) {
 void setSpeed(const Json& request, const char* name, MotionLimits& limits) {
   const auto found = request.find(name);
   if (found == request.end()) return;
-  const double speed = numberOf(*found, name, 0.0, limits.max_speed);
-  if (!(speed > 0.0)) refuseRequest(fmt::format("{} is 0", name), "more");
-  limits.max_speed = speed;
+  limits.max_speed = numberOf(*found, name, kLeastSpeed, limits.max_speed);
 }
 
 void refuseUnknown(const Json& request, std::initializer_list<const char*> known) {
@@ -109,7 +109,9 @@ void ToolRequests::requireArm() {
 
 ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from, Kind kind) const {
   const TaskConfig& task = scene_.controller.task;
-  const bool is_relative = request.value("relative", Json(false)) == true;
+  const Json relative = request.value("relative", Json(false));
+  if (!relative.is_boolean()) refuseRequest("relative is " + relative.dump(), "true or false");
+  const bool is_relative = relative.get<bool>();
   const auto to_m = vectorOf(request, "to_m", kMaxPosition_m);
   const auto rotate_rad = vectorOf(request, "rotate_rad", kMaxTurn_rad);
   if (!to_m && !rotate_rad) refuseRequest("no target", "to_m or rotate_rad");
@@ -189,10 +191,13 @@ Json ToolRequests::follow(const Json& request) {
     orders.push_back(next.order);
     from = next.X_BaseTool;
   }
+  if (!link_.tool_orders.hasRoom(orders.size())) throw InputError(kNoRoom);
   ++number_;
+  is_streaming_ = false;
   for (ToolOrder& order : orders) {
     order.number = number_;
-    if (!link_.tool_orders.push(order)) throw InputError("too many orders at once, try again");
+    order.run = sight_.run;
+    link_.tool_orders.push(order);
   }
   told_ = {number_, ToolState::kMoving, static_cast<int>(orders.size()) - 1};
   return show();
@@ -205,11 +210,16 @@ Json ToolRequests::hold() {
   return order(hold, 0.0);
 }
 
+/// All of a stream has one number.
 Json ToolRequests::order(const ToolOrder& order, double duration_s) {
+  if (!link_.tool_orders.hasRoom(1)) throw InputError(kNoRoom);
+  const bool is_stream = order.kind == Kind::kStream;
+  if (!is_stream || !is_streaming_) ++number_;
+  is_streaming_ = is_stream;
   ToolOrder numbered = order;
-  numbered.number = number_ + 1;
-  if (!link_.tool_orders.push(numbered)) throw InputError("too many orders at once, try again");
-  ++number_;
+  numbered.number = number_;
+  numbered.run = sight_.run;
+  link_.tool_orders.push(numbered);
   told_ = {number_, order.kind == Kind::kHold ? ToolState::kHolding : ToolState::kMoving, 0};
   Json json = show();
   if (duration_s > 0.0) json["duration_s"] = duration_s;

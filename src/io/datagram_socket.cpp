@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <memory>
 #include <stdexcept>
 #include <system_error>
@@ -30,6 +31,11 @@ HostAndPort split(const std::string& to) {
 
 DatagramSocket::DatagramSocket(const std::string& to) {
   const HostAndPort place = split(to);
+  unsigned port = 0;
+  const char* const last = place.port.data() + place.port.size();
+  const auto [end, error] = std::from_chars(place.port.data(), last, port);
+  if (error != std::errc() || end != last || port == 0 || port > 65535)
+    throw std::invalid_argument(to + ": no port");
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_DGRAM;

@@ -18,11 +18,14 @@ bool isAlong(const Vector3& direction, const Vector3& v) {
   return direction.cross(v).norm() <= kStraight * v.norm();
 }
 
-/// Whether a motion with this speed and acceleration can go on within the limits.
-bool keeps(const MotionLimits& limits, double v, double a) {
+/// Whether a motion along a line with v and a can go on within limits, or is only slowed down.
+bool keeps(const MotionLimits& limits, const Vector3& v, const Vector3& a) {
   constexpr double kRounding = 1.0 + 1e-9;
-  return a <= limits.max_acceleration * kRounding &&
-         v + a * a / (2.0 * limits.max_jerk) <= limits.max_speed * kRounding;
+  if (a.norm() > limits.max_acceleration * kRounding) return false;
+  // The speed along a until a is zero.
+  const double peak =
+      (a.norm() > 0.0 ? a.normalized().dot(v) : 0.0) + a.squaredNorm() / (2.0 * limits.max_jerk);
+  return peak <= std::max(limits.max_speed, v.norm()) * kRounding;
 }
 
 MotionLimits scaled(const MotionLimits& limits, double share) {
@@ -54,7 +57,7 @@ TurnTerms turnTerms(double x) {
           (x * (1.0 - cosine) - 3.0 * (x - sine)) / (square * cube)};
 }
 
-/// The rotation vector of R R_zero^T that is closest to `phi`, whose length may be above pi.
+/// The rotation vector of R R_zero^T that is closest to `phi`, which is no longer than pi.
 Vector3 nearestTurn(const Matrix3& R, const Matrix3& R_zero, const Vector3& phi) {
   const Vector3 turn = rotationVector(R * R_zero.transpose());
   const double angle = turn.norm();
@@ -118,8 +121,7 @@ void ToolMotion::planAxes(int first, const MotionLimits& limits) noexcept {
   const double distance = direction.norm();
   if (distance > 0.0) direction /= distance;
   const bool is_straight = distance > 0.0 && isAlong(direction, from.v) &&
-                           isAlong(direction, from.a) &&
-                           keeps(limits, from.v.norm(), from.a.norm());
+                           isAlong(direction, from.a) && keeps(limits, from.v, from.a);
   for (int i = first; i < first + 3; ++i) {
     const double share = is_straight ? std::max(kStraight, std::abs(direction[i - first])) : 1.0;
     const AxisState& state = plan_.from[i];
@@ -148,10 +150,13 @@ ToolMotionPlan ToolMotion::planFrom(double t_s, const ToolMotionLimits& limits) 
     plan.from[i] = {line.p[i], line.v[i], line.a[i]};
     plan.from[3 + i] = {turn.p[i], turn.v[i], turn.a[i]};
   }
-  if (!turn.isAtRest()) return plan;
-  // From here on about one axis.
-  Eigen::Map<Matrix3>(plan.R_BaseZero) = rotationMatrix(turn.p) * zeroOf(plan_);
-  for (int i = 3; i < 6; ++i) plan.from[i].p = 0.0;
+  if (!turn.isAtRest() && turn.p.norm() <= std::numbers::pi) return plan;
+  // From here on about one axis; or after half a turn, as a whole one has no rotation vector that
+  // is continuous. At the new zero the speed of that is omega, its acceleration alpha.
+  const ToolReference from = evaluate(t_s);
+  const Vector3 alpha = evaluateAcceleration(t_s).alpha_BaseTool;
+  for (int i = 0; i < 3; ++i) plan.from[3 + i] = {0.0, from.omega_BaseTool[i], alpha[i]};
+  Eigen::Map<Matrix3>(plan.R_BaseZero) = from.R_BaseTool;
   return plan;
 }
 

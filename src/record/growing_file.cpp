@@ -35,7 +35,8 @@ bool GrowingFile::isOther() const {
   struct stat own {
   }, there{};
   if (::fstat(fd_, &own) != 0) return false;
-  return ::stat(path_.c_str(), &there) != 0 || own.st_ino != there.st_ino;
+  // While the writer renames its files there may be none.
+  return ::stat(path_.c_str(), &there) == 0 && own.st_ino != there.st_ino;
 }
 
 bool GrowingFile::isOver() const {

@@ -47,16 +47,20 @@ Reach followTo(const ControllerConfig& config, const JointVector& q, const Pose&
   const Controller controller(alone);
   ControllerState state = controller.initialState(q);
   ControllerOutput output;
-  state.tool_motion = state.tool_motion->to(0.0, X_BaseTool, limits);
-  const double duration_s = state.tool_motion->end_s();
-  const double step_s = std::max(period_s, duration_s / kMaxSteps);
-  const auto steps = std::llround((duration_s + kSettling_s) / step_s);
+  Pose target = X_BaseTool;
+  if (!config.task.hasRotation()) target.R_AB = tipPose(config.chain, q).R_AB;
+  const double duration_s = state.tool_motion->to(0.0, target, limits).end_s();
+  // Where the way leads does not depend on the speed.
+  state.tool_motion = state.tool_motion->to(0.0, target, config.task.commands->limits);
+  const double way_s = state.tool_motion->end_s();
+  const double step_s = std::max(period_s, way_s / kMaxSteps);
+  const auto steps = std::llround((way_s + kSettling_s) / step_s);
   for (long long i = 0; i < steps; ++i)
     controller.update(RobotInput{}, alone.gains, static_cast<double>(i) * step_s, step_s, state,
                       output);
   Reach reach{"", duration_s, state.q_desired};
   const TaskConfig& task = config.task;
-  const Missing missing = missingTo(task, X_BaseTool, tipPose(config.chain, state.q_desired));
+  const Missing missing = missingTo(task, target, tipPose(config.chain, state.q_desired));
   if (missing.position_m <= task.commands->arrival_m &&
       missing.rotation_rad <= task.commands->arrival_rad)
     return reach;

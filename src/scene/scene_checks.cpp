@@ -94,6 +94,9 @@ void checkCommands(const Checked& c) {
   if (gains.max_return_speed_m_per_s == kNoLimit)
     c.fail("task.max_return_speed_m_per_s", "is missing",
            "a speed for a task by commands, such as 0.05");
+  if (c.scene.task.hasRotation() && gains.max_return_speed_rad_per_s == kNoLimit)
+    c.fail("task.max_return_speed_rad_per_s", "is missing",
+           "a speed for a task by commands with a rotation, such as 0.2");
 }
 
 void checkTrajectory(const Checked& c) {

@@ -121,6 +121,19 @@ void ControlCycle::goOnWithOrders() noexcept {
   if (tool_orders_) goOnWithTool();
 }
 
+/// Of the commanded configuration; an orientation that is not the task's stays the reference's.
+Pose ControlCycle::toolPose() const noexcept {
+  Pose X_BaseTool = tipPose(controller_.config().chain, state_.q_desired);
+  if (!controller_.config().task.hasRotation())
+    X_BaseTool.R_AB = state_.tool_motion->evaluate(nextPathTime_s()).R_BaseTool;
+  return X_BaseTool;
+}
+
+/// An arm that goes on slowly without a module is not held off.
+double ControlCycle::toolProgress() const noexcept {
+  return std::min(1.0, state_.progress / output_.speed_share);
+}
+
 double ControlCycle::nextPathTime_s() const noexcept {
   return static_cast<double>(nextTaskCycle()) * period_s_ - state_.waited_s;
 }
@@ -129,9 +142,9 @@ void ControlCycle::fill(ToolSight& sight) const noexcept {
   sight.report = tool_orders_->report();
   sight.is_running = is_started_ && mode_.mode == Mode::kRunning;
   std::copy_n(state_.q_desired.data(), state_.q_desired.size(), sight.q);
-  sight.progress = state_.progress;
-  Pose X_BaseTool = tipPose(controller_.config().chain, state_.q_desired);
-  if (state_.progress >= 1.0) {
+  sight.run = runs_;
+  Pose X_BaseTool = toolPose();
+  if (toolProgress() >= kFreeProgress) {
     const ToolReference reference = state_.tool_motion->evaluate(nextPathTime_s());
     X_BaseTool = {reference.R_BaseTool, reference.p_BaseTool};
   }
@@ -146,13 +159,14 @@ void ControlCycle::fill(ToolSight& sight) const noexcept {
 void ControlCycle::goOnWithTool() noexcept {
   ToolWatch seen;
   seen.path_time_s = nextPathTime_s();
-  seen.progress = state_.progress;
+  seen.progress = toolProgress();
   const TaskConfig& task = controller_.config().task;
   for (int i = 0; i < output_.error.size(); ++i) {
     double& lag = task.components[i] < 3 ? seen.lag_m : seen.lag_rad;
     lag = std::hypot(lag, output_.error[i]);
   }
-  seen.X_BaseTool = tipPose(controller_.config().chain, state_.q_desired);
+  seen.X_BaseTool = toolPose();
+  seen.run = runs_;
   seen.is_running = is_started_ && mode_.mode == Mode::kRunning;
   tool_orders_->update(seen, *state_.tool_motion);
 }
@@ -257,8 +271,8 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
 
 /// Nothing that was ordered before moves a tool that goes on.
 void ControlCycle::forgetOrders() noexcept {
-  state_.tool_motion.emplace(tipPose(controller_.config().chain, state_.q_desired),
-                             state_.tool_motion->plan().number + 1);
+  ++runs_;
+  state_.tool_motion.emplace(toolPose(), state_.tool_motion->plan().number + 1);
   prepared_.path_time_s = std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -19,6 +19,13 @@ Pose poseOf(const ToolOrder& order) noexcept {
           Eigen::Map<const Vector3>(order.p_BaseTool_m)};
 }
 
+/// From where the tool is, not on to where its reference waits.
+bool leadsBack(const Vector3& target, const ToolWatch& seen, const ToolMotion& motion) noexcept {
+  const Vector3 tool = seen.X_BaseTool.p_AB;
+  const Vector3 ahead = motion.evaluate(seen.path_time_s).p_BaseTool - tool;
+  return (target - tool).dot(ahead) <= 0.0;
+}
+
 }  // namespace
 
 ToolOrders::ToolOrders(const TaskCommandsConfig& config, double period_s)
@@ -27,44 +34,60 @@ ToolOrders::ToolOrders(const TaskCommandsConfig& config, double period_s)
 void ToolOrders::order(const ToolOrder& order) noexcept {
   const bool is_next = order.kind == ToolOrder::Kind::kGoNext;
   // The rest of what was stopped.
-  if (is_next && report_.state == ToolState::kStopped && report_.number == order.number) return;
+  const bool is_over = report_.state == ToolState::kStopped && report_.number == order.number;
+  if (is_next && (is_over || refused_ == order.number)) return;
   if (!is_next) count_ = 0;
+  ToolOrder taken = order;
   if (count_ == kMaxWaiting) {
-    report_ = {order.number, ToolState::kStopped, 0};
     count_ = 0;
-    current_.kind = ToolOrder::Kind::kHold;
-    return;
+    refused_ = order.number;
+    taken.kind = ToolOrder::Kind::kHold;
   }
-  waiting_[(first_ + count_) % kMaxWaiting] = order;
+  waiting_[(first_ + count_) % kMaxWaiting] = taken;
   ++count_;
 }
 
+/// What was ordered is over.
+void ToolOrders::forget() noexcept {
+  if (count_ > 0) report_.number = waiting_[(first_ + count_ - 1) % kMaxWaiting].number;
+  if (count_ > 0 || isUnderWay(report_.state)) report_.state = ToolState::kStopped;
+  count_ = 0;
+}
+
 void ToolOrders::update(const ToolWatch& seen, ToolMotion& motion) noexcept {
-  if (!seen.is_running) {
-    // What was under way is over; what comes meanwhile is not begun.
-    if (count_ > 0) report_.number = waiting_[(first_ + count_ - 1) % kMaxWaiting].number;
-    if (count_ > 0 || isUnderWay(report_.state)) report_.state = ToolState::kStopped;
-    count_ = 0;
-    report_.waiting = 0;
-    return;
-  }
-  watch(seen, motion);
+  // Orders of before a stop may come late.
+  if (!seen.is_running || (count_ > 0 && waiting_[first_].run != seen.run)) forget();
+  if (seen.is_running) watch(seen, motion);
   const bool is_next = count_ > 0 && waiting_[first_].kind == ToolOrder::Kind::kGoNext;
   const bool is_free = !isUnderWay(report_.state) && paused_s_ <= 0.0;
   if (count_ > 0 && (!is_next || is_free)) {
     const ToolOrder order = waiting_[first_];
     first_ = (first_ + 1) % kMaxWaiting;
     --count_;
-    begin(order, seen, motion);
+    if (isGivenUp(order)) {
+      silent_s_ = 0.0;
+    } else {
+      begin(order, seen, motion);
+    }
   }
   report_.waiting = static_cast<int>(count_);
 }
 
+/// A stream has to break off before it may press again.
+bool ToolOrders::isGivenUp(const ToolOrder& order) const noexcept {
+  return report_.state == ToolState::kGivenUp && order.kind == ToolOrder::Kind::kStream &&
+         current_.kind == ToolOrder::Kind::kStream && silent_s_ <= config_.stream_timeout_s;
+}
+
 void ToolOrders::begin(const ToolOrder& order, const ToolWatch& seen, ToolMotion& motion) noexcept {
+  const bool streams_on = order.kind == ToolOrder::Kind::kStream &&
+                          current_.kind == ToolOrder::Kind::kStream && isUnderWay(report_.state);
   current_ = order;
-  blocked_s_ = paused_s_ = silent_s_ = 0.0;
+  paused_s_ = silent_s_ = 0.0;
+  if (!streams_on) blocked_s_ = 0.0;
   const std::uint64_t number = motion.plan().number + 1;
-  const bool is_held_off = seen.progress < 1.0;
+  const bool is_held_off =
+      seen.progress < kFreeProgress && (!streams_on || leadsBack(poseOf(order).p_AB, seen, motion));
   if (is_held_off) motion = ToolMotion(seen.X_BaseTool, number);
   if (order.kind == ToolOrder::Kind::kHold) {
     if (!is_held_off) motion = motion.stop(seen.path_time_s, order.limits);
@@ -72,15 +95,16 @@ void ToolOrders::begin(const ToolOrder& order, const ToolWatch& seen, ToolMotion
     motion = motion.to(seen.path_time_s, poseOf(order), order.limits);
   }
   report_.number = order.number;
+  if (streams_on && !is_held_off) return;  // blocked, too
   report_.state = order.kind == ToolOrder::Kind::kHold ? ToolState::kHolding : ToolState::kMoving;
 }
 
 void ToolOrders::watch(const ToolWatch& seen, ToolMotion& motion) noexcept {
   paused_s_ = std::max(0.0, paused_s_ - period_s_);
-  if (!isUnderWay(report_.state)) return;
   silent_s_ += period_s_;
+  if (!isUnderWay(report_.state)) return;
   if (current_.kind == ToolOrder::Kind::kStream && silent_s_ > config_.stream_timeout_s) {
-    if (seen.progress < 1.0) return rest(seen, ToolState::kLate, motion);
+    if (seen.progress < kFreeProgress) return rest(seen, ToolState::kLate, motion);
     motion = motion.stop(seen.path_time_s, current_.limits);
     report_.state = ToolState::kLate;
     return;

@@ -57,7 +57,7 @@ TEST_F(ControlSocketTest, IsGoneWithTheDaemon) {
 TEST_F(ControlSocketTest, OutlivesHostileClients) {
   const ControlSocket socket(scene_, *link_);
   std::vector<int> clients;
-  const std::string flood(20000, '{');
+  const std::string flood(40000, '{');
   for (int i = 0; i < 40; ++i) {
     clients.push_back(connect(controlPath()));
     ::send(clients.back(), flood.data(), i % 2 == 0 ? flood.size() : 100, MSG_NOSIGNAL);

@@ -103,6 +103,8 @@ TEST_F(ToolRequestsTest, RefusesInOneLineAndDoesNothing) {
             std::string::npos);
   EXPECT_NE(refusal({{"do", "follow"}, {"waypoints", Json::array()}}).find("waypoints"),
             std::string::npos);
+  EXPECT_NE(refusal({{"do", "move"}, {"to_m", {0.9, 0.3, 0.3}}, {"relative", 5}}).find("relative"),
+            std::string::npos);
   const Json far = {{"to_m", {0.9, 0.3, 0.3}}};
   EXPECT_NE(refusal({{"do", "follow"}, {"waypoints", {far, 5}}}).find("no object"),
             std::string::npos);
@@ -138,6 +140,20 @@ TEST_F(ToolRequestsTest, FullQueuesAreTold) {
   int taken = 0;
   while (ask({{"do", "stream"}, {"to_m", {0.95, 0.3, 0.25}}}).at("done") == true) ++taken;
   EXPECT_EQ(taken, static_cast<int>(LoopLink::kToolOrders));
+}
+
+TEST_F(ToolRequestsTest, SlowMovesReachAsFarAsFastOnes) {
+  const Json answer = ask({{"do", "move"}, {"to_m", {0.95, 0.4, 0.25}}, {"speed_m_per_s", 0.0001}});
+  ASSERT_EQ(answer.at("done"), true) << answer;
+  EXPECT_GT(answer.at("task").at("duration_s"), 1000.0);
+}
+
+TEST_F(ToolRequestsTest, AStreamHasOneNumber) {
+  const Json target = {{"do", "stream"}, {"to_m", {0.95, 0.3, 0.25}}};
+  const Json first = ask(target).at("task").at("number");
+  EXPECT_EQ(ask(target).at("task").at("number"), first);
+  EXPECT_NE(ask({{"do", "hold"}}).at("task").at("number"), first);
+  EXPECT_NE(ask(target).at("task").at("number"), first);
 }
 
 TEST(ToolRequestsOfAPath, AreRefused) {

@@ -108,8 +108,9 @@ TEST(ToolMotion, MayBeToldAnythingAtAnyTime) {
                 limits.position.max_speed * (1.0 + 1e-9));
       ASSERT_LE(speeding.a_BaseTool.cwiseAbs().maxCoeff(),
                 limits.position.max_acceleration * (1.0 + 1e-9));
+      // Each axis of the rotation vector; for a while two of them more, where it is counted anew.
       ASSERT_LE(reference.omega_BaseTool.norm(),
-                std::sqrt(3.0) * limits.rotation.max_speed * (1.0 + 1e-9));
+                std::sqrt(5.0) * limits.rotation.max_speed * (1.0 + 1e-9));
     }
     const ToolReference end = motion.evaluate(motion.end_s());
     if (motion.plan().kind == ToolMotionPlan::Kind::kGo) {
@@ -154,6 +155,30 @@ TEST(ToolMotion, GoesOnStraightAlongItsLine) {
       EXPECT_LT(reference.p_BaseTool.cross(line.normalized()).norm(), 1e-9);
       EXPECT_LE(reference.v_BaseTool.norm(), limits.position.max_speed * (1.0 + 1e-9));
     }
+  }
+}
+
+/// The same target with less speed: no axis goes its own way.
+TEST(ToolMotion, SlowsDownAlongItsLine) {
+  ToolMotionLimits limits;
+  const Pose start{Matrix3::Identity(), Vector3::Zero()}, end{Matrix3::Identity(), {0.3, 0.3, 0.3}};
+  const ToolMotion motion = ToolMotion(start).to(0.0, end, limits);
+  limits.position.max_speed = 0.05;
+  const ToolMotion slower = motion.to(1.0, end, limits);
+  EXPECT_NEAR(slower.evaluate(1.0).v_BaseTool.norm(), 0.1, 1e-9);
+  for (double t_s = 1.4; t_s < slower.end_s(); t_s += 0.05)
+    EXPECT_LE(slower.evaluate(t_s).v_BaseTool.norm(), 0.05 * (1.0 + 1e-9)) << t_s;
+}
+
+/// A stream that turns on and on, each target a little ahead.
+TEST(ToolMotion, TurnsOnAfterAWholeTurn) {
+  ToolMotion motion{Pose{Matrix3::Identity(), Vector3::Zero()}};
+  const ToolMotionLimits limits;
+  for (int i = 1; i < 2500; ++i) {
+    const double t_s = 0.01 * i;
+    motion = motion.to(t_s, {rotationMatrix({0.0, 0.0, 0.4 * t_s + 0.1}), Vector3::Zero()}, limits);
+    if (i <= 100) continue;
+    ASSERT_GT(motion.evaluate(t_s).omega_BaseTool.z(), 0.3) << t_s;
   }
 }
 

@@ -32,6 +32,9 @@ void tell(VirtualRobotCell& cell, const Pose& to, std::uint32_t number,
   ToolOrder order;
   order.number = number;
   order.kind = kind;
+  ToolSight sight;
+  cell.cycle.fill(sight);
+  order.run = sight.run;
   std::copy_n(to.p_AB.data(), 3, order.p_BaseTool_m);
   std::copy_n(to.R_AB.data(), 9, order.R_BaseTool);
   cell.cycle.order(order);

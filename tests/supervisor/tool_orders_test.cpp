@@ -174,6 +174,33 @@ TEST(ToolOrders, AStreamThatFallsSilentStops) {
   EXPECT_LT(rig.place().x(), x + 0.03);
 }
 
+/// Targets that lead on and on do not make the reference jump, and the arm does not chase them.
+TEST(ToolOrders, AStreamIsHeldOffAndGivesUp) {
+  OrdersRig rig;
+  const auto stream = [&](double x) {
+    rig.orders.order(orderTo({x, 0.0, 0.0}, 3, ToolOrder::Kind::kStream));
+    rig.run(0.01);
+  };
+  for (int i = 1; i <= 100; ++i) stream(0.002 * i + 0.05);
+  rig.is_held_off = true;
+  const double held = rig.seen.X_BaseTool.p_AB.x();
+  for (int i = 0; i < 50; ++i) stream(0.3 + 0.002 * i);
+  EXPECT_EQ(rig.state(), ToolState::kBlocked);
+  const double waits = rig.place().x();
+  for (int i = 0; i < 50; ++i) stream(0.4 + 0.002 * i);
+  EXPECT_EQ(rig.state(), ToolState::kBlocked);
+  EXPECT_NEAR(rig.place().x(), waits, 1e-3);
+  stream(held - 0.1);
+  EXPECT_LT(rig.place().x(), held + 1e-3) << "back is free at once";
+  for (int i = 0; i < 300 && rig.state() != ToolState::kGivenUp; ++i) stream(0.5);
+  EXPECT_EQ(rig.state(), ToolState::kGivenUp);
+  for (int i = 0; i < 300; ++i) stream(0.5);
+  EXPECT_EQ(rig.state(), ToolState::kGivenUp) << "it presses again";
+  rig.run(0.2);
+  stream(0.5);
+  EXPECT_EQ(rig.state(), ToolState::kMoving) << "a stream that broke off begins anew";
+}
+
 TEST(ToolOrders, AStopForgetsAll) {
   OrdersRig rig;
   rig.orders.order(orderTo({0.3, 0.0, 0.0}, 1));
@@ -191,13 +218,27 @@ TEST(ToolOrders, AStopForgetsAll) {
   EXPECT_EQ(rig.motion.plan().number, number);
 }
 
-TEST(ToolOrders, MoreThanFitAreRefusedAsAWhole) {
+TEST(ToolOrders, MoreThanFitEndInAHold) {
   OrdersRig rig;
   rig.orders.order(orderTo({0.3, 0.0, 0.0}, 1));
-  for (std::size_t i = 0; i <= ToolOrders::kMaxWaiting; ++i)
-    rig.orders.order(orderTo({0.0, 0.3, 0.0}, 1, ToolOrder::Kind::kGoNext));
-  EXPECT_EQ(rig.state(), ToolState::kStopped);
   rig.run(1.0);
+  const double x = rig.place().x();
+  for (std::size_t i = 0; i <= ToolOrders::kMaxWaiting + 5; ++i)
+    rig.orders.order(orderTo({0.0, 0.3, 0.0}, 1, ToolOrder::Kind::kGoNext));
+  rig.run(3.0);
+  EXPECT_EQ(rig.orders.report(), (ToolReport{1, ToolState::kHolding, 0}));
+  EXPECT_LT(rig.place().x(), x + 0.05);
+}
+
+/// As of a client whose order was checked while the arm stopped and went on.
+TEST(ToolOrders, ThatWereGivenBeforeAStopAreForgotten) {
+  OrdersRig rig;
+  rig.seen.run = 2;
+  ToolOrder late = orderTo({0.3, 0.0, 0.0}, 1);
+  late.run = 1;
+  rig.orders.order(late);
+  rig.run(1.0);
+  EXPECT_EQ(rig.orders.report(), (ToolReport{1, ToolState::kStopped, 0}));
   EXPECT_EQ(rig.place(), Vector3(Vector3::Zero()));
 }
 

@@ -12,7 +12,7 @@
 namespace tactus {
 
 inline constexpr const char* kControlName = "control";    ///< in the folder of the status file
-inline constexpr std::size_t kMaxControlMessage = 16384;  ///< bytes
+inline constexpr std::size_t kMaxControlMessage = 32768;  ///< bytes
 
 /// The path of the socket of a daemon that runs as a service, or of RUNTIME_DIRECTORY.
 std::string controlPath();

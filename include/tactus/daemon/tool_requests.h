@@ -46,6 +46,7 @@ class ToolRequests {
   LoopLink& link_;
   ToolSight sight_;
   std::uint32_t number_ = 0;
+  bool is_streaming_ = false;
   ToolReport told_;    ///< to whoever asks, until the loop has reported
   ToolReport looked_;  ///< as told to the journal
 };

@@ -41,7 +41,8 @@ static_assert(std::is_trivially_copyable_v<ToolMotionPlan> &&
 /// about a fixed axis, both at once; the limits are those of the whole position and rotation, then,
 /// and as long as what it is told leads on along the same line. From any other motion each axis of
 /// the base frame goes its fastest way, with the same limits. Turns have the limits of their
-/// rotation vector, whose speed is never less than the tool's.
+/// rotation vector from where they are counted, whose speed is never less than the tool's; that is
+/// anew at rest, and beyond half a turn.
 class ToolMotion {
  public:
   /// For ever at this pose.

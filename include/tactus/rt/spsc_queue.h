@@ -48,6 +48,13 @@ class SpscQueue {
     return true;
   }
 
+  /// By the producer: so many can be pushed now.
+  bool hasRoom(std::size_t count) noexcept {
+    producer_.seen = consumer_.own.load(std::memory_order_acquire);
+    const std::size_t used = producer_.own.load(std::memory_order_relaxed) - producer_.seen;
+    return count <= capacity() - used;
+  }
+
   /// By the consumer: the oldest element, its own until release(). nullptr: empty.
   T* front() noexcept {
     const std::size_t head = consumer_.own.load(std::memory_order_relaxed);

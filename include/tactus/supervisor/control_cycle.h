@@ -100,6 +100,8 @@ class ControlCycle {
     return task_cycles_ + (mode_.mode == Mode::kRunning ? 1 : 0);
   }
   double nextPathTime_s() const noexcept;
+  double toolProgress() const noexcept;
+  Pose toolPose() const noexcept;
   double taskTime_s() const noexcept { return static_cast<double>(task_cycles_) * period_s_; }
   DriveGoal driveGoal() const noexcept;
   void updateBrakes() noexcept;
@@ -117,6 +119,7 @@ class ControlCycle {
   GainChange gain_change_;
   std::optional<ToolOrders> tool_orders_;  ///< of tasks by command
   bool has_next_orders_ = false;
+  std::uint32_t runs_ = 0;  ///< how often the arm has begun to run
   CanRobot robot_;
   JointPlaces places_;
   std::array<const char*, kMaxJoints> joint_units_;

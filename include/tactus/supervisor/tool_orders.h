@@ -19,12 +19,16 @@ struct ToolOrder {
   };
 
   std::uint32_t number = 0;  ///< of whoever orders, to know the report by; not 0
+  std::uint32_t run = 0;     ///< as ToolSight had it: after a stop it is another one
   Kind kind = Kind::kHold;
   double p_BaseTool_m[3] = {};
   double R_BaseTool[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< by columns
   ToolMotionLimits limits;
   double pause_s = 0.0;  ///< after arrival, before the next one
 };
+
+/// Of the reference's clock: from here on the tool is not held off, less is rounding.
+inline constexpr double kFreeProgress = 1.0 - 1e-9;
 
 /// What the loop sees of the tool.
 struct ToolWatch {
@@ -33,6 +37,7 @@ struct ToolWatch {
   double lag_m = 0.0, lag_rad = 0.0;
   Pose X_BaseTool;  ///< of the desired configuration
   bool is_running = false;
+  std::uint32_t run = 0;  ///< how often it has begun to
 };
 
 enum class ToolState : std::uint8_t {
@@ -57,10 +62,10 @@ struct ToolReport {
 struct ToolSight {
   ToolReport report;
   bool is_running = false;
+  std::uint32_t run = 0;
   double q[kMaxJoints] = {};    ///< desired, m or rad
   double p_BaseTool_m[3] = {};  ///< where a motion told now would start
   double R_BaseTool[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  double progress = 1.0;
   double force_N[kMaxTactileModules] = {};
   double position_m[kMaxTactileModules] = {};
 };
@@ -74,13 +79,15 @@ class ToolOrders {
 
   ToolOrders(const TaskCommandsConfig& config, double period_s);
 
-  /// An order for which there is no room is forgotten, and the report says so: kStopped.
+  /// An order for which there is no room, with all that it belongs to, ends in a hold.
   void order(const ToolOrder& order) noexcept;
   /// Once a cycle, before it.
   void update(const ToolWatch& seen, ToolMotion& motion) noexcept;
   const ToolReport& report() const noexcept { return report_; }
 
  private:
+  void forget() noexcept;
+  bool isGivenUp(const ToolOrder& order) const noexcept;
   void begin(const ToolOrder& order, const ToolWatch& seen, ToolMotion& motion) noexcept;
   void watch(const ToolWatch& seen, ToolMotion& motion) noexcept;
   void rest(const ToolWatch& seen, ToolState state, ToolMotion& motion) noexcept;
@@ -92,6 +99,7 @@ class ToolOrders {
   std::size_t first_ = 0, count_ = 0;
   ToolOrder current_;
   ToolReport report_;
+  std::uint32_t refused_ = 0;  ///< number of orders for which there was no room
   double blocked_s_ = 0.0, paused_s_ = 0.0, silent_s_ = 0.0;
 };
 

@@ -13,7 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { kConnections = 12, kLongest = 20000 };
+enum { kConnections = 12, kLongest = 40000 };
 
 static const char* const kRequests[] = {
     "{\"do\":\"set\",\"values\":{\"controller.damping\":0.6},\"for_s\":60}",
