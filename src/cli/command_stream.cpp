@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <cstring>
 #include <istream>
 #include <memory>
 #include <stdexcept>
@@ -30,18 +29,6 @@ struct StreamOptions {
   std::string to = kPlotJuggler;
   double rate_hz = 100.0;
 };
-
-double numberAt(const CycleRecord& record, const RecordColumn& column) {
-  const char* const at = reinterpret_cast<const char*>(&record) + column.offset;
-  if (column.type == FieldType::kDouble) {
-    double number;
-    std::memcpy(&number, at, sizeof(number));
-    return number;
-  }
-  std::int64_t number;
-  std::memcpy(&number, at, sizeof(number));
-  return static_cast<double>(number);
-}
 
 /// As PlotJuggler's UDP server takes it: flat JSON objects with the time as `timestamp`; each other
 /// member is a series, of that name behind a slash. What is not finite is left out, for JSON has no

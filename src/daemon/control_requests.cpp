@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "tactus/daemon/request_refusal.h"
 #include "tactus/scene/gain_keys.h"
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/source_hash.h"
@@ -15,11 +16,6 @@ namespace {
 
 constexpr std::size_t kKeptForUndo = 16;
 constexpr double kMaxFor_s = 86400.0;
-
-/// What is wrong with a request itself.
-[[noreturn]] void refuse(const std::string& problem, const std::string& expectation) {
-  throw InputError(fmt::format("request: {}, expected {}", problem, expectation));
-}
 
 const char* stateName(GainState state) noexcept {
   switch (state) {
@@ -64,13 +60,13 @@ std::string valueText(const std::string& key, const Json& value) {
   if (value.is_null()) return "~";
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number() || value.is_boolean()) return value.dump();
-  refuse(fmt::format("{} is no single value", inQuotes(key)), "a number, a word or null");
+  refuseRequest(fmt::format("{} is no single value", inQuotes(key)), "a number, a word or null");
 }
 
 std::vector<Override> settingsOf(const Json& request) {
   const auto values = request.find("values");
   if (values == request.end() || !values->is_object() || values->empty())
-    refuse("no values", "an object of keys and values");
+    refuseRequest("no values", "an object of keys and values");
   std::vector<Override> settings;
   for (const auto& [key, value] : values->items()) settings.push_back({key, valueText(key, value)});
   return settings;
@@ -79,9 +75,10 @@ std::vector<Override> settingsOf(const Json& request) {
 double duration_s(const Json& request) {
   const auto found = request.find("for_s");
   if (found == request.end()) return kNoLimit;
-  if (!found->is_number()) refuse("for_s is no number", "seconds");
+  if (!found->is_number()) refuseRequest("for_s is no number", "seconds");
   const double value_s = found->get<double>();
-  if (!(value_s > 0.0 && value_s <= kMaxFor_s)) refuse("for_s is out of range", "0 to 86400 s");
+  if (!(value_s > 0.0 && value_s <= kMaxFor_s))
+    refuseRequest("for_s is out of range", "0 to 86400 s");
   return value_s;
 }
 
@@ -112,7 +109,7 @@ ControlRequests::ControlRequests(const Scene& scene, LoopLink& link)
 std::string ControlRequests::answer(std::string_view request) {
   try {
     const Json parsed = Json::parse(request, nullptr, false);
-    if (!parsed.is_object()) refuse("no JSON object", "one a message");
+    if (!parsed.is_object()) refuseRequest("no JSON object", "one a message");
     return compact(dispatch(parsed));
   } catch (const std::exception& error) {
     return compact({{"done", false}, {"error", error.what()}});
@@ -139,8 +136,8 @@ Json ControlRequests::tell(const std::string& what, const Json& request) {
   } else if (what == "hold") {
     task = tool_.hold();
   } else {
-    refuse(fmt::format("do is {}", inQuotes(what)),
-           "one of set, reload, undo, show, move, follow, hold, stream");
+    refuseRequest(fmt::format("do is {}", inQuotes(what)),
+                  "one of set, reload, undo, show, move, follow, hold, stream");
   }
   return {{"done", true}, {"task", std::move(task)}};
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "tactus/daemon/request_refusal.h"
 #include "tactus/math/rotation.h"
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/reach_check.h"
@@ -22,10 +23,6 @@ constexpr double kMaxTurn_rad = 4.0;
 constexpr double kMaxPause_s = 86400.0;
 constexpr double kLeastSpeed = 1e-5;  ///< m/s or rad/s
 constexpr const char* kNoRoom = "too many orders at once, expected some milliseconds between them";
-
-[[noreturn]] void refuseRequest(const std::string& problem, const std::string& expectation) {
-  throw InputError(fmt::format("request: {}, expected {}", problem, expectation));
-}
 
 const char* stateName(ToolState state) noexcept {
   switch (state) {
@@ -253,8 +250,7 @@ Json ToolRequests::show() {
   if (module < 0) return json;
   const TactileModuleConfig& config = scene_.controller.tactile_modules[module];
   ChainPose pose;
-  scene_.controller.chain.computePose(
-      Eigen::Map<const Eigen::VectorXd>(sight_.q, scene_.controller.chain.size()), pose);
+  scene_.controller.chain.computePose(jointsOf(sight_), pose);
   const Pose X_BaseModule = framePose(pose, config.link);
   const Vector3 p = X_BaseModule.p_AB + X_BaseModule.R_AB.col(0) * sight_.position_m[module];
   json["contact"] = {{"module", scene_.module_links[module]},

@@ -120,4 +120,14 @@ ContactSummary ContactList::summarise(bool is_released) const {
   return contact;
 }
 
+std::vector<ContactList> contactLists(const ControllerConfig& config, std::size_t expected_cycles) {
+  const std::size_t modules = config.tactile_modules.size();
+  // What a law acts on says of several modules only that one of them is touched.
+  const bool is_told_by_law = config.force_control.has_value() && modules == 1;
+  std::vector<ContactList> lists;
+  for (std::size_t i = 0; i < modules; ++i)
+    lists.emplace_back(is_told_by_law, expected_cycles / modules, static_cast<int>(i));
+  return lists;
+}
+
 }  // namespace tactus

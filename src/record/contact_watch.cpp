@@ -9,13 +9,7 @@ constexpr double kMemory_s = 60.0;
 
 }  // namespace
 
-/// As RunSummary, whose contacts these are.
-ContactWatch::ContactWatch(const ControllerConfig& config) {
-  const int modules = std::max(1, static_cast<int>(config.tactile_modules.size()));
-  const bool is_told_by_law = config.force_control.has_value() && modules == 1;
-  for (int module = 0; module < modules; ++module)
-    lists_.emplace_back(is_told_by_law, std::size_t{0}, module);
-}
+ContactWatch::ContactWatch(const ControllerConfig& config) : lists_(contactLists(config, 0)) {}
 
 std::vector<ContactFigures> ContactWatch::add(const CycleRecord& record) {
   recent_.push_back(record);

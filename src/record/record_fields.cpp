@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <utility>
 
 namespace tactus {
@@ -125,6 +126,18 @@ std::vector<RecordColumn> recordColumns(const RecordShape& shape) {
       if (isOfModule(field) && shape.entries(field) > 0) add(field, module, true);
   }
   return columns;
+}
+
+double numberAt(const CycleRecord& record, const RecordColumn& column) noexcept {
+  const char* const word = reinterpret_cast<const char*>(&record) + column.offset;
+  if (column.type == FieldType::kDouble) {
+    double number;
+    std::memcpy(&number, word, sizeof(number));
+    return number;
+  }
+  std::int64_t number;
+  std::memcpy(&number, word, sizeof(number));
+  return static_cast<double>(number);
 }
 
 void appendRun(const CopyRun& run, std::vector<CopyRun>& runs) {

@@ -24,17 +24,6 @@ const char* wordAt(const CycleRecord& record, const RecordColumn& column) noexce
   return reinterpret_cast<const char*>(&record) + column.offset;
 }
 
-double numberAt(const CycleRecord& record, const RecordColumn& column) noexcept {
-  if (column.type == FieldType::kDouble) {
-    double number;
-    std::memcpy(&number, wordAt(record, column), sizeof(number));
-    return number;
-  }
-  std::int64_t number;
-  std::memcpy(&number, wordAt(record, column), sizeof(number));
-  return static_cast<double>(number);
-}
-
 }  // namespace
 
 Replayer::Replayer(const Controller& controller, int joints, double period_s, bool has_missed)

@@ -63,13 +63,7 @@ void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
 }  // namespace
 
 RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
-    : limits_(config.limits) {
-  const std::size_t modules = config.tactile_modules.size();
-  // What a law acts on says of several modules only that one of them is touched.
-  const bool is_told_by_law = config.force_control.has_value() && modules == 1;
-  for (std::size_t i = 0; i < modules; ++i) {
-    contacts_.emplace_back(is_told_by_law, expected_cycles / modules, static_cast<int>(i));
-  }
+    : limits_(config.limits), contacts_(contactLists(config, expected_cycles)) {
   if (config.task.hasRotation()) figures_.tcp_rotation_error.emplace();
 }
 

@@ -73,4 +73,7 @@ class ContactList {
   Present present_;
 };
 
+/// One a tactile module.
+std::vector<ContactList> contactLists(const ControllerConfig& config, std::size_t expected_cycles);
+
 }  // namespace tactus

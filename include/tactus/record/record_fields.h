@@ -70,6 +70,9 @@ struct RecordColumn {
 /// What is of a second tactile module and of further ones comes after all else.
 std::vector<RecordColumn> recordColumns(const RecordShape& shape);
 
+/// What a record has there; of an integer the nearest number.
+double numberAt(const CycleRecord& record, const RecordColumn& column) noexcept;
+
 /// A stretch of bytes that lies in one piece both in a CycleRecord and in a message of the log.
 struct CopyRun {
   std::size_t record_offset;
