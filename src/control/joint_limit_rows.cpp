@@ -24,7 +24,7 @@ bool JointLimitRows::find(const JointVector& q, int i, double share, Limit& limi
   limit.presence = fades_ ? 1.0 - left / kNear : 1.0;
   limit.speed = std::min(kApproach_per_s * left, braking) / (share * limit.presence);
   limit.sign = to_lower < to_upper ? 1.0 : -1.0;
-  return limit.speed < limits_.max_velocity[i];
+  return fades_ || limit.speed < limits_.max_velocity[i];
 }
 
 void JointLimitRows::add(const JointVector& q, const TaskKinematics& kinematics,

@@ -196,7 +196,7 @@ void SeveralContacts::addRows(const ForceGains& gains, const TaskKinematics& kin
 double SeveralContacts::holdInNullSpace(const ForceGains& gains, const SpeedRows& rows,
                                         const RowVector& v_hold, int contacts, RowProblem& problem,
                                         NullSpeedLimits& limits, Motion& motion) const noexcept {
-  if (contacts == 0) return 0.0;
+  if (rows.size == 0) return 0.0;
   const RowVector l = problem.solve(v_hold, kNullSpaceAlone, motion).l;
   Motion push;
   push.y.setZero();

@@ -31,7 +31,7 @@ bool passOn(const RowVector& lacking, const RowVector& delta, const RowVector& l
   for (int i = 0; i < d.size(); ++i) {
     const double before = d[i];
     d[i] = lacking[i] + delta[i] * l[i];
-    most = std::max(most, std::abs(lacking[i]));
+    most = std::max(most, lacking[i]);
     change = std::max(change, std::abs(d[i] - before));
   }
   return change > kFound * most;

@@ -56,6 +56,27 @@ TEST(SeveralGrid, TheLawKeepsItsForcesAndRests) {
   EXPECT_GT(with_several, 4);
 }
 
+RunSetup skinBetweenBodies() {
+  const Scene scene =
+      loadScene(std::string(TACTUS_SOURCE_DIR) + "/config/scenes/whole_arm/crops9_skin_rail.yaml",
+                {}, SceneUse::kSimulation);
+  return {scene.controller, scene.plant, scene.period_s, scene.duration_s};
+}
+
+/// Drives would hear a command that goes to and fro each cycle.
+TEST(SeveralGrid, CommandsDoNotStepWhereRowsComeAndGo) {
+  const std::vector<SeveralCase> cases = drawSeveral(skinBetweenBodies(), 78, 72);
+  std::vector<SeveralRun> runs(cases.size());
+  inParallel(cases.size(), [&](std::size_t i) { runs[i] = runSeveral(cases[i].setup); });
+  int judged = 0, steps = 0;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    judged += !runs[i].is_out;
+    steps += !runs[i].is_out && runs[i].step_between_samples > 0.02;
+  }
+  EXPECT_GT(judged, 30);
+  EXPECT_LE(steps, judged / 20) << "of " << judged;
+}
+
 /// The judge sees what it is there for.
 TEST(SeveralGrid, TellsAnArmThatDoesNotAnswer) {
   const std::vector<SeveralCase> cases = drawSeveral(skin(), 77, 30);

@@ -71,6 +71,23 @@ TEST(JointLimitRows, AreThereWhereAJointCouldComeTooFast) {
   }
 }
 
+TEST(JointLimitRows, ThatFadeBeginWithoutAStep) {
+  test::Random random(334);
+  for (int i = 0; i < 500; ++i) {
+    LimitedCase c(random);
+    c.q.setZero();
+    for (const double left : {0.25, 0.2499999, 0.24, 0.1}) {
+      c.q[0] = 1.0 - left;
+      c.rows.size = 0;
+      JointLimitRows(c.limits, true).add(c.q, c.kinematics, c.inv_sqrt, 1.0, c.rows);
+      ASSERT_EQ(c.rows.size, left < 0.25 ? 1 : 0) << left;
+      if (left < 0.25) {
+        ASSERT_NEAR(c.rows.row[0].presence, 1.0 - left / 0.25, 1e-12);
+      }
+    }
+  }
+}
+
 /// Whatever the motion was: no joint then goes to its limit faster than it may.
 TEST(JointLimitRows, SlowEachJointDownOnItsWayToTheLimit) {
   test::Random random(332);

@@ -86,6 +86,29 @@ TEST(SpeedRows, LeaveAMotionAloneThatKeepsThem) {
   EXPECT_EQ(before, c.joints(c.motion));
 }
 
+/// As of a wall that begins to be near: its row is there in one cycle and not in the next.
+TEST(SpeedRows, ThatNothingCouldBreakMakeNoDifferenceToOthers) {
+  test::Random random(319);
+  int opposed = 0;
+  for (int i = 0; i < 2000; ++i) {
+    RowsCase c(random, random.integer(2, 5));
+    SpeedRows more = c.rows;
+    SpeedRow& wall = more.row[more.size++];
+    wall = c.rows.row[0];
+    wall.a_scaled *= random.chance(0.5) ? 0.0 : -1e-3;
+    wall.a_task *= wall.a_scaled.isZero(0.0) ? 0.0 : -1e-3;
+    wall.v_max_m_per_s = random.logUniform(1e6, 1e16);
+    wall.presence = 0.0;
+    for (const RowSpace& space : {kNullSpaceAlone, kBothSpaces}) {
+      const RowVector l = RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), space, c.motion).l;
+      const RowVector l_more = RowProblem(more, c.m).solve(ownSpeeds(more), space, c.motion).l;
+      ASSERT_LE((l_more.head(c.rows.size) - l).cwiseAbs().maxCoeff(), 1e-9 * l.maxCoeff()) << i;
+      opposed += (l.array() > 0.0).count() > 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(opposed, 1000);
+}
+
 /// With one row and no null space they are the approach limit's u_t = min(0, v_res + v_max) / k_t.
 TEST(SpeedRows, OfOneContactAloneAreItsLaw) {
   test::Random random(314);
