@@ -124,18 +124,12 @@ Json waitFor(const ControlClient& daemon, Json task) {
 }
 
 int tell(const Json& request, const MoveOptions& options) {
-  try {
-    const ControlClient daemon(controlPath());
-    Json task = daemon.ask(request).at("task");
-    if (options.waits) task = waitFor(daemon, std::move(task));
-    std::fputs((options.json ? jsonText(task) : taskText(task)).c_str(), stdout);
-    const bool is_well = task.at("state") != "given_up" && task.at("state") != "stopped";
-    return is_well ? kExitDone : kExitFault;
-  } catch (const InputError& error) {
-    if (options.json)
-      std::fputs(jsonText({{"done", false}, {"error", error.what()}}).c_str(), stdout);
-    throw;
-  }
+  const ControlClient daemon(controlPath());
+  Json task = daemon.ask(request).at("task");
+  if (options.waits) task = waitFor(daemon, std::move(task));
+  std::fputs((options.json ? jsonText(task) : taskText(task)).c_str(), stdout);
+  const bool is_well = task.at("state") != "given_up" && task.at("state") != "stopped";
+  return is_well ? kExitDone : kExitFault;
 }
 
 CLI::App* addOrder(CLI::App& app, const char* name, const char* help, MoveOptions& options) {

@@ -55,17 +55,11 @@ std::string stateText(const Json& answer) {
 }
 
 int change(const Json& request, const ChangeOptions& options) {
-  try {
-    const Json answer = ControlClient(controlPath()).change(request, options.waits);
-    std::fputs(
-        options.json ? jsonText(answer).c_str() : (changeText(answer) + stateText(answer)).c_str(),
-        stdout);
-    return answer.at("trouble").get<std::string>().empty() ? kExitDone : kExitFault;
-  } catch (const InputError& error) {
-    if (options.json)
-      std::fputs(jsonText({{"done", false}, {"error", error.what()}}).c_str(), stdout);
-    throw;
-  }
+  const Json answer = ControlClient(controlPath()).change(request, options.waits);
+  std::fputs(
+      options.json ? jsonText(answer).c_str() : (changeText(answer) + stateText(answer)).c_str(),
+      stdout);
+  return answer.at("trouble").get<std::string>().empty() ? kExitDone : kExitFault;
 }
 
 /// A word as it stands in YAML: a number is one, everything else a word.

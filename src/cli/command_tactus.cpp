@@ -1,12 +1,15 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "tactus/cli/commands.h"
 #include "tactus/record/run_error.h"
+#include "tactus/scene/json.h"
 #include "tactus/scene/located_error.h"
 
 namespace tactus {
@@ -30,6 +33,22 @@ void refuseUnknownCommand(const CLI::App& app, const char* word) {
       "tactus", {nearest.empty() ? std::string(word) : std::string(word) + ", perhaps " + nearest});
 }
 
+/// For people on standard error, and for programs, which have asked for JSON, on standard output.
+int refuse(const std::exception& error, bool as_json, int exit_code) {
+  std::fprintf(stderr, "%s\n", error.what());
+  if (!as_json) return exit_code;
+  Json json = {{"done", false}, {"error", error.what()}};
+  if (const auto* located = dynamic_cast<const LocatedError*>(&error))
+    json.update({{"file", located->place.file},
+                 {"line", located->place.line},
+                 {"column", located->place.column},
+                 {"key", located->place.key},
+                 {"problem", located->place.problem},
+                 {"expected", located->place.expected}});
+  std::fputs(jsonText(json).c_str(), stdout);
+  return exit_code;
+}
+
 }  // namespace
 
 int tactusProgram(int argc, char** argv) {
@@ -37,6 +56,8 @@ int tactusProgram(int argc, char** argv) {
   app.set_version_flag("--version", TACTUS_VERSION);
   app.require_subcommand(1);
   int exit_code = kExitDone;
+  const bool as_json =
+      std::any_of(argv, argv + argc, [](const char* word) { return !std::strcmp(word, "--json"); });
   addCheckCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
   addExportCommand(app, exit_code);
@@ -61,16 +82,16 @@ int tactusProgram(int argc, char** argv) {
     if (argc > 1) refuseUnknownCommand(app, argv[1]);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exitCodeAfterFlush(kExitDone) : kExitUsage;
+    if (app.exit(error) == 0) return exitCodeAfterFlush(kExitDone);
+    if (as_json) std::fputs(jsonText({{"done", false}, {"error", error.what()}}).c_str(), stdout);
+    return kExitUsage;
   } catch (const RunError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitFault;
+    return refuse(error, as_json, kExitFault);
   } catch (const std::system_error& error) {  // of fmt::print
     std::fprintf(stderr, "standard output: %s\n", error.what());
     return kExitFault;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return kExitBadInput;
+    return refuse(error, as_json, kExitBadInput);
   }
   return exitCodeAfterFlush(exit_code);
 }

@@ -99,10 +99,15 @@ std::string inQuotes(std::string_view user_text) {
 
 void failAt(const SourcePosition& at, std::string_view key, std::string_view problem,
             std::string_view expectation) {
-  throw InputError(fmt::format("{}:{}:{}: {}: {}, {}",
-                               at.file && !at.file->empty() ? escaped(*at.file) : "-", at.line,
-                               at.column, escapedKey(shortened(key, kMaxShownKeyBytes)),
-                               escaped(problem), escaped(expectation)));
+  const ErrorPlace place = {at.file && !at.file->empty() ? escaped(*at.file) : "-",
+                            escapedKey(shortened(key, kMaxShownKeyBytes)),
+                            at.line,
+                            at.column,
+                            escaped(problem),
+                            escaped(expectation)};
+  throw LocatedError(fmt::format("{}:{}:{}: {}: {}, {}", place.file, place.line, place.column,
+                                 place.key, place.problem, place.expected),
+                     place);
 }
 
 SourcePosition positionAt(std::shared_ptr<const std::string> file, std::string_view text,

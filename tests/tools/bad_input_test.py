@@ -42,10 +42,20 @@ class BadInput(unittest.TestCase):
         for command in commands:
             result = self.run_tactus(*command, *sets)
             self.assertEqual(result.returncode, 1, result)
-            self.assertEqual(result.stdout, "")
             self.assertRegex(result.stderr, ONE_LINE)
+            self.expect_taken_apart(result, "--json" in command)
             self.assertTrue(result.stderr.startswith(start), result.stderr)
         self.assertEqual(sorted(self.folder.rglob("*")), before, "something was written")
+
+    def expect_taken_apart(self, result, as_json):
+        """Who asks for JSON gets the parts of the line, too; nobody else anything but it."""
+        if not as_json:
+            self.assertEqual(result.stdout, "")
+            return
+        error = json.loads(result.stdout)
+        self.assertEqual((error["done"], error["error"] + "\n"), (False, result.stderr))
+        line = "{file}:{line}:{column}: {key}: {problem}, {expected}\n".format(**error)
+        self.assertEqual(line, result.stderr)
 
     def write(self, text):
         (self.folder / "scene.yaml").write_text(f"extends: {GOOD}\n{text}")
@@ -65,6 +75,13 @@ class BadInput(unittest.TestCase):
     def test_start_outside_limits(self):
         scene = self.write("start: [9, 0, 0, 0, 0, 0, 0, 0, 0]\n")
         self.expect_refused(scene, "scene.yaml:2:9: start[0]: ")
+
+    def test_usage_as_json(self):
+        for command in (["check", "--json"], ["check", "a", "--json", "--no-such"], ["--json"]):
+            result = self.run_tactus(*command)
+            self.assertEqual(result.returncode, 2)
+            self.assertIs(json.loads(result.stdout)["done"], False)
+            self.assertNotEqual(result.stderr, "")
 
     def test_overloaded_bus(self):
         """More than 80 % of a bus is refused with the arithmetic; a little less is accepted. A

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What bash offers behind `tactus`.
+"""What bash and zsh offer behind `tactus`.
 
 usage: completion_test.py TACTUS
 """
@@ -70,6 +70,31 @@ class Completion(unittest.TestCase):
 
     def test_keys_and_sections_to_explain(self):
         self.assertEqual(self.offered("keys", "redundancy.joint")[0], "redundancy.joint_limit_avoidance")
+
+
+# As zsh calls it; what would be added to its list is printed.
+ASK_ZSH = """
+fpath=("$1"); shift
+autoload -Uz _tactus
+compadd() { while [[ $1 != -- ]]; do shift; done; shift; print -rl -- "$@" }
+words=("$@"); CURRENT=$#
+_tactus
+"""
+
+
+class ZshCompletion(Completion):
+    def offered(self, *words):
+        quoted = [word.replace(" ", "\\ ") for word in words]
+        result = subprocess.run(["zsh", "-fuc", ASK_ZSH, "zsh", SCRIPT.parent, TACTUS, *quoted],
+                                cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(result.stderr, "")
+        offered = result.stdout.split("\n")[:-1]
+        return sorted(word.removesuffix("/") for word in offered) or [""]
+
+    def test_options(self):
+        self.assertEqual(sorted(self.offered("simulate", "one.yaml", "--")),
+                         ["--help", "--json", "--name", "--output", "--set"])
+        self.assertEqual(self.offered("keys", "--man", "s"), ["scene"])
 
 
 unittest.main()

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace tactus {
 
@@ -9,6 +11,18 @@ namespace tactus {
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// One that says where, taken apart for programs that read it. Columns count from 1, in bytes.
+struct ErrorPlace {
+  std::string file, key;
+  int line = 1, column = 1;
+  std::string problem, expected;
+};
+class LocatedError : public InputError {
+ public:
+  LocatedError(const std::string& text, ErrorPlace at) : InputError(text), place(std::move(at)) {}
+  ErrorPlace place;
 };
 
 }  // namespace tactus

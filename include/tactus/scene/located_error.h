@@ -17,7 +17,7 @@ struct SourcePosition {
   int column = 1;
 };
 
-/// Throws the InputError of a place. `key` is the dotted path of the value, "-" for none.
+/// Throws the LocatedError of a place. `key` is the dotted path of the value, "-" for none.
 [[noreturn]] void failAt(const SourcePosition& at, std::string_view key, std::string_view problem,
                          std::string_view expectation);
 
