@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tactus/cli/commands.h"
+#include "tactus/cli/progress_line.h"
 #include "tactus/record/csv_export.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/located_error.h"
@@ -27,7 +28,10 @@ void addExportCommand(CLI::App& app, int& exit_code) {
       fmt::print(stderr, "{}: the log was cut off after {} cycles\n", escaped(options->log),
                  extent.cycles);
     }
-    exportCsv(options->log, options->output);
+    ProgressLine line(options->output);
+    exportCsv(options->log, options->output, [&](std::uint64_t cycles) {
+      line.show(static_cast<double>(cycles) / static_cast<double>(extent.cycles));
+    });
     exit_code = kExitDone;
   });
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
+#include "tactus/cli/progress_line.h"
 #include "tactus/record/log_parts.h"
 #include "tactus/record/replay.h"
 #include "tactus/record/ulog_format.h"
@@ -26,6 +28,9 @@ namespace tactus {
 namespace {
 
 constexpr std::string_view kMissedCycles = "missed_cycles";
+constexpr std::uint64_t kCyclesBetweenReports = 1000;
+
+using CycleProgress = std::function<void(std::uint64_t cycles)>;
 
 struct ReplayOptions {
   std::vector<std::string> logs, settings;
@@ -139,13 +144,14 @@ class LogReplay {
     if (!options.output.empty()) csv_.emplace(options.output, shape_);
   }
 
-  void add(UlogReader& reader, const std::string& path) {
+  void add(UlogReader& reader, const std::string& path, const CycleProgress& progress) {
     replayer_.beginPart(logPart(reader.description(), path).part);
     const bool has_path_time = reader.has("path_time_s");
     reader.assumeGains(scene_.controller.gains);
     CycleRecord recorded;
     while (reader.next(recorded)) {
       if (!has_path_time) recorded.path_time_s = recorded.task_time_s;  // nothing waited then
+      if (++cycles_ % kCyclesBetweenReports == 0) progress(cycles_);
       checkMotion(path, scene_, recorded);
       tune(path, recorded);
       const CycleRecord replayed = replayer_.replay(recorded);
@@ -184,16 +190,17 @@ class LogReplay {
   std::vector<std::size_t> set_gains_;  ///< offsets
   Gains gains_;                         ///< of the cycle before, as recorded
   Gains used_;                          ///< and with those of --set
+  std::uint64_t cycles_ = 0;
   std::optional<ReplayCsv> csv_;
 };
 
-ReplayResult replayLogs(const ReplayOptions& options) {
+ReplayResult replayLogs(const ReplayOptions& options, const CycleProgress& progress) {
   std::optional<LogReplay> replay;
   for (const std::string& path : options.logs) {
     std::ifstream in = openLog(path);
     UlogReader reader(in, path);
     if (!replay) replay.emplace(options, reader);
-    replay->add(reader, path);
+    replay->add(reader, path, progress);
   }
   return replay->finish();
 }
@@ -269,7 +276,14 @@ int runReplay(const ReplayOptions& options) {
   for (const std::string& log : options.logs) {
     if (!options.output.empty()) refuseOverwriting(log, options.output);
   }
-  ReplayResult result = replayLogs(options);
+  std::uint64_t cycles = 0;
+  for (const LogExtent& extent : extents) cycles += extent.cycles;
+  ReplayResult result = [&] {
+    ProgressLine line("replay");
+    return replayLogs(options, [&](std::uint64_t so_far) {
+      line.show(static_cast<double>(so_far) / static_cast<double>(cycles));
+    });
+  }();
   for (std::size_t i = 0; i < extents.size(); ++i) {
     if (!extents[i].cut_off) continue;
     result.cut_off = true;

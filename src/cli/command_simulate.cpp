@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
+#include "tactus/cli/progress_line.h"
 #include "tactus/cli/simulation.h"
 #include "tactus/record/fault_text.h"
 #include "tactus/record/run_folder.h"
@@ -68,26 +68,6 @@ std::vector<fs::path> prepareFolders(const SimulateOptions& options,
   return folders;
 }
 
-/// Keeps one line of a terminal up to date; says nothing elsewhere.
-class ProgressLine {
- public:
-  explicit ProgressLine(std::string name) : name_(std::move(name)) {}
-
-  void show(double share) {
-    if (!is_terminal_) return;
-    fmt::print(stderr, "\r{:<32} {:3.0f} %", name_, 100.0 * share);
-    std::fflush(stderr);
-  }
-
-  void clear() {
-    if (is_terminal_) fmt::print(stderr, "\r{:<40}\r", "");
-  }
-
- private:
-  std::string name_;
-  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
-};
-
 void printHeading() {
   fmt::print("{:<28} {:>9} {:>9} {:>10} {:>10} {:>8}  {}\n", "scene", "peak", "final", "TCP max",
              "TCP final", "faster", "outcome");
@@ -105,10 +85,10 @@ void printRow(const Scene& scene, const SimulationResult& result) {
 }
 
 SimulationResult simulateScene(const Scene& scene, const fs::path& folder) {
-  ProgressLine line(scene.name);
-  const SimulationResult result =
-      simulate(scene, (folder / "run.ulg").string(), [&line](double share) { line.show(share); });
-  line.clear();
+  const SimulationResult result = [&] {
+    ProgressLine line(scene.name);
+    return simulate(scene, (folder / "run.ulg").string(), [&](double share) { line.show(share); });
+  }();
   writeSummary((folder / "summary.json").string(), scene, result.figures, result.real_time_factor);
   return result;
 }

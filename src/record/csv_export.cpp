@@ -6,6 +6,8 @@
 namespace tactus {
 namespace {
 
+constexpr std::uint64_t kCyclesBetweenReports = 1000;
+
 /// Of a number from a log, which may be any.
 template <typename Enum>
 std::string_view nameOf(std::uint64_t number, std::size_t count, const char* (*name)(Enum)) {
@@ -14,7 +16,8 @@ std::string_view nameOf(std::uint64_t number, std::size_t count, const char* (*n
 
 }  // namespace
 
-void exportCsv(const std::string& log_path, const std::string& csv_path) {
+void exportCsv(const std::string& log_path, const std::string& csv_path,
+               const std::function<void(std::uint64_t cycles)>& progress) {
   refuseOverwriting(log_path, csv_path);
   std::ifstream in = openLog(log_path);
   UlogReader reader(in, log_path);
@@ -26,7 +29,8 @@ void exportCsv(const std::string& log_path, const std::string& csv_path) {
   csv.add("mode_name");
   csv.endLine();
   CycleRecord record;
-  while (reader.next(record)) {
+  for (std::uint64_t cycles = 0; reader.next(record); ++cycles) {
+    if (progress && cycles % kCyclesBetweenReports == 0) progress(cycles);
     for (const RecordColumn& column : columns) csv.add(record, column);
     csv.add(nameOf(record.fault, faultTable().size(), faultName));
     csv.add(nameOf(record.mode, kModeCount, modeName));

@@ -5,18 +5,25 @@
 #include <thread>
 #include <vector>
 
+#include "tactus/cli/progress_line.h"
+
 namespace tactus {
 
-/// work(i) for each i below `count`, on all cores.
+/// work(i) for each i below `count`, on all cores. A terminal shows how far it has come.
 template <typename Work>
 void inParallel(std::size_t count, const Work& work) {
   std::atomic<std::size_t> next = 0;
-  const auto take = [&] {
-    for (std::size_t i = next++; i < count; i = next++) work(i);
+  const auto take = [&](ProgressLine* line) {
+    for (std::size_t i = next++; i < count; i = next++) {
+      work(i);
+      if (line) line->show(static_cast<double>(i) / static_cast<double>(count));
+    }
   };
   std::vector<std::jthread> workers;
-  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) workers.emplace_back(take);
-  take();
+  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i)
+    workers.emplace_back(take, nullptr);
+  ProgressLine line("runs");
+  take(&line);
 }
 
 }  // namespace tactus
