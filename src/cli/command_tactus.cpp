@@ -37,6 +37,7 @@ int tactusProgram(int argc, char** argv) {
   app.set_version_flag("--version", TACTUS_VERSION);
   app.require_subcommand(1);
   int exit_code = kExitDone;
+  addInitCommand(app, exit_code);
   addCheckCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
   addExportCommand(app, exit_code);
