@@ -43,6 +43,7 @@ int tactusProgram(int argc, char** argv) {
   addExportCommand(app, exit_code);
   addContactsCommand(app, exit_code);
   addIdentifyCommand(app, exit_code);
+  addCalibrateCommand(app, exit_code);
   addReplayCommand(app, exit_code);
   addPlantCommand(app, exit_code);
   addBenchCommand(app, exit_code);

@@ -2,28 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
 
-#include "support/random.h"
+#include "support/hidden_calibration.h"
 
 namespace tactus {
 namespace {
 
 constexpr CalibratedModule kCalibrated{100000.0, 0.38, 0.06};
-using HiddenRows = Eigen::Matrix<double, 5, 8>;
-
-/// One of a module whose eight cells are anywhere, and of a well-built one: no worse than 40.
-HiddenRows hiddenCalibration(test::Random& random) {
-  while (true) {
-    HiddenRows C;
-    for (double& c : C.reshaped()) c = random.uniform(-1.0, 1.0);
-    const Wrench5 scale{{1.0, 1.0, 0.19, 0.19, 0.06}};
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd{Eigen::MatrixXd(C)};
-    if (svd.singularValues()[0] < 10.0 * svd.singularValues()[4]) return scale.asDiagonal() * C;
-  }
-}
+using test::hiddenCalibration;
+using test::HiddenRows;
 
 /// The channels that a calibration of so many rows reads as a wrench, by an oracle of its own: the
 /// smallest ones.
