@@ -165,6 +165,18 @@ Wrench5 wrenchOf(const KnownPush& push) noexcept {
                   push.position_m * push.force_y_N, push.moment_x_Nm}};
 }
 
+int wrongPush(const CalibrationFit& fit) noexcept {
+  const auto shareOf = [&](int push) {
+    const auto& left_out = fit.left_out[static_cast<std::size_t>(push)];
+    return left_out ? left_out->share : 0.0;
+  };
+  int farthest = fit.worst;
+  for (int i = 0; i < std::ssize(fit.left_out); ++i)
+    if (farthest < 0 || shareOf(i) > shareOf(farthest)) farthest = i;
+  if (farthest < 0 || !(shareOf(farthest) > kMaxLeftOutShare)) return -1;
+  return fit.worst >= 0 && shareOf(fit.worst) > kMaxLeftOutShare ? fit.worst : farthest;
+}
+
 double pushesCondition(const std::vector<KnownPush>& pushes, const CalibratedModule& module,
                        int* weakest_row) {
   if (pushes.empty()) return kNoLimit;

@@ -56,18 +56,18 @@ std::string placeText(double position_m) {
 }
 
 void judgeWorst(const PushFile& file, const CalibrationFit& fit) {
-  if (fit.worst < 0) return;
-  const PushResidual& worst = *fit.left_out[static_cast<std::size_t>(fit.worst)];
-  if (!(worst.share > kMaxLeftOutShare)) return;
-  const auto nameOf = [&](int push) {
-    return fmt::format("line {}", file.pushes[static_cast<std::size_t>(push)].at.line);
-  };
-  failAt(file.pushes[static_cast<std::size_t>(fit.worst)].at, "records",
-         fmt::format("this push{} is off what the others say by {:.3g} N and {}, {:.0f} % of it",
-                     fit.or_worst < 0 ? "" : ", or that of " + nameOf(fit.or_worst), worst.force_N,
-                     placeText(worst.position_m), 100.0 * worst.share),
-         fmt::format("expected at most {:g} %: push again, or delete the entry",
-                     100.0 * kMaxLeftOutShare));
+  const int wrong = wrongPush(fit);
+  if (wrong < 0) return;
+  const auto pushAt = [&](int push) { return file.pushes[static_cast<std::size_t>(push)].at; };
+  const PushResidual& off = *fit.left_out[static_cast<std::size_t>(wrong)];
+  const bool is_clear = wrong != fit.worst || fit.or_worst < 0;
+  failAt(
+      pushAt(wrong), "records",
+      fmt::format("this push{} is off what the others say by {:.3g} N and {}, {:.0f} % of it",
+                  is_clear ? "" : fmt::format(", or that of line {},", pushAt(fit.or_worst).line),
+                  off.force_N, placeText(off.position_m), 100.0 * off.share),
+      fmt::format("expected at most {:g} %: push again, or delete the entry",
+                  100.0 * kMaxLeftOutShare));
 }
 
 void judgeSize(const PushFile& file, const CalibratedModule& module, const CalibrationFit& fit) {

@@ -146,8 +146,30 @@ TEST(CalibrationFit, FindsAWrongEntry) {
     const CalibrationFit fit = fitCalibration(pushes, kCalibrated, ChannelVector::Zero());
     ASSERT_EQ(fit.problem, CalibrationProblem::kNone);
     EXPECT_EQ(fit.worst, wrong) << i;
+    EXPECT_EQ(wrongPush(fit), wrong);
+    EXPECT_EQ(wrongPush(good), -1);
     EXPECT_GT(fit.left_out[static_cast<std::size_t>(wrong)]->share, kMaxLeftOutShare);
   }
+}
+
+TEST(CalibrationFit, TwoWrongEntriesDoNotHideEachOther) {
+  test::Random random(29);
+  int found = 0;
+  for (int i = 0; i < 500; ++i) {
+    const HiddenRows C = hiddenCalibration(random);
+    std::vector<KnownPush> pushes =
+        pushesOf(random, C, {.counts_noise = 20.0, .force_error = 0.02});
+    const int one = random.index(12), other = (one + random.integer(1, 11)) % 12;
+    for (const int wrong : {one, other}) {
+      KnownPush& entry = pushes[static_cast<std::size_t>(wrong)];
+      entry = wronglyEntered(entry, static_cast<WrongEntry>(random.index(5)));
+    }
+    const CalibrationFit fit = fitCalibration(pushes, kCalibrated, ChannelVector::Zero());
+    const int named = wrongPush(fit);
+    EXPECT_NE(named, -1) << i;
+    found += named == one || named == other;
+  }
+  EXPECT_GT(found, 450);
 }
 
 TEST(CalibrationFit, WhereTwoPushesContradictEachOtherAloneBothAreNamed) {

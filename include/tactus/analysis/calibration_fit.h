@@ -69,6 +69,10 @@ inline constexpr double kMaxLeftOutShare = 0.15;
 CalibrationFit fitCalibration(const std::vector<KnownPush>& pushes, const CalibratedModule& module,
                               const ChannelVector& sigma);
 
+/// The push that is wrong, if any is off the others by more than kMaxLeftOutShare: the worst, or,
+/// if that is not, the one that is off most. -1: none.
+int wrongPush(const CalibrationFit& fit) noexcept;
+
 /// Of the pushes alone, before there are counts: condition and weakest row; kNoLimit: too few.
 double pushesCondition(const std::vector<KnownPush>& pushes, const CalibratedModule& module,
                        int* weakest_row = nullptr);
