@@ -69,6 +69,7 @@ class Recording {
  public:
   explicit Recording(const RecordSession& session) : session_(session) {
     if (!std::filesystem::exists(session.path)) {
+      checkFolder(session.path);
       file_.link = session.link;
       return;
     }
@@ -98,6 +99,13 @@ class Recording {
   const std::vector<KnownPush>& pushes() const { return pushes_; }
 
  private:
+  static void checkFolder(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder))
+      failAt({std::make_shared<std::string>(path), 1, 1}, "-", "its folder is not there",
+             "expected a file in a folder that is");
+  }
+
   void checkContinuation(const SourceFile& source, const SourcePosition& begin) const {
     const std::string joint = needs_line_break_ ? "\n" : "";
     try {

@@ -14,8 +14,6 @@
 namespace tactus {
 namespace {
 
-constexpr const char* kFillIn = "FILL_IN";  ///< no number, no bus: refused where it is left
-
 /// A calibration that is of full rank and of no module.
 constexpr const char* kModuleDraft = R"(#   interface: FILL_IN
 #   first_id: 0x100          # of its four frames
@@ -85,17 +83,19 @@ std::string assumedLimitsText(const RobotDraft& draft) {
   return text;
 }
 
+/// Three drives fill a bus at 1 kHz and 1 Mbit/s.
 std::string drivesDraft(const RobotDraft& draft) {
-  std::string text =
-      "# can:\n#   buses:                   # at most three drives a bus at 1 kHz and 1 Mbit/s\n"
-      "#     - {interface: FILL_IN}\n# drives:\n#   joints:\n";
-  for (std::size_t i = 0; i < draft.chain.joints.size(); ++i) {
-    const char* unit = unitOf(draft, i);
+  constexpr std::size_t kDrivesABus = 3;
+  const std::size_t joints = draft.chain.joints.size();
+  std::string text = "# can:\n#   buses:\n";
+  for (std::size_t bus = 0; bus * kDrivesABus < joints; ++bus)
+    text += fmt::format("#     - {{interface: can{}}}\n", bus);
+  text += "# drives:\n#   joints:\n";
+  for (std::size_t i = 0; i < joints; ++i)
     text += fmt::format(
-        "#     - {{joint: {0}, interface: {1}, node_id: {1}, counts_per_{2}: {1}, sign: {1}, "
-        "offset_{2}: {1}}}\n",
-        yamlWord(draft.chain.joint_names[i]), kFillIn, unit);
-  }
+        "#     - {{joint: {}, interface: can{}, node_id: {}, counts_per_{}: FILL_IN}}\n",
+        yamlWord(draft.chain.joint_names[i]), i / kDrivesABus, i % kDrivesABus + 1,
+        unitOf(draft, i));
   return text;
 }
 
@@ -149,7 +149,8 @@ std::string lineText(const Waypoint& way) {
 const std::vector<UnknownPart>& unknownParts() {
   static const std::vector<UnknownPart> parts = {
       {"buses, node ids, counts, signs and offsets of the drives", "tactus commission"},
-      {"GPIO lines of e-stop, enable and brake", "tactus doctor, and the cabinet's drawing"},
+      {"GPIO lines of e-stop, enable and brake",
+       "gpioinfo and the cabinet's drawing; tactus doctor"},
       {"link, length and radius of the tactile module", "a ruler"},
       {"calibration of the tactile module", "tactus calibrate record, then fit"},
   };
@@ -188,14 +189,17 @@ std::string draftRobotText(const RobotDraft& draft, const std::string& capsules)
   text += capsules + (capsules.empty() ? "" : "\n");
   text +=
       "# What no URDF says. Fill in, and take away the # before:\n"
-      "# - buses, node ids, counts, signs and offsets: `tactus commission` finds them;\n" +
+      "# - buses and drives. Counts of a m or rad within a factor of ten, from encoder and gear: "
+      "`tactus\n#   commission` finds their exact number, signs and offsets, and which drive moves "
+      "which joint.\n#   Buses and node ids below are an order to begin with, three drives a "
+      "bus.\n" +
       drivesDraft(draft);
   text += "# - the tactile module, if there is one:\n# tactile_module:\n" + moduleLinksText(draft) +
           kModuleDraft;
   return text +
-         "# - the lines of e-stop, enable and brake: `tactus doctor` lists the chips. Without "
-         "enable\n"
-         "#   tactusd moves the arm as soon as it is started.\n" +
+         "# - the lines of e-stop, enable and brake: gpioinfo lists them, `tactus doctor` looks "
+         "whether they\n#   are free. Without enable tactusd moves the arm as soon as it is "
+         "started.\n" +
          kGpioDraft;
 }
 

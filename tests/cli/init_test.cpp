@@ -182,7 +182,7 @@ TEST_F(InitTest, WhatIsToBeFilledInLoadsOnceItIs) {
     std::istringstream rest(text.substr(begin));
     for (std::string line; std::getline(rest, line);)
       result +=
-          (line.starts_with("# - ") || line.starts_with("#   tactusd") ? line : line.substr(2)) +
+          (line.starts_with("# - ") || line.starts_with("#   are free") ? line : line.substr(2)) +
           "\n";
     return result;
   };
@@ -192,13 +192,8 @@ TEST_F(InitTest, WhatIsToBeFilledInLoadsOnceItIs) {
     ASSERT_NE(key, std::string::npos) << after;
     robot.replace(key + after.size() + 2, 7, value);
   };
-  for (const char* node : {"1", "2"}) {
-    fill("node_id", node);
-    fill("counts_per_rad", "1e5");
-    fill("sign", "-1");
-    fill("offset_rad", "0.1");
-  }
-  for (int i = 0; i < 4; ++i) fill("interface", "can0");
+  for (int i = 0; i < 2; ++i) fill("counts_per_rad", "1e5");
+  fill("interface", "can0");
   fill("link", "lower");
   fill("length_m", "0.3");
   fill("cover_radius_m", "0.05");

@@ -77,6 +77,13 @@ TEST_F(PushFileTest, MistakesInThePushesAreNamedWhereTheyStand) {
   EXPECT_NE(errorOf(pushFileText(good)).find("1 pushes do not tell 4 rows"), std::string::npos);
 }
 
+TEST_F(PushFileTest, AFileThatCannotBeIsRefusedBeforeAnythingIsAsked) {
+  RecordSession session{};
+  session.path = path("nowhere/pushes.yaml");
+  session.answer = [](std::string&) -> bool { throw std::logic_error("asked"); };
+  EXPECT_THROW(recordPushes(session), InputError);
+}
+
 TEST_F(PushFileTest, AFileOfAnotherModuleIsNotContinued) {
   test::Random random(47);
   test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);
