@@ -78,7 +78,7 @@ std::string jointTable(const RobotDraft& draft) {
 std::string assumedLimitsText(const RobotDraft& draft) {
   std::string text;
   for (const AssumedLimit& limit : draft.completed.assumed)
-    text += fmt::format("# ASSUMED in the URDF's copy, as {} says none: {} of joint {}. Measure.\n",
+    text += fmt::format("# ASSUMED in the URDF's copy, as {} has none: {} of joint {}. Measure.\n",
                         escaped(draft.urdf_path), limit.what, escaped(limit.joint));
   return text;
 }
@@ -189,7 +189,7 @@ std::string draftRobotText(const RobotDraft& draft, const std::string& capsules)
   text += capsules + (capsules.empty() ? "" : "\n");
   text +=
       "# What no URDF says. Fill in, and take away the # before:\n"
-      "# - buses and drives. Counts of a m or rad within a factor of ten, from encoder and gear: "
+      "# - buses and drives. Counts per m or rad within a factor of ten, from encoder and gear: "
       "`tactus\n#   commission` finds their exact number, signs and offsets, and which drive moves "
       "which joint.\n#   Buses and node ids below are an order to begin with, three drives a "
       "bus.\n" +
