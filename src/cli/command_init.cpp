@@ -14,7 +14,6 @@
 #include "tactus/cli/robot_draft.h"
 #include "tactus/record/run_error.h"
 #include "tactus/scene/json.h"
-#include "tactus/scene/key_words.h"
 #include "tactus/scene/located_error.h"
 
 namespace tactus {
@@ -88,13 +87,6 @@ Json jointsJson(const RobotDraft& draft) {
   return joints;
 }
 
-std::vector<std::string> componentsOf(const RobotDraft& draft) {
-  std::vector<std::string> words;
-  for (int i = 0; i < draft.home.task.size; ++i)
-    words.emplace_back(wordOf(kComponentWords, draft.home.task.components[i]));
-  return words;
-}
-
 Json draftJson(const RobotDraft& draft, const std::vector<SourceFile>& files) {
   Json written = Json::array(), assumed = Json::array(), unknown = Json::array();
   for (const SourceFile& file : files) written.push_back(file.path);
@@ -107,7 +99,7 @@ Json draftJson(const RobotDraft& draft, const std::vector<SourceFile>& files) {
           {"robot", draft.chain.robot_name},
           {"tip", draft.tip},
           {"joints", jointsJson(draft)},
-          {"task", componentsOf(draft)},
+          {"task", draftTask(draft)},
           {"tool_home_m", {tool.x(), tool.y(), tool.z()}},
           {"smallest_singular_value_at_home", draft.home.smallest_singular_value},
           {"assumed_limits", assumed},

@@ -8,6 +8,7 @@
 #include "tactus/math/trajectory.h"
 #include "tactus/scene/key_words.h"
 #include "tactus/scene/located_error.h"
+#include "tactus/scene/urdf_tree.h"
 #include "tactus/scene/yaml_word.h"
 
 /// The texts of the files that `tactus init` writes.
@@ -129,11 +130,8 @@ std::string moduleLinksText(const RobotDraft& draft) {
   return text + line + "\n";
 }
 
-std::string taskWords(const TaskConfig& task) {
-  std::vector<std::string> words;
-  for (int i = 0; i < task.size; ++i)
-    words.emplace_back(wordOf(kComponentWords, task.components[i]));
-  return fmt::format("{}", fmt::join(words, ", "));
+std::string draftTaskText(const RobotDraft& draft) {
+  return fmt::format("{}", fmt::join(draftTask(draft), ", "));
 }
 
 std::string lineText(const Waypoint& way) {
@@ -157,6 +155,14 @@ const std::vector<UnknownPart>& unknownParts() {
   return parts;
 }
 
+std::vector<std::string> draftTask(const RobotDraft& draft) {
+  const TaskConfig& task = draft.home.task;
+  std::vector<std::string> words;
+  for (int i = 0; i < task.size; ++i)
+    words.emplace_back(wordOf(kComponentWords, task.components[i]));
+  return words;
+}
+
 std::string numberList(const double* values, std::size_t count) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < count; ++i)
@@ -175,7 +181,7 @@ std::string draftRobotText(const RobotDraft& draft, const std::string& capsules)
       "# The tool is at ({:.4f}, {:.4f}, {:.4f}) m then; smallest singular value for {}: {:.3g}.\n"
       "# Far from limits and singular poses by calculation: look what the arm would touch there.\n"
       "home: {}\n\n",
-      tool.x(), tool.y(), tool.z(), taskWords(draft.home.task), draft.home.smallest_singular_value,
+      tool.x(), tool.y(), tool.z(), draftTaskText(draft), draft.home.smallest_singular_value,
       numberList(draft.home.q.data(), static_cast<std::size_t>(draft.home.q.size())));
   text +=
       "# Limits of position, speed and effort are the URDF's; lower them there to what drives and\n"
@@ -210,7 +216,7 @@ std::string draftSceneText(const RobotDraft& draft) {
              "# A first motion without contact: small and slow.\nrobot: robot.yaml\n\ntask:\n"
              "  components: [{}]\n  trajectory:\n    start_s: {}\n    line: {}\n\n"
              "simulation:\n  duration_s: {}\n",
-             taskWords(draft.home.task), kStart_s, lineText(draft.motion), std::ceil(end_s) + 1.0) +
+             draftTaskText(draft), kStart_s, lineText(draft.motion), std::ceil(end_s) + 1.0) +
          kControllerDraft;
 }
 

@@ -82,6 +82,28 @@ TEST_F(CalibrateTest, ARecordingIsContinuedFromANewZero) {
   EXPECT_LT(largestMiss(random, module, written(), 4), 0.03);
 }
 
+TEST_F(CalibrateTest, OfSeveralModulesOnlyTheOneThatWasPushedIsWritten) {
+  const std::string skin = TACTUS_SOURCE_DIR "/config/robots/crops9_skin/robot.yaml";
+  std::ifstream in(skin, std::ios::binary);
+  std::string robot{std::istreambuf_iterator<char>(in), {}};
+  robot.replace(robot.find("../crops9/"), 10, "");
+  std::ofstream(path("robot.yaml")) << robot;
+  const auto modules = [&] {
+    return loadScene(path("scene.yaml"), {{"controller.variant", "none"}}).plant.modules;
+  };
+  const std::vector<SimulatedModuleConfig> before = modules();
+  test::Random random(48);
+  test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);
+  record(module, scriptOf(random, false));
+  EXPECT_EQ(fit({"--write"})["tactile_module"], "link4");
+  const std::vector<SimulatedModuleConfig> after = modules();
+  ASSERT_EQ(after.size(), 3u);
+  EXPECT_EQ(after[0].channels.calibration, before[0].channels.calibration);
+  EXPECT_EQ(after[2].channels.calibration, before[2].channels.calibration);
+  EXPECT_LT(largestMiss(random, module, after[1].channels, 4), 0.03);
+  EXPECT_NE(folder_.content("robot.yaml").find("# rings at x = 0.03 m"), std::string::npos);
+}
+
 TEST_F(CalibrateTest, WhatTellsNothingIsRefusedAndNotWritten) {
   test::Random random(43);
   test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);

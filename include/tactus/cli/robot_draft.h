@@ -44,6 +44,9 @@ RobotDraft draftRobot(const std::string& urdf_path, const std::string& folder,
 std::string draftRobotText(const RobotDraft& draft, const std::string& capsules);
 std::string draftSceneText(const RobotDraft& draft);
 
+/// The components of its task, as a scene spells them.
+std::vector<std::string> draftTask(const RobotDraft& draft);
+
 /// "[0.1, -0.2]", each number as short as it is exact to six digits.
 std::string numberList(const double* values, std::size_t count);
 
