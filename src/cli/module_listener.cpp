@@ -87,7 +87,9 @@ ChannelWindow listen(const FrameSource& source, const ListenedModule& module, do
       window.add(receiver.counts(), now_s);
       heard_s = now_s;
     }
-    for (; now_s - ticked_s >= kTick_s; ticked_s += kTick_s) receiver.tick();
+    const auto ticks = static_cast<long>((now_s - ticked_s) / kTick_s);
+    ticked_s += static_cast<double>(ticks) * kTick_s;
+    for (long i = 0; i < ticks; ++i) receiver.tick();
     if (now_s - heard_s > kSilence_s) failSilent(module, receiver);
   }
   if (window.samples() == 0) failSilent(module, receiver);
