@@ -94,20 +94,19 @@ void TactileReceiver::finish() noexcept {
     ++counters_.incomplete;
     return;
   }
-  Eigen::Matrix<double, kChannels, 1> counts;
   bool is_saturated = (assembly_.status & kSaturated) != 0;
   for (int channel = 0; channel < kChannels; ++channel) {
     const int byte = kFirstChannelByte + kBytesPerChannel * (channel % 2);
     const int value = countsAt(assembly_.frames[channel / 2], byte);
-    counts[channel] = value;
+    counts_[channel] = value;
     is_saturated = is_saturated || isAtRail(value);
   }
   fault_ = is_saturated ? Fault::kTactileSaturated : Fault::kNone;
   if ((assembly_.status & ~kSaturated) != 0) fault_ = Fault::kTactileCableBreak;
   const TactileChannels& channels = config_.channels;
-  const Eigen::Vector4d known = channels.calibration * counts / channels.counts_per_N;
+  const Eigen::Vector4d known = channels.calibration * counts_ / channels.counts_per_N;
   const double moment_x_Nm =
-      channels.moment_x ? channels.moment_x->dot(counts) / channels.counts_per_N : 0.0;
+      channels.moment_x ? channels.moment_x->dot(counts_) / channels.counts_per_N : 0.0;
   publish(Wrench5{{known[0], known[1], known[2], known[3], moment_x_Nm}});
 }
 

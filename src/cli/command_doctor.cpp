@@ -31,7 +31,6 @@ struct DoctorOptions {
 };
 
 /// Without a scene: what the keys' defaults are, and the longest record.
-constexpr double kDefaultPeriod_s = 0.001;
 constexpr RecordShape kLargestShape{kMaxJoints, kMaxTaskSize, true, kMaxTactileModules, true};
 
 MachineNeeds needsOf(const std::optional<Scene>& scene, const DoctorOptions& options) {

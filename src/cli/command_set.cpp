@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,9 +9,9 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
+#include "tactus/cli/replace_file.h"
 #include "tactus/daemon/control_client.h"
 #include "tactus/daemon/control_socket.h"
-#include "tactus/record/output_file.h"
 #include "tactus/record/run_error.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/gain_keys.h"
@@ -123,24 +122,6 @@ void checkGains(const std::string& path, const Json& running) {
         fmt::format("{}: {} could not be written", escaped(path), differing.items().begin().key()));
 }
 
-/// Written as a whole, or not at all; the old file stays beside it.
-void replaceFile(const std::string& path, const std::string& text, const Json& running) {
-  namespace fs = std::filesystem;
-  const std::string next = path + ".next";
-  OutputFile file(next);
-  file.append(text);
-  file.close();
-  try {
-    checkGains(next, running);
-  } catch (...) {
-    fs::remove(next);
-    throw;
-  }
-  fs::permissions(next, fs::status(path).permissions());
-  fs::copy_file(path, path + "~", fs::copy_options::overwrite_existing);
-  fs::rename(next, path);
-}
-
 int save(bool as_json) {
   const ControlClient daemon(controlPath());
   const Json answer = daemon.ask({{"do", "show"}});
@@ -154,7 +135,8 @@ int save(bool as_json) {
   const std::string changed = withGains(path, text, answer.at("ordered"));
   const bool is_new = changed != text;
   if (is_new) {
-    replaceFile(path, changed, answer.at("ordered"));
+    replaceFile(path, changed,
+                [&](const std::string& next) { checkGains(next, answer.at("ordered")); });
     daemon.ask({{"do", "reload"}});  // it has read what is there now
   }
   if (as_json)

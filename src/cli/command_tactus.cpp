@@ -58,11 +58,13 @@ int tactusProgram(int argc, char** argv) {
   int exit_code = kExitDone;
   const bool as_json =
       std::any_of(argv, argv + argc, [](const char* word) { return !std::strcmp(word, "--json"); });
+  addInitCommand(app, exit_code);
   addCheckCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
   addExportCommand(app, exit_code);
   addContactsCommand(app, exit_code);
   addIdentifyCommand(app, exit_code);
+  addCalibrateCommand(app, exit_code);
   addReplayCommand(app, exit_code);
   addPlantCommand(app, exit_code);
   addBenchCommand(app, exit_code);

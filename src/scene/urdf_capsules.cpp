@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tactus/scene/urdf_node.h"
+#include "tactus/scene/yaml_word.h"
 
 namespace tactus {
 namespace {
@@ -27,7 +28,7 @@ std::string vectorText(const Vector3& v) {
 }
 
 std::string lineOf(const std::string& link, const Capsule& capsule) {
-  return fmt::format("  - {{link: {}, from_m: {}, to_m: {}, radius_m: {:.4g}}}\n", escaped(link),
+  return fmt::format("  - {{link: {}, from_m: {}, to_m: {}, radius_m: {:.4g}}}\n", yamlWord(link),
                      vectorText(capsule.from), vectorText(capsule.to), capsule.radius_m);
 }
 

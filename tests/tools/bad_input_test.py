@@ -65,6 +65,24 @@ class BadInput(unittest.TestCase):
         result = self.run_tactus("check", self.write(""))
         self.assertEqual((result.returncode, result.stderr), (0, ""))
 
+    def test_init(self):
+        arm = CONFIG / "robots/ur5e/ur5e.urdf"
+        self.expect_all_refuse([["init", "none.urdf", "-o", "arm"]], "none.urdf:1:1: -: ")
+        self.expect_all_refuse([["init", arm, "-o", "arm"]], f"{arm}:1:1: tip: 2 links end the arm")
+        (self.folder / "robot.yaml").write_text("mine")
+        init = ["init", arm, "-o", ".", "--tip", "flange"]
+        self.expect_all_refuse([init], "./robot.yaml:1:1: -: is there already")
+        self.assertEqual((self.folder / "robot.yaml").read_text(), "mine")
+
+    def test_calibrate(self):
+        (self.folder / "pushes.yaml").write_text("module: link4\nrecords:\n  - {force_N: [0, 1]}\n")
+        fit = [["calibrate", "fit", "pushes.yaml", GOOD], ["calibrate", "fit", "pushes.yaml", GOOD, "--json"]]
+        self.expect_all_refuse(fit, "pushes.yaml:3:5: records[0]: a push before any zero")
+        bus = CONFIG / "scenes/robots/ur5e_free.yaml"
+        self.expect_all_refuse([["calibrate", "show", bus], ["calibrate", "record", bus, "-o", "new.yaml"]],
+                               f"{bus}:1:1: robot: has no can section")
+        self.assertEqual(self.run_tactus("calibrate", "fit", "pushes.yaml").returncode, 2)
+
     def test_unknown_key(self):
         self.expect_refused(self.write("tasks: {}\n"), "scene.yaml:2:1: tasks: ")
 

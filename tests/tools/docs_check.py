@@ -15,7 +15,7 @@ import subprocess
 # Programs of the system that a document may name: they need a robot's computer, or a whole machine.
 SYSTEM = {"apt", "apt-get", "cp", "git", "ip", "journalctl", "reboot", "systemctl"}
 # Commands of tactus that are run as they stand; of all others --help must know the options.
-RUN = {"check", "simulate", "export", "replay", "keys"}
+RUN = {"init", "check", "simulate", "export", "replay", "keys"}
 LANGUAGES = {"sh", "yaml", "text"}
 PROGRAMS = {"build/release/tactus": "tactus", "build/dev/tactus": "tactus", "tactus": "tactus",
             "build/release/tactusd": "tactusd", "tactusd": "tactusd"}

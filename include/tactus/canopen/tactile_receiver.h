@@ -59,6 +59,8 @@ class TactileReceiver {
 
   /// The newest complete sample, tared and filtered; its sequence counts samples from 1.
   const TactileSample& sample() const noexcept { return sample_; }
+  /// The channels of that sample, as they came.
+  const Eigen::Matrix<double, 8, 1>& counts() const noexcept { return counts_; }
   /// kNone, kTactileSaturated or kTactileCableBreak of the newest sample; not latched.
   Fault fault() const noexcept { return fault_; }
   const TactileCounters& counters() const noexcept { return counters_; }
@@ -105,6 +107,7 @@ class TactileReceiver {
   FaultDetail tare_refusal_;
 
   TactileSample sample_;
+  Eigen::Matrix<double, kChannels, 1> counts_ = Eigen::Matrix<double, kChannels, 1>::Zero();
   Fault fault_ = Fault::kNone;
   TactileCounters counters_;
 };

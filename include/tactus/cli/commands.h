@@ -33,5 +33,7 @@ void addStreamCommand(CLI::App& app, int& exit_code);
 void addMoveCommand(CLI::App& app, int& exit_code);
 void addFollowCommand(CLI::App& app, int& exit_code);
 void addHoldCommand(CLI::App& app, int& exit_code);
+void addCalibrateCommand(CLI::App& app, int& exit_code);
+void addInitCommand(CLI::App& app, int& exit_code);
 
 }  // namespace tactus

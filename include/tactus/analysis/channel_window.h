@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+
+#include "tactus/math/types.h"
+
+namespace tactus {
+
+/// A number for each channel of a tactile module.
+using ChannelVector = Eigen::Matrix<double, 8, 1>;
+
+/// The largest counts of signed 24 bits.
+inline constexpr double kChannelEnd = 8388607.0;
+
+/// What the channels said over some time.
+struct ChannelFigures {
+  int samples = 0;
+  double duration_s = 0.0;                            ///< from the first sample to the last
+  ChannelVector mean = ChannelVector::Zero();         ///< counts
+  ChannelVector sigma = ChannelVector::Zero();        ///< counts, about the line of the drift
+  ChannelVector drift_per_s = ChannelVector::Zero();  ///< counts/s, slope of the best line
+};
+
+/// Why a channel says nothing of a force.
+enum class ChannelTrouble {
+  kAtItsEnd,    ///< a sample at +-(2^23 - 1) or beyond
+  kFlatTopped,  ///< stops short of that: below
+};
+
+struct ChannelDefect {
+  int channel;  ///< from 0
+  ChannelTrouble trouble;
+  double counts;  ///< where it stops
+};
+
+/// Counts of the eight channels over some time, and what they come to.
+class ChannelWindow {
+ public:
+  void add(const ChannelVector& counts, double t_s) noexcept;
+
+  int samples() const noexcept { return samples_; }
+  ChannelFigures figures() const noexcept;
+
+  /// The first channel that is at its end, or, with figures of the time without load, one whose
+  /// cell or amplifier stops short of it: a fifth of its samples are its outermost counts, or it is
+  /// off its zero by ten sigma and five times as quiet as there. A channel with less than two
+  /// counts of noise cannot be judged by that.
+  std::optional<ChannelDefect> defect(const ChannelFigures* zero = nullptr) const noexcept;
+
+ private:
+  bool isFlat(int channel, const ChannelFigures& now, const ChannelFigures& zero) const noexcept;
+
+  int samples_ = 0;
+  double first_s_ = 0.0, last_s_ = 0.0;
+  double sum_t_ = 0.0, sum_tt_ = 0.0;
+  ChannelVector first_ = ChannelVector::Zero();  ///< sums are of what differs from it
+  ChannelVector sum_ = ChannelVector::Zero(), sum_squares_ = ChannelVector::Zero();
+  ChannelVector sum_ty_ = ChannelVector::Zero();
+  ChannelVector low_ = ChannelVector::Zero(), high_ = ChannelVector::Zero();
+  ChannelVector at_low_ = ChannelVector::Zero(), at_high_ = ChannelVector::Zero();  ///< samples
+};
+
+}  // namespace tactus

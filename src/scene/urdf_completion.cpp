@@ -1,0 +1,113 @@
+#include "tactus/scene/urdf_completion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "tactus/scene/urdf_tree.h"
+
+namespace tactus {
+namespace {
+
+bool isMoving(const UrdfJoint& joint) { return joint.type != "fixed"; }
+
+/// Absent, or a zero: whatever else is written there, the loader judges.
+bool isUnsaid(const pugi::xml_attribute& attribute) {
+  if (!attribute) return true;
+  const std::string text = attribute.value();
+  return text.find_first_not_of(" 0.+-eE") == std::string::npos &&
+         text.find('0') != std::string::npos;
+}
+
+void setNumber(pugi::xml_node limit, const char* name, double value) {
+  pugi::xml_attribute attribute = limit.attribute(name);
+  if (!attribute) attribute = limit.append_attribute(name);
+  attribute.set_value(fmt::format("{:g}", value).c_str());
+}
+
+/// Of lower and upper; one that is there holds, unless both are zero.
+bool completePositions(pugi::xml_node limit, double reach) {
+  const pugi::xml_attribute lower = limit.attribute("lower"), upper = limit.attribute("upper");
+  const bool has_both = lower && upper && !(isUnsaid(lower) && isUnsaid(upper));
+  if (has_both) return false;
+  const double from =
+      isUnsaid(lower) ? std::min(-reach, upper.as_double() - reach) : lower.as_double();
+  const double to = isUnsaid(upper) ? std::max(reach, from + reach) : upper.as_double();
+  setNumber(limit, "lower", from);
+  setNumber(limit, "upper", to);
+  return true;
+}
+
+/// What was set; empty: nothing.
+std::string completeJoint(pugi::xml_node joint, const std::string& type) {
+  const bool is_prismatic = type == "prismatic";
+  pugi::xml_node limit = joint.child("limit");
+  if (!limit) limit = joint.append_child("limit");
+  std::vector<std::string> set;
+  if (type != "continuous" && completePositions(limit, is_prismatic ? 0.25 : 2.5))
+    set = {"lower", "upper"};
+  if (isUnsaid(limit.attribute("velocity"))) {
+    setNumber(limit, "velocity", is_prismatic ? 0.1 : 0.5);
+    set.emplace_back("velocity");
+  }
+  if (set.empty()) return "";
+  const std::string what = fmt::format("{}", fmt::join(set, ", "));
+  joint.insert_child_before(pugi::node_comment, limit)
+      .set_value((" ASSUMED by tactus init: " + what + " ").c_str());
+  return what;
+}
+
+pugi::xml_node jointNamed(pugi::xml_document& document, const std::string& name) {
+  return document.document_element().find_child([&](const pugi::xml_node& node) {
+    return std::string_view(node.name()) == "joint" && node.attribute("name").value() == name;
+  });
+}
+
+}  // namespace
+
+std::vector<ArmEnd> armEnds(const SourceFile& urdf) {
+  UrdfTree tree;
+  parseUrdf(urdf, tree);
+  std::vector<bool> carries(tree.links.size(), false);
+  for (const UrdfJoint& joint : tree.joints) carries[joint.parent] = true;
+  std::vector<ArmEnd> ends;
+  for (std::size_t link = 0; link < tree.links.size(); ++link) {
+    if (carries[link]) continue;
+    const std::vector<int> path = tree.pathTo(static_cast<int>(link));
+    const auto moving =
+        std::ranges::count_if(path, [&](int joint) { return isMoving(tree.joints[joint]); });
+    ends.push_back({tree.links[link], static_cast<int>(moving)});
+  }
+  std::ranges::stable_sort(ends, std::greater<>{}, &ArmEnd::moving_joints);
+  return ends;
+}
+
+CompletedUrdf completeLimits(const SourceFile& urdf, const std::string& tip) {
+  UrdfTree tree;
+  parseUrdf(urdf, tree);
+  const int link = tree.findLink(tip);
+  CompletedUrdf completed;
+  if (link < 0) return completed;
+  pugi::xml_document document;
+  document.load_buffer(urdf.text.data(), urdf.text.size(),
+                       pugi::parse_full & ~pugi::parse_ws_pcdata, pugi::encoding_utf8);
+  for (const int index : tree.pathTo(link)) {
+    const UrdfJoint& joint = tree.joints[index];
+    const bool is_known =
+        joint.type == "prismatic" || joint.type == "revolute" || joint.type == "continuous";
+    if (!is_known) continue;
+    onlyChild(tree, joint.node, "limit", "joint." + joint.name);
+    const std::string what = completeJoint(jointNamed(document, joint.name), joint.type);
+    if (!what.empty()) completed.assumed.push_back({joint.name, what});
+  }
+  if (completed.assumed.empty()) return completed;
+  std::ostringstream text;
+  document.save(text, "  ", pugi::format_default, pugi::encoding_utf8);
+  completed.text = text.str();
+  return completed;
+}
+
+}  // namespace tactus

@@ -1,0 +1,129 @@
+#include "tactus/analysis/channel_window.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "support/random.h"
+#include "tactus/math/filter.h"
+
+namespace tactus {
+namespace {
+
+/// Near enough to a normal one: the sum of twelve.
+double channelNoise(test::Random& random) {
+  double sum = -6.0;
+  for (int i = 0; i < 12; ++i) sum += random.uniform(0.0, 1.0);
+  return sum;
+}
+
+struct DrawnChannels {
+  ChannelVector mean = ChannelVector::Zero(), sigma = ChannelVector::Constant(30.0);
+  ChannelVector drift_per_s = ChannelVector::Zero();
+  double top = 1e9;  ///< of channel 2, where it is clipped
+  bool is_filtered = false;
+};
+
+ChannelWindow drawnWindow(test::Random& random, const DrawnChannels& drawn, int samples = 250) {
+  std::vector<ButterworthLowPass> filters(8, ButterworthLowPass(15.0, 250.0));
+  ChannelWindow window;
+  for (int k = 0; k < samples; ++k) {
+    const double t_s = 3.0 + 0.004 * k;
+    ChannelVector counts;
+    for (int i = 0; i < 8; ++i) {
+      double noise = drawn.sigma[i] * channelNoise(random);
+      if (drawn.is_filtered) noise = 3.0 * filters[static_cast<std::size_t>(i)].update(noise);
+      counts[i] = std::round(drawn.mean[i] + drawn.drift_per_s[i] * (t_s - 3.5) + noise);
+    }
+    counts[2] = std::min(counts[2], drawn.top);
+    window.add(counts, t_s);
+  }
+  return window;
+}
+
+TEST(ChannelWindow, FindsMeanNoiseAndDrift) {
+  test::Random random(11);
+  for (int i = 0; i < 200; ++i) {
+    DrawnChannels drawn;
+    drawn.mean = random.vector<ChannelVector>(8, -8e6, 8e6);
+    drawn.sigma = random.vector<ChannelVector>(8, 5.0, 500.0);
+    drawn.drift_per_s = random.vector<ChannelVector>(8, -1e4, 1e4);
+    const ChannelFigures figures = drawnWindow(random, drawn).figures();
+    EXPECT_EQ(figures.samples, 250);
+    EXPECT_NEAR(figures.duration_s, 0.996, 1e-9);
+    for (int k = 0; k < 8; ++k) {
+      const double deviation = drawn.sigma[k] / std::sqrt(250.0);
+      EXPECT_NEAR(figures.mean[k], drawn.mean[k], 5.5 * deviation + 0.004 * 1e4 + 0.1);
+      EXPECT_NEAR(figures.sigma[k], drawn.sigma[k], 0.3 * drawn.sigma[k]);
+      EXPECT_NEAR(figures.drift_per_s[k], drawn.drift_per_s[k], 5.5 * std::sqrt(12.0) * deviation);
+    }
+  }
+}
+
+TEST(ChannelWindow, OfFewSamplesItSaysWhatTheyTell) {
+  ChannelWindow window;
+  EXPECT_EQ(window.figures().samples, 0);
+  EXPECT_FALSE(window.defect());
+  window.add(ChannelVector::Constant(7.0), 1.0);
+  EXPECT_EQ(window.figures().mean[3], 7.0);
+  EXPECT_EQ(window.figures().sigma[3], 0.0);
+  window.add(ChannelVector::Constant(9.0), 2.0);
+  EXPECT_EQ(window.figures().mean[3], 8.0);
+  EXPECT_EQ(window.figures().drift_per_s[3], 2.0);
+}
+
+TEST(ChannelWindow, NamesTheChannelAtItsEnd) {
+  for (const double end : {kChannelEnd, -kChannelEnd, -kChannelEnd - 1.0}) {
+    for (int channel = 0; channel < 8; ++channel) {
+      ChannelWindow window;
+      for (int k = 0; k < 100; ++k) {
+        ChannelVector counts = ChannelVector::Constant(k);
+        if (k == 40) counts[channel] = end;
+        window.add(counts, 0.004 * k);
+      }
+      ASSERT_TRUE(window.defect());
+      EXPECT_EQ(window.defect()->channel, channel);
+      EXPECT_EQ(window.defect()->trouble, ChannelTrouble::kAtItsEnd);
+      EXPECT_EQ(window.defect()->counts, end);
+    }
+  }
+  ChannelWindow below;
+  below.add(ChannelVector::Constant(kChannelEnd - 1.0), 0.0);
+  EXPECT_FALSE(below.defect());
+}
+
+TEST(ChannelWindow, SeesAChannelThatStopsShortOfItsEnd) {
+  test::Random random(12);
+  for (int i = 0; i < 200; ++i) {
+    DrawnChannels drawn;
+    drawn.is_filtered = random.chance(0.5);
+    drawn.sigma.setConstant(random.logUniform(10.0, 1e3));
+    const ChannelFigures zero = drawnWindow(random, drawn, 1250).figures();
+    drawn.mean = random.vector<ChannelVector>(8, -1e5, 1e5);
+    drawn.mean[2] = 2e5;
+    drawn.top = drawn.mean[2] + random.uniform(-3.0, 0.0) * drawn.sigma[2];
+    const std::optional<ChannelDefect> defect = drawnWindow(random, drawn).defect(&zero);
+    ASSERT_TRUE(defect);
+    EXPECT_EQ(defect->channel, 2);
+    EXPECT_EQ(defect->trouble, ChannelTrouble::kFlatTopped);
+  }
+}
+
+/// A hand trembles, and noise comes filtered.
+TEST(ChannelWindow, HasNothingAgainstAGoodOne) {
+  test::Random random(13);
+  for (int i = 0; i < 2000; ++i) {
+    DrawnChannels drawn;
+    drawn.is_filtered = random.chance(0.5);
+    drawn.sigma.setConstant(random.logUniform(0.3, 1e3));
+    const ChannelFigures zero = drawnWindow(random, drawn, 500).figures();
+    drawn.mean = random.vector<ChannelVector>(8, -1e6, 1e6);
+    drawn.drift_per_s = random.vector<ChannelVector>(8, -1e4, 1e4);
+    if (random.chance(0.3)) drawn.sigma *= random.uniform(1.0, 20.0);
+    EXPECT_FALSE(drawnWindow(random, drawn).defect(&zero)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace tactus
