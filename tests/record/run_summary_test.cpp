@@ -170,7 +170,9 @@ TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
   figures.peak_force_N = 0.1 + 0.2;
   figures.tcp_error_max_m = std::numeric_limits<double>::denorm_min();
   figures.tcp_error_final_m = std::numeric_limits<double>::quiet_NaN();
-  figures.contacts = {{1.0, 2.5, 1.0 / 3.0, 0.25}};
+  ContactFigures contact;
+  static_cast<ContactSummary&>(contact) = {1.0, 2.5, 1.0 / 3.0, 0.25};
+  figures.contacts = {contact};
   figures.end.fault = Fault::kTactileStale;
   figures.end.detail = {0.021, 0.02, "s"};
   const std::string text = jsonText(summaryJson(scene(), figures, 1.0));
