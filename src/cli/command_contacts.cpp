@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
+#include "tactus/cli/logged_scene.h"
 #include "tactus/cli/running_log.h"
 #include "tactus/record/contact_json.h"
 #include "tactus/record/contact_watch.h"
 #include "tactus/record/growing_file.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/located_error.h"
-#include "tactus/scene/scene_loader.h"
 
 /// The contacts of a run, a row each.
 namespace tactus {
@@ -41,13 +41,7 @@ bool readCycles(const std::string& path, const Gains& gains, const Sink& sink) {
 
 Scene loadLogged(const std::string& path) {
   std::ifstream in = openLog(path);
-  const UlogReader reader(in, path);
-  const LogDescription& description = reader.description();
-  Scene scene = loadScene(description.sources, description.overrides, SceneUse::kSimulation);
-  if (static_cast<std::size_t>(description.shape.modules) < scene.module_links.size())
-    failAt({std::make_shared<std::string>(path), 1, 1}, "force_sensor_N",
-           "has fewer tactile modules than its scene", "expected one of each");
-  return scene;
+  return loggedScene(UlogReader(in, path), path);
 }
 
 LoggedContacts readContacts(const std::string& path) {

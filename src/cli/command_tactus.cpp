@@ -41,6 +41,7 @@ int tactusProgram(int argc, char** argv) {
   addSimulateCommand(app, exit_code);
   addExportCommand(app, exit_code);
   addContactsCommand(app, exit_code);
+  addScopeCommand(app, exit_code);
   addIdentifyCommand(app, exit_code);
   addReplayCommand(app, exit_code);
   addPlantCommand(app, exit_code);

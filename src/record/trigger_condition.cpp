@@ -112,7 +112,7 @@ void takeEntry(TriggerReader& reader, std::size_t at, const RecordField& field,
   std::size_t index = 0;
   if (!reader.takeNumber(index) || index >= entries) {
     reader.fail(index_at, fmt::format("no index of {}", field.name),
-                fmt::format("expected 0 to {}", entries - 1));
+                entries == 1 ? "expected 0" : fmt::format("expected 0 to {}", entries - 1));
   }
   reader.skipBlanks();
   const std::size_t bracket_at = reader.skipBlanks();
