@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <istream>
@@ -215,6 +216,13 @@ bool scopeCycles(Stream& in, const ScopeOptions& options, const Gains& gains, Sc
   return false;
 }
 
+/// CLI11's ranges have NaN in them.
+void refuseNoNumbers(const ScopeOptions& options) {
+  for (const double number : {options.pre_s, options.post_s, options.hysteresis.value_or(0.0),
+                              options.holdoff_s.value_or(0.0)})
+    if (std::isnan(number)) throw CLI::ValidationError("scope", "nan, expected a number");
+}
+
 void runScope(ScopeOptions options) {
   if (options.log.empty()) {
     options.log = runningLog();
@@ -278,6 +286,7 @@ void addScopeCommand(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "Print JSON; with --follow an object a line");
   command->callback([options, &exit_code] {
     exit_code = kExitDone;
+    refuseNoNumbers(*options);
     runScope(*options);
   });
 }

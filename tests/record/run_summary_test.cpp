@@ -187,6 +187,27 @@ TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
   EXPECT_EQ(json["fault"]["value"].as<double>(), 0.021);
 }
 
+/// However long a run is: what is behind the ten thousandth is counted.
+TEST(RunSummary, BoundsItsContacts) {
+  ControllerConfig config = scene().controller;
+  RunSummary summary(config, 0);
+  CycleRecord record;
+  constexpr int kContacts = 10007, kCyclesEach = 10;
+  for (int i = 0; i < kContacts * kCyclesEach; ++i) {
+    record.t_s = 0.05 * i;
+    record.force_sensor_N[0] = i % kCyclesEach < 3 ? 5.0 : 0.0;
+    record.force_contact_N = record.force_sensor_N[0];
+    summary.add(record);
+  }
+  RunFigures figures = summary.figures();
+  EXPECT_EQ(figures.contacts.size(), 10000u);
+  EXPECT_EQ(figures.further_contacts, kContacts - 10000);
+  EXPECT_NEAR(figures.contacts[9999].start_s, 0.05 * 9999 * kCyclesEach, 1e-6);
+  EXPECT_EQ(summaryJson(scene(), figures, 1.0).at("further_contacts"), kContacts - 10000);
+  figures.further_contacts = 0;
+  EXPECT_FALSE(summaryJson(scene(), figures, 1.0).contains("further_contacts"));
+}
+
 TEST(SummaryJson, EscapesWhateverASceneIsCalled) {
   const std::string text = jsonText(summaryJson(scene(), RunFigures(), 1.0));
   EXPECT_NE(text.find("\"scene\": \"a \\\"b\\\"\\n\\u0001\\\\\xef\xbf\xbd\""), std::string::npos)
