@@ -160,14 +160,16 @@ class Scope {
     std::fputs(text.c_str(), stdout);
   }
 
-  void printJson() const {
-    if (options_.follows) {
-      std::fputs((scopeJson(view_.traces.back()).dump() + "\n").c_str(), stdout);
-      return;
-    }
+  void printJson() {
     Json all = Json::array();
-    for (const ScopeTrace& trace : view_.traces) all.push_back(scopeJson(trace));
-    std::fputs(jsonText(all).c_str(), stdout);
+    for (const ScopeTrace& trace : view_.traces) {
+      if (options_.follows && trace.trigger_s <= printed_s_) continue;
+      all.push_back(scopeJson(trace));
+      printed_s_ = trace.trigger_s;
+    }
+    if (!options_.follows) std::fputs(jsonText(all).c_str(), stdout);
+    for (const Json& trace : all)
+      if (options_.follows) std::fputs((trace.dump() + "\n").c_str(), stdout);
   }
 
   /// Who reads the page meanwhile has the one before.
@@ -187,6 +189,7 @@ class Scope {
   ScopeView view_;
   bool was_live_ = false, has_new_ = false;
   double live_s_ = -kNoLimit, shown_s_ = 0.0;
+  double printed_s_ = -kNoLimit;  ///< the newest of those that are followed and printed
 };
 
 Scope makeScope(const ScopeOptions& options) {

@@ -8,7 +8,7 @@
 namespace tactus {
 namespace {
 
-constexpr RecordShape kShape{.joints = 2, .task_size = 1};
+constexpr RecordShape kRingShape{.joints = 2, .task_size = 1};
 constexpr double kCycle_s = 0.001;
 
 /// Touches of 0.1 s that begin at these times.
@@ -28,7 +28,7 @@ struct CapturedRun {
 
 CapturedRun captured(const CaptureWindow& window, const std::vector<double>& touches_s,
                      int cycles) {
-  CaptureRing ring(parseTrigger("force_N > 1.2", kShape), window);
+  CaptureRing ring(parseTrigger("force_N > 1.2", kRingShape), window);
   CapturedRun run;
   for (int i = 0; i < cycles; ++i)
     if (std::optional<Capture> capture = ring.add(cycleAt(i, touches_s)))
@@ -67,7 +67,7 @@ TEST(CaptureRing, TakesNoSecondTriggerIntoOneCapture) {
 }
 
 TEST(CaptureRing, ShowsTheNewestWithoutATrigger) {
-  CaptureRing ring(parseTrigger("force_N > 1.2", kShape), {.pre_s = 0.2, .post_s = 0.3});
+  CaptureRing ring(parseTrigger("force_N > 1.2", kRingShape), {.pre_s = 0.2, .post_s = 0.3});
   EXPECT_TRUE(ring.newest().records.empty());
   for (int i = 0; i < 5000; ++i) ring.add(cycleAt(i, {}));
   const Capture newest = ring.newest();
@@ -78,7 +78,7 @@ TEST(CaptureRing, ShowsTheNewestWithoutATrigger) {
 
 /// As of a second run behind the first.
 TEST(CaptureRing, BeginsAnewWhereTimeGoesBack) {
-  CaptureRing ring(parseTrigger("force_N > 1.2", kShape), {.pre_s = 0.3, .post_s = 0.1});
+  CaptureRing ring(parseTrigger("force_N > 1.2", kRingShape), {.pre_s = 0.3, .post_s = 0.1});
   for (int i = 0; i < 2050; ++i) ring.add(cycleAt(i, {2.0}));
   int captures = 0;
   for (int i = 0; i < 1000; ++i) {
