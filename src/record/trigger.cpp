@@ -1,5 +1,7 @@
 #include "tactus/record/trigger.h"
 
+#include <cmath>
+
 namespace tactus {
 
 bool Trigger::holds(double value, double level) const noexcept {
@@ -17,7 +19,7 @@ bool Trigger::holds(double value, double level) const noexcept {
 }
 
 bool Trigger::update(double t_s, double value) noexcept {
-  if (value != value) return false;
+  if (std::isnan(value)) return false;
   const bool is_rising =
       config_.comparison == Comparison::kAbove || config_.comparison == Comparison::kAtLeast;
   const double nearer = is_rising ? -config_.hysteresis : config_.hysteresis;
