@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "tactus/analysis/contact_rates.h"
 #include "tactus/math/filter.h"
 
 namespace tactus {
@@ -19,26 +20,6 @@ using Number = std::complex<double>;
 constexpr int kMaxSteps = 10000;
 constexpr Index kLoopSize = 13;  ///< numbers of state but the arm's
 
-/// How often things happen, in steps of the plant: the shorter of cycle and filter period.
-struct Rates {
-  double step_s;
-  long cycle, filter, sample;
-};
-
-Rates ratesOf(const ContactLoop& loop) {
-  const double filter_period_s = 1.0 / loop.filter_rate_hz;
-  const double step_s = std::min(loop.period_s, filter_period_s);
-  const auto steps = [step_s](double period_s) { return std::lround(period_s / step_s); };
-  return {step_s, steps(loop.period_s), steps(filter_period_s),
-          steps(filter_period_s) * std::lround(loop.sample_period_s / filter_period_s)};
-}
-
-/// The controller's model of the filter is not prewarped; what stands in for it here is.
-double modelCutoff_hz(const ContactLoop& loop) {
-  const double K = std::numbers::pi * loop.model_filter_cutoff_hz * loop.period_s;
-  return std::atan(std::min(1.0, K)) / (std::numbers::pi * loop.period_s);
-}
-
 /// A number of the loop as a linear form of the state at the start of the common period.
 using Form = LoopState;
 
@@ -47,7 +28,7 @@ class LiftedLoop {
  public:
   LiftedLoop(const ContactLoop& loop, double stiffness_ratio, double phase_lag_rad)
       : loop_(loop),
-        rates_(ratesOf(loop)),
+        rates_(contactRates(loop)),
         filter_(loop.filter_cutoff_hz,
                 loop.filters_at_samples ? 1.0 / loop.sample_period_s : loop.filter_rate_hz),
         model_filter_(modelCutoff_hz(loop), 1.0 / loop.period_s),
@@ -174,7 +155,7 @@ class LiftedLoop {
   }
 
   const ContactLoop& loop_;
-  Rates rates_;
+  ContactRates rates_;
   ButterworthLowPass filter_, model_filter_;
   double drive_share_, model_share_;
   double stiffness_ratio_;
@@ -194,8 +175,13 @@ class LiftedLoop {
 
 }  // namespace
 
+double modelCutoff_hz(const ContactLoop& loop) {
+  const double K = std::numbers::pi * loop.model_filter_cutoff_hz * loop.period_s;
+  return std::atan(std::min(1.0, K)) / (std::numbers::pi * loop.period_s);
+}
+
 int stepsOfCommonPeriod(const ContactLoop& loop) {
-  const Rates rates = ratesOf(loop);
+  const ContactRates rates = contactRates(loop);
   if (rates.cycle > kMaxSteps || rates.sample > kMaxSteps) return 0;
   const long steps = std::lcm(rates.cycle, rates.sample);
   return steps <= kMaxSteps ? static_cast<int>(steps) : 0;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <istream>
 #include <memory>
@@ -9,14 +10,13 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
+#include "tactus/cli/logged_scene.h"
 #include "tactus/cli/running_log.h"
-#include "tactus/record/contact_figures.h"
+#include "tactus/record/contact_json.h"
 #include "tactus/record/contact_watch.h"
 #include "tactus/record/growing_file.h"
-#include "tactus/record/run_summary.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/located_error.h"
-#include "tactus/scene/scene_loader.h"
 
 /// The contacts of a run, a row each.
 namespace tactus {
@@ -41,31 +41,21 @@ bool readCycles(const std::string& path, const Gains& gains, const Sink& sink) {
 
 Scene loadLogged(const std::string& path) {
   std::ifstream in = openLog(path);
-  const UlogReader reader(in, path);
-  const LogDescription& description = reader.description();
-  Scene scene = loadScene(description.sources, description.overrides, SceneUse::kSimulation);
-  if (static_cast<std::size_t>(description.shape.modules) < scene.module_links.size())
-    failAt({std::make_shared<std::string>(path), 1, 1}, "force_sensor_N",
-           "has fewer tactile modules than its scene", "expected one of each");
-  return scene;
+  return loggedScene(UlogReader(in, path), path);
 }
 
-/// Twice: which contacts there are is known at the end alone.
 LoggedContacts readContacts(const std::string& path) {
   checkLog(path);
   LoggedContacts logged{.scene = loadLogged(path), .contacts = {}};
-  const Gains& gains = logged.scene.controller.gains;
-  RunSummary summary(logged.scene.controller, 0);
-  readCycles(path, gains, [&](const CycleRecord& record) { summary.add(record); });
-  ContactFiguresList list(summary.figures().contacts);
-  logged.is_cut_off = readCycles(path, gains, [&](const CycleRecord& record) { list.add(record); });
-  logged.contacts = list.figures();
+  ContactWatch watch(logged.scene.controller);
+  const auto keep = [&](const std::vector<ContactFigures>& contacts) {
+    logged.contacts.insert(logged.contacts.end(), contacts.begin(), contacts.end());
+  };
+  logged.is_cut_off = readCycles(path, logged.scene.controller.gains,
+                                 [&](const CycleRecord& record) { keep(watch.add(record)); });
+  keep(watch.present());
+  std::ranges::stable_sort(logged.contacts, {}, &ContactFigures::start_s);
   return logged;
-}
-
-std::string linkOf(const Scene& scene, int module) {
-  const auto index = static_cast<std::size_t>(module);
-  return index < scene.module_links.size() ? scene.module_links[index] : "-";
 }
 
 std::string swingText(const ContactFigures& contact) {
@@ -75,23 +65,30 @@ std::string swingText(const ContactFigures& contact) {
   return fmt::format("{:.2f} at {:.1f} Hz", contact.swing_N, contact.swing_hz);
 }
 
+/// c_e with its interval.
+std::string stiffnessText(const TouchFit& touch) {
+  if (!touch.is_known) return "-";
+  return fmt::format("{:.0f} ({:.0f}..{:.0f})", touch.stiffness_N_per_m, touch.low_N_per_m,
+                     touch.high_N_per_m);
+}
+
 std::string headerText() {
   return fmt::format(
-      "{:>8} {:>8} {:<10} {:>6} {:>7} {:>7} {:>7} {:>7} {:<15} {:>9} {:>6} {:>5} {:>6} {:>5}\n",
+      "{:>8} {:>8} {:<10} {:>6} {:>7} {:>7} {:>7} {:>7} {:<15} {:>9} {:<20} {:>6} {:>5} {:>5} "
+      "{:>6} {:>5}\n",
       "start_s", "end_s", "link", "x_mm", "peak_N", "above_s", "rests_s", "rest_N", "swing_N",
-      "c, N/m", "tcp_mm", "null%", "T_s", "d");
+      "c, N/m", "c_e, N/m (95 %)", "tcp_mm", "null%", "task%", "T_s", "d");
 }
 
 std::string contactText(const Scene& scene, const ContactFigures& contact) {
-  const ContactSummary& summary = contact.summary;
   return fmt::format(
-      "{:8.3f} {:8.3f} {:<10} {:6.0f} {:7.2f} {:7.3f} {:7.3f} {:7.2f} {:<15} {:9.0f} {:6.1f} "
-      "{:5.0f} {:6.3g} {:5.3g}\n",
-      summary.start_s, summary.end_s, escaped(linkOf(scene, summary.module)),
-      1e3 * contact.position_m, summary.peak_force_N, contact.time_above_s, summary.settling_s,
+      "{:8.3f} {:8.3f} {:<10} {:6.0f} {:7.2f} {:7.3f} {:7.3f} {:7.2f} {:<15} {:9.0f} {:<20} "
+      "{:6.1f} {:5.0f} {:5.0f} {:6.3g} {:5.3g}\n",
+      contact.start_s, contact.end_s, escaped(linkOfModule(scene.module_links, contact.module)),
+      1e3 * contact.position_m, contact.peak_force_N, contact.time_above_s, contact.settling_s,
       contact.rest_force_N, swingText(contact), contact.stiffness_N_per_m,
-      1e3 * contact.tcp_error_max_m, 100.0 * contact.null_share,
-      contact.gains.force.time_constant_s, contact.gains.force.damping);
+      stiffnessText(contact.touch), 1e3 * contact.tcp_error_max_m, 100.0 * contact.null_share,
+      100.0 * contact.task_share, contact.gains.force.time_constant_s, contact.gains.force.damping);
 }
 
 std::string contactsText(const LoggedContacts& logged) {
@@ -101,39 +98,17 @@ std::string contactsText(const LoggedContacts& logged) {
   return text;
 }
 
-Json contactJson(const Scene& scene, const ContactFigures& contact) {
-  const ContactSummary& summary = contact.summary;
-  const ForceGains& gains = contact.gains.force;
-  return {{"start_s", summary.start_s},
-          {"end_s", summary.end_s},
-          {"tactile_module", linkOf(scene, summary.module)},
-          {"position_m", contact.position_m},
-          {"peak_force_N", summary.peak_force_N},
-          {"time_above_s", contact.time_above_s},
-          {"settling_s", summary.settling_s},
-          {"rest_force_N", contact.rest_force_N},
-          {"swing_N", contact.swing_N},
-          {"swing_hz", contact.swing_hz},
-          {"stiffness_N_per_m", contact.stiffness_N_per_m},
-          {"tcp_error_max_m", contact.tcp_error_max_m},
-          {"null_space_share", contact.null_share},
-          {"time_constant_s", gains.time_constant_s},
-          {"damping", gains.damping},
-          {"activation_force_N", gains.activation_force_N},
-          {"contact_threshold_N", gains.contact_threshold_N}};
-}
-
 Json contactsJson(const LoggedContacts& logged) {
   Json json = Json::array();
   for (const ContactFigures& contact : logged.contacts)
-    json.push_back(contactJson(logged.scene, contact));
+    json.push_back(contactJson(contact, logged.scene.module_links));
   return json;
 }
 
 void printContacts(const Scene& scene, const std::vector<ContactFigures>& contacts, bool as_json) {
   for (const ContactFigures& contact : contacts) {
-    const std::string line =
-        as_json ? contactJson(scene, contact).dump() + "\n" : contactText(scene, contact);
+    const std::string line = as_json ? contactJson(contact, scene.module_links).dump() + "\n"
+                                     : contactText(scene, contact);
     std::fputs(line.c_str(), stdout);
   }
   if (!contacts.empty()) std::fflush(stdout);

@@ -63,6 +63,7 @@ int tactusProgram(int argc, char** argv) {
   addSimulateCommand(app, exit_code);
   addExportCommand(app, exit_code);
   addContactsCommand(app, exit_code);
+  addScopeCommand(app, exit_code);
   addIdentifyCommand(app, exit_code);
   addCalibrateCommand(app, exit_code);
   addReplayCommand(app, exit_code);

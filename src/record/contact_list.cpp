@@ -22,29 +22,29 @@ ContactList::ContactList(bool has_force_control, std::size_t expected_cycles, in
   present_.samples.reserve(std::min(expected_cycles, kMostSamples));
 }
 
-void ContactList::add(const CycleRecord& record) {
+std::optional<ContactSummary> ContactList::add(const CycleRecord& record) {
   threshold_N_ = record.gains.force.contact_threshold_N;
   // A force at which a contact would begin ends none.
   release_N_ = std::min(record.gains.force.transition.release_force_N, threshold_N_);
   if (present_.confirmed_cycles == 0 && !isTouch(record)) {
     if (present_.cycles > 0) clear();
-    return;
+    return std::nullopt;
   }
   const Sample sample{record.t_s, record.force_sensor_N[module_]};
   keep(sample);
   if (present_.confirmed_cycles == 0 && !has_force_control_ && sample.force_N <= threshold_N_)
-    return;
+    return std::nullopt;
   ++present_.confirmed_cycles;
   keepNewest(sample);
-  if (!isReleased()) return;
-  finished_.push_back(summarise(true));
+  if (!isReleased()) return std::nullopt;
+  const ContactSummary over = summarise(true);
   clear();
+  return over;
 }
 
-std::vector<ContactSummary> ContactList::contacts() const {
-  std::vector<ContactSummary> contacts = finished_;
-  if (present_.confirmed_cycles > 0) contacts.push_back(summarise(false));
-  return contacts;
+std::optional<ContactSummary> ContactList::present() const {
+  if (present_.confirmed_cycles == 0) return std::nullopt;
+  return summarise(false);
 }
 
 bool ContactList::isTouch(const CycleRecord& record) const noexcept {
@@ -120,14 +120,11 @@ ContactSummary ContactList::summarise(bool is_released) const {
   return contact;
 }
 
-std::vector<ContactList> contactLists(const ControllerConfig& config, std::size_t expected_cycles) {
+ContactList contactList(const ControllerConfig& config, std::size_t expected_cycles, int module) {
   const std::size_t modules = config.tactile_modules.size();
   // What a law acts on says of several modules only that one of them is touched.
   const bool is_told_by_law = config.force_control.has_value() && modules == 1;
-  std::vector<ContactList> lists;
-  for (std::size_t i = 0; i < modules; ++i)
-    lists.emplace_back(is_told_by_law, expected_cycles / modules, static_cast<int>(i));
-  return lists;
+  return {is_told_by_law, expected_cycles / modules, module};
 }
 
 }  // namespace tactus

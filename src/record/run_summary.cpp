@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tactus/record/contact_json.h"
 #include "tactus/record/fault_text.h"
 #include "tactus/record/output_file.h"
 #include "tactus/record/tool_error.h"
@@ -15,16 +16,11 @@ namespace {
 /// Makes "at the limit" insensitive to rounding; the command limiter reaches limits exactly.
 constexpr double kLimitTolerance = 1e-4;  // m or rad
 
+/// So that memory stays bounded however long the run is: some 5 MB.
+constexpr std::size_t kMostContacts = 10000;
+
 double norm(const double (&vector)[3]) noexcept {
   return std::sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
-}
-
-Json contactJson(const ContactSummary& contact, const Scene& scene) {
-  return {{"start_s", contact.start_s},
-          {"end_s", contact.end_s},
-          {"peak_force_N", contact.peak_force_N},
-          {"settling_s", contact.settling_s},
-          {"tactile_module", scene.module_links[contact.module]}};
 }
 
 Json lossesJson(const RunFigures& figures, const Scene& scene) {
@@ -53,8 +49,9 @@ void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
   json["stiffness_final_N_per_m"] = figures.stiffness_final_N_per_m;
   json["stiffness_at_peak_N_per_m"] = figures.stiffness_at_peak_N_per_m;
   Json& contacts = json["contacts"] = Json::array();
-  for (const ContactSummary& contact : figures.contacts)
-    contacts.push_back(contactJson(contact, scene));
+  for (const ContactFigures& contact : figures.contacts)
+    contacts.push_back(contactJson(contact, scene.module_links));
+  if (figures.further_contacts > 0) json["further_contacts"] = figures.further_contacts;
   if (scene.controller.module_loss) json["module_losses"] = lossesJson(figures, scene);
   if (figures.unsensed) json["unsensed_contact"] = unsensedJson(*figures.unsensed, scene);
   json["step_time_ns"] = timesJson(figures.step_time_ns);
@@ -63,19 +60,27 @@ void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
 }  // namespace
 
 RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
-    : limits_(config.limits), contacts_(contactLists(config, expected_cycles)) {
+    : limits_(config.limits),
+      modules_(static_cast<int>(config.tactile_modules.size())),
+      contacts_(config, expected_cycles) {
   if (config.task.hasRotation()) figures_.tcp_rotation_error.emplace();
 }
 
 void RunSummary::add(const CycleRecord& record) {
   addLosses(record);
   addFigures(record);
-  for (ContactList& contacts : contacts_) contacts.add(record);
+  for (const ContactFigures& contact : contacts_.add(record)) {
+    if (figures_.contacts.size() < kMostContacts) {
+      figures_.contacts.push_back(contact);
+    } else {
+      ++figures_.further_contacts;
+    }
+  }
 }
 
 void RunSummary::addFigures(const CycleRecord& record) noexcept {
   ++figures_.cycles;
-  const double force_N = largestForce_N(record, static_cast<int>(contacts_.size()));
+  const double force_N = largestForce_N(record, modules_);
   if (force_N > figures_.peak_force_N) {
     figures_.peak_force_N = force_N;
     figures_.stiffness_at_peak_N_per_m = record.stiffness_N_per_m;
@@ -92,7 +97,7 @@ void RunSummary::addFigures(const CycleRecord& record) noexcept {
 void RunSummary::addLosses(const CycleRecord& record) {
   if (record.modules_lost == 0) return;
   std::vector<ModuleLoss>& losses = figures_.module_losses;
-  for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+  for (int i = 0; i < modules_; ++i) {
     const std::uint64_t bit = std::uint64_t{1} << i;
     if ((record.modules_lost & bit) == 0) continue;
     if ((figures_.modules_lost & bit) == 0) losses.push_back({i, record.t_s, record.t_s});
@@ -135,11 +140,8 @@ RunFigures RunSummary::figures() const {
     if (figures.tcp_rotation_error)
       figures.tcp_rotation_error->rms_rad = std::sqrt(squared_rotation_sum_rad2_ / cycles);
   }
-  for (const ContactList& of_module : contacts_) {
-    const std::vector<ContactSummary> contacts = of_module.contacts();
-    figures.contacts.insert(figures.contacts.end(), contacts.begin(), contacts.end());
-  }
-  std::ranges::stable_sort(figures.contacts, {}, &ContactSummary::start_s);
+  for (const ContactFigures& contact : contacts_.present()) figures.contacts.push_back(contact);
+  std::ranges::stable_sort(figures.contacts, {}, &ContactFigures::start_s);
   figures.step_time_ns = timeFigures(step_times_);
   return figures;
 }

@@ -15,9 +15,27 @@ namespace {
 constexpr double kThreshold_N = 1.2;  // the defaults
 constexpr double kRelease_N = 0.3;
 
+/// All of a run, cycle by cycle.
+class ContactCollection {
+ public:
+  explicit ContactCollection(ContactList list) : list_(std::move(list)) {}
+  void add(const CycleRecord& record) {
+    if (const std::optional<ContactSummary> over = list_.add(record)) over_.push_back(*over);
+  }
+  std::vector<ContactSummary> contacts() const {
+    std::vector<ContactSummary> contacts = over_;
+    if (const std::optional<ContactSummary> present = list_.present()) contacts.push_back(*present);
+    return contacts;
+  }
+
+ private:
+  ContactList list_;
+  std::vector<ContactSummary> over_;
+};
+
 /// Forces of consecutive cycles of 10 ms, starting at t = 0.
 std::vector<ContactSummary> contactsOf(const std::vector<double>& forces_N, bool force_control) {
-  ContactList list(force_control, forces_N.size());
+  ContactCollection list(ContactList(force_control, forces_N.size()));
   CycleRecord record;
   for (std::size_t i = 0; i < forces_N.size(); ++i) {
     record.t_s = 0.01 * static_cast<double>(i);
@@ -86,7 +104,7 @@ std::vector<ContactSummary> noisyContacts(const std::vector<std::pair<int, doubl
                                           bool force_control, double noise_N, int seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> noise(0.0, noise_N);
-  ContactList list(force_control, 0);
+  ContactCollection list(ContactList(force_control, 0));
   CycleRecord record;
   for (const double force_N : sequence(stretches)) {
     record.force_sensor_N[0] = std::hypot(force_N + noise(random), noise(random));
@@ -117,7 +135,7 @@ TEST(ContactList, NoiseNeitherKeepsAContactNorMakesOneNorEndsOne) {
 
 TEST(ContactList, EndsAtTheForceOfTheScene) {
   for (const auto& [release_N, count] : {std::pair{kRelease_N, 1u}, std::pair{0.75, 2u}}) {
-    ContactList list(true, 0);
+    ContactCollection list(ContactList(true, 0));
     CycleRecord record;
     record.gains.force.transition.release_force_N = release_N;
     for (const double force_N : sequence({{20, 3.0}, {20, 0.7}, {20, 3.0}})) {
@@ -132,7 +150,7 @@ TEST(ContactList, EndsAtTheForceOfTheScene) {
 
 /// An arm at rest between F_th and a larger F_rel touches: that is one contact.
 TEST(ContactList, IsOneWhereItRestsBelowTheReleaseForce) {
-  ContactList list(true, 0);
+  ContactCollection list(ContactList(true, 0));
   CycleRecord record;
   record.gains.force.contact_threshold_N = 0.1;
   for (const double force_N : sequence({{20, 3.0}, {200, 0.2}, {20, 0.0}})) {

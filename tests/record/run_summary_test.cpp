@@ -170,7 +170,9 @@ TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
   figures.peak_force_N = 0.1 + 0.2;
   figures.tcp_error_max_m = std::numeric_limits<double>::denorm_min();
   figures.tcp_error_final_m = std::numeric_limits<double>::quiet_NaN();
-  figures.contacts = {{1.0, 2.5, 1.0 / 3.0, 0.25}};
+  ContactFigures contact;
+  static_cast<ContactSummary&>(contact) = {1.0, 2.5, 1.0 / 3.0, 0.25};
+  figures.contacts = {contact};
   figures.end.fault = Fault::kTactileStale;
   figures.end.detail = {0.021, 0.02, "s"};
   const std::string text = jsonText(summaryJson(scene(), figures, 1.0));
@@ -183,6 +185,27 @@ TEST(SummaryJson, KeepsNumbersToTheBitAndNamesTheFault) {
   EXPECT_EQ(json["contacts"][0]["tactile_module"].as<std::string>(), "link4");
   EXPECT_EQ(json["outcome"].as<std::string>(), "tactile_stale");
   EXPECT_EQ(json["fault"]["value"].as<double>(), 0.021);
+}
+
+/// However long a run is: what is behind the ten thousandth is counted.
+TEST(RunSummary, BoundsItsContacts) {
+  ControllerConfig config = scene().controller;
+  RunSummary summary(config, 0);
+  CycleRecord record;
+  constexpr int kContacts = 10007, kCyclesEach = 10;
+  for (int i = 0; i < kContacts * kCyclesEach; ++i) {
+    record.t_s = 0.05 * i;
+    record.force_sensor_N[0] = i % kCyclesEach < 3 ? 5.0 : 0.0;
+    record.force_contact_N = record.force_sensor_N[0];
+    summary.add(record);
+  }
+  RunFigures figures = summary.figures();
+  EXPECT_EQ(figures.contacts.size(), 10000u);
+  EXPECT_EQ(figures.further_contacts, kContacts - 10000);
+  EXPECT_NEAR(figures.contacts[9999].start_s, 0.05 * 9999 * kCyclesEach, 1e-6);
+  EXPECT_EQ(summaryJson(scene(), figures, 1.0).at("further_contacts"), kContacts - 10000);
+  figures.further_contacts = 0;
+  EXPECT_FALSE(summaryJson(scene(), figures, 1.0).contains("further_contacts"));
 }
 
 TEST(SummaryJson, EscapesWhateverASceneIsCalled) {

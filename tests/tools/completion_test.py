@@ -62,6 +62,8 @@ class Completion(unittest.TestCase):
         self.assertEqual(self.offered("identify", "cover", "o"), ["one.yaml"])
         self.assertEqual(self.offered("identify", "cover", "runs/mine/"), ["runs/mine/run.ulg"])
         self.assertEqual(self.offered("simulate", "one.yaml", "-o", ""), ["runs"])
+        self.assertEqual(self.offered("scope", "runs/mine/"), ["runs/mine/run.ulg"])
+        self.assertEqual(self.offered("scope", "--trigger", ""), [""])
         self.assertEqual(self.offered("export", "x.ulg", "-o", ""), ["runs", "table.csv"])
 
     def test_keys_behind_set(self):

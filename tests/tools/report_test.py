@@ -244,6 +244,46 @@ class Unsensed(Report):
                 self.refuse("unsensed_contact" if bad in ("much", good | {"link": None}) else "summary.json")
 
 
+CONTACT = {"start_s": 1.25, "end_s": 3.5, "peak_force_N": 6.125, "settling_s": 0.5,
+           "tactile_module": "link<4>", "rest_force_N": 5.0, "swing_N": 0.01,
+           "stiffness_N_per_m": 7000.0, "tcp_error_max_m": 0.0123, "null_space_share": 0.25,
+           "task_space_share": 0.6, "time_constant_s": 0.1, "damping": 0.5,
+           "contact_stiffness_N_per_m": {"value": 1092.4, "low": 1091.0, "high": 1093.8}}
+
+
+class Contacts(Report):
+    def test_are_told_a_row_each(self):
+        old = {key: CONTACT[key] for key in ("start_s", "end_s", "peak_force_N", "settling_s",
+                                             "tactile_module")}
+        write_run(self.runs, "x", contacts=[CONTACT, CONTACT | {"contact_stiffness_N_per_m": None}])
+        write_run(self.runs, "y", contacts=[old])
+        write_run(self.runs, "z", contacts=[])
+        result = self.report()
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        section = self.page().split("<h2>Contacts</h2>")[1].split("</table>")[0]
+        rows = re.findall(r"<tr>(<th scope=.row.*?)</tr>", section)
+        cells = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in rows]
+        told = ["link&lt;4&gt;", "1.250", "3.500", "6.12", "0.500"]
+        figures_of_it = ["5.00", "0.01", "7000", "1092 (1091 to 1094)", "12.3", "25", "60", "0.1", "0.5"]
+        unknown = figures_of_it[:3] + [""] + figures_of_it[4:]
+        self.assertEqual(cells, [["x", *told, *figures_of_it], ["x", *told, *unknown],
+                                 ["y", *told, *[""] * 9]])
+
+    def test_none_no_section(self):
+        write_run(self.runs, "z", contacts=[])
+        self.assertEqual(self.report().returncode, 0)
+        self.assertNotIn("<h2>Contacts</h2>", self.page())
+
+    def test_one_that_is_none_is_refused(self):
+        for change, expected in (({"swing_N": "much"}, "swing_N"), ({"damping": 1e999}, "damping"),
+                                 ({"contact_stiffness_N_per_m": 5}, "no object"),
+                                 ({"contact_stiffness_N_per_m": {"value": 1, "low": None, "high": 2}}, "low")):
+            with self.subTest(change=change):
+                shutil.rmtree(self.runs, ignore_errors=True)
+                write_run(self.runs, "x", contacts=[CONTACT | change])
+                self.refuse(expected)
+
+
 class Incomplete(Report):
     def test_names_the_missing_runs(self):
         write_run(self.runs, "scenario2_assumed")

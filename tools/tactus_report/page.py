@@ -4,7 +4,7 @@ import html
 import pathlib
 import re
 
-from . import comparison, levels, paper_figures, run_figures, runs, skin_figures
+from . import comparison, contacts, levels, paper_figures, run_figures, runs, skin_figures
 from .figures import as_figure, scatter_figure
 
 CSS = pathlib.Path(__file__).with_name("page.css")
@@ -172,11 +172,14 @@ def faults_section(runs):
 
 
 def contacts_section(runs):
-    """Of arms with several modules, whose contacts have a link to be told apart by."""
-    rows = [[name, link, number(start_s, 3), number(end_s, 3), number(peak_N, 2), number(settling_s, 3)]
-            for name, link, start_s, end_s, peak_N, settling_s in skin_figures.contact_rows(runs)]
-    heads = ["Run", "Link of the module", "From, s", "To, s", "Largest force, N", "Settles in, s"]
-    return ["<h3>Their contacts</h3>", table(heads, rows, "contacts")] if rows else []
+    rows = contacts.rows(runs)
+    if not rows:
+        return []
+    return ["<h2>Contacts</h2>",
+            "<p>c is what the law took the contact for, at its end; c_e what force and way say, with "
+            "the interval of 95 %. Null space alone: of the time that the law answered. Task space: of "
+            "the way that the law gave the contact point.</p>",
+            table(contacts.HEADS, rows, "contacts")]
 
 
 def unsensed_section(runs):

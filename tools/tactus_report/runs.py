@@ -24,6 +24,9 @@ SUMMARY_NUMBERS = ("peak_force_N", "final_force_N", "tcp_error_max_m", "tcp_erro
 # Beginnings of columns that tell of several modules.
 OF_SKINS = ("force_sensor_N_", "contact_position_m", "contact_dir_", "q_measured_")
 STEP_TIMES = ("median", "p99")
+# That summaries of older versions do not have.
+FIGURES_OF_CONTACTS = ("rest_force_N", "swing_N", "stiffness_N_per_m", "tcp_error_max_m", "null_space_share",
+                       "task_space_share", "time_constant_s", "damping")
 
 
 @dataclasses.dataclass
@@ -169,6 +172,18 @@ def check_contacts(path, contacts):
             check_number(place, key, contact)
             if contact[key] is None:
                 raise InputError(f"{place}: {key}: null, expected a finite number")
+        for key in FIGURES_OF_CONTACTS:
+            if key in contact:
+                check_number(place, key, contact)
+        fit = contact.get("contact_stiffness_N_per_m")
+        if fit is None:
+            continue
+        if not isinstance(fit, dict):
+            raise InputError(f"{place}.contact_stiffness_N_per_m: no object, expected value, low and high")
+        for key in ("value", "low", "high"):
+            check_number(f"{place}.contact_stiffness_N_per_m", key, fit)
+            if fit[key] is None:
+                raise InputError(f"{place}.contact_stiffness_N_per_m: {key}: null, expected a finite number")
 
 
 def check_unsensed(path, contact):

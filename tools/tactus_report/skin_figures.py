@@ -49,13 +49,6 @@ def section(runs):
     return ["<h2>Arms with several tactile modules</h2>", *body] if body else []
 
 
-def contact_rows(runs):
-    """Cells: run, link, start, end, largest force, settling time."""
-    return [(run.name, contact["tactile_module"], contact["start_s"], contact["end_s"],
-             contact["peak_force_N"], contact["settling_s"])
-            for run in of_skins(runs) for contact in run.summary.get("contacts", [])]
-
-
 def force_figure(name, run):
     curves = [Curve(link, COLOURS[i % len(COLOURS)], "solid", run.time_s, force_N)
               for i, (link, force_N) in enumerate(zip(run.modules, run.forces_N))]

@@ -17,6 +17,7 @@ void addCheckCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 void addExportCommand(CLI::App& app, int& exit_code);
 void addContactsCommand(CLI::App& app, int& exit_code);
+void addScopeCommand(CLI::App& app, int& exit_code);
 void addIdentifyCommand(CLI::App& app, int& exit_code);
 void addReplayCommand(CLI::App& app, int& exit_code);
 void addPlantCommand(CLI::App& app, int& exit_code);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "tactus/supervisor/cycle_record.h"
@@ -33,12 +34,11 @@ class ContactList {
   /// `expected_cycles` is only used to allocate in advance.
   ContactList(bool has_force_control, std::size_t expected_cycles, int module = 0);
 
-  void add(const CycleRecord& record);
+  /// The contact that is over with this cycle.
+  std::optional<ContactSummary> add(const CycleRecord& record);
 
-  /// The contacts so far; one that still lasts ends with the last cycle.
-  std::vector<ContactSummary> contacts() const;
-  /// Those that are over.
-  const std::vector<ContactSummary>& finished() const noexcept { return finished_; }
+  /// The one that still lasts, as if it ended with the last cycle.
+  std::optional<ContactSummary> present() const;
   /// One may have begun.
   bool isTouching() const noexcept { return present_.cycles > 0; }
 
@@ -69,11 +69,10 @@ class ContactList {
   bool has_force_control_;
   int module_;
   double threshold_N_ = 0.0, release_N_ = 0.0;  ///< of the newest record
-  std::vector<ContactSummary> finished_;
   Present present_;
 };
 
-/// One a tactile module.
-std::vector<ContactList> contactLists(const ControllerConfig& config, std::size_t expected_cycles);
+/// That of a tactile module. `expected_cycles`: of all of them.
+ContactList contactList(const ControllerConfig& config, std::size_t expected_cycles, int module);
 
 }  // namespace tactus

@@ -1,18 +1,16 @@
 #pragma once
 
-#include <deque>
 #include <vector>
 
-#include "tactus/record/contact_figures.h"
-#include "tactus/record/contact_list.h"
+#include "tactus/record/contact_follower.h"
 
 namespace tactus {
 
-/// Tells of each contact once it is over, while the run goes on. Of one of more than a minute,
-/// what ContactFigures has besides its summary is of the last minute.
+/// Tells of each contact of an arm once it is over.
 class ContactWatch {
  public:
-  explicit ContactWatch(const ControllerConfig& config);
+  /// `expected_cycles` is only used to allocate in advance.
+  explicit ContactWatch(const ControllerConfig& config, std::size_t expected_cycles = 0);
 
   /// Contacts that are over with this cycle.
   std::vector<ContactFigures> add(const CycleRecord& record);
@@ -20,10 +18,7 @@ class ContactWatch {
   std::vector<ContactFigures> present() const;
 
  private:
-  ContactFigures figuresOf(const ContactSummary& contact) const;
-
-  std::vector<ContactList> lists_;  ///< one a module
-  std::deque<CycleRecord> recent_;  ///< as long as anything is touched
+  std::vector<ContactFollower> modules_;
 };
 
 }  // namespace tactus

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tactus/math/histogram.h"
-#include "tactus/record/contact_list.h"
+#include "tactus/record/contact_watch.h"
 #include "tactus/record/run_log.h"
 #include "tactus/record/time_figures.h"
 #include "tactus/scene/json.h"
@@ -43,7 +43,8 @@ struct RunFigures {
   long long joints_at_limit_cycles = 0;
   double stiffness_final_N_per_m = 0.0;
   double stiffness_at_peak_N_per_m = 0.0;  ///< in the (first) cycle of the peak force
-  std::vector<ContactSummary> contacts;    ///< in the order of their start
+  std::vector<ContactFigures> contacts;    ///< in the order of their start
+  long long further_contacts = 0;          ///< behind the first 10000, of which no more is known
   std::uint64_t modules_lost = 0;          ///< in the last cycle; bit i: module i
   std::vector<ModuleLoss> module_losses;   ///< in the order of their start
   TimeFigures step_time_ns;
@@ -73,7 +74,8 @@ class RunSummary {
 
   JointLimits limits_;
   RunFigures figures_;
-  std::vector<ContactList> contacts_;  ///< one a tactile module
+  int modules_;
+  ContactWatch contacts_;
   double squared_error_sum_m2_ = 0.0, squared_rotation_sum_rad2_ = 0.0;
   Histogram step_times_;
 };

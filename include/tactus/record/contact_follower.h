@@ -1,0 +1,62 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "tactus/record/contact_figures.h"
+
+namespace tactus {
+
+/// Figures of the contacts of one tactile module, each once it is over, in one pass. Memory is that
+/// of 1.3 s, and of the samples of ContactList.
+class ContactFollower {
+ public:
+  /// `expected_cycles` as of contactList().
+  ContactFollower(const ControllerConfig& config, std::size_t expected_cycles, int module);
+
+  /// The contact that is over with this cycle.
+  std::optional<ContactFigures> add(const CycleRecord& record);
+  /// The one that lasts.
+  std::optional<ContactFigures> present() const;
+
+ private:
+  /// Of a cycle.
+  struct Cycle {
+    double t_s, force_N, position_m, tool_error_m, stiffness_N_per_m;
+    double above_s;
+    bool answers, answers_by_null_space_alone;
+    double way_m, task_way_m;  ///< that the law gives the contact point
+  };
+
+  /// What all cycles of a contact come to.
+  struct Sums {
+    double peak_N = -1.0, position_m = 0.0;
+    double above_s = 0.0, tool_error_m = 0.0, stiffness_N_per_m = 0.0;
+    double way_m = 0.0, task_way_m = 0.0;
+    long long answers = 0, null_answers = 0;
+
+    void add(const Cycle& cycle) noexcept;
+  };
+
+  Cycle cycleOf(const CycleRecord& record) const noexcept;
+  void begin(const CycleRecord& record);
+  void keepTouch(const CycleRecord& record);
+  ContactFigures figuresOf(const ContactSummary& contact) const;
+  void addRest(ContactFigures& figures) const;
+
+  ControllerConfig config_;
+  int module_;
+  ContactList list_;
+  bool is_touching_ = false;
+  double before_s_ = 0.0, period_s_ = 0.0;
+  bool has_before_ = false;
+  Gains gains_;               ///< at the start of the contact
+  Sums sums_;                 ///< of its cycles that recent_ no longer has
+  std::deque<Cycle> recent_;  ///< of the contact
+  std::deque<TouchSample> touch_samples_;
+  std::optional<double> felt_s_;  ///< since when F_sen exceeds F_th
+  std::optional<TouchFit> touch_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,232 @@
+#include "tactus/cli/scope_run.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <istream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "tactus/cli/logged_scene.h"
+#include "tactus/cli/running_log.h"
+#include "tactus/cli/scope_page.h"
+#include "tactus/cli/scope_text.h"
+#include "tactus/record/growing_file.h"
+#include "tactus/record/output_file.h"
+#include "tactus/record/ulog_reader.h"
+#include "tactus/scene/located_error.h"
+
+namespace tactus {
+namespace {
+
+ScopeScreen ownScreen() {
+  ScopeScreen screen;
+  const bool is_terminal = ::isatty(STDOUT_FILENO) == 1;
+  const char* const no_colour = std::getenv("NO_COLOR");
+  screen.has_colour = is_terminal && (no_colour == nullptr || *no_colour == '\0');
+  winsize size{};
+  if (is_terminal && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
+    screen.columns = size.ws_col;
+  return screen;
+}
+
+/// The condition and what the window follows from it: noise about F_th makes no contact.
+struct ScopeTrigger {
+  TriggerCondition condition;
+  CaptureWindow window;
+};
+
+ScopeTrigger scopeTrigger(const ScopeOptions& options, const Scene& scene,
+                          const RecordShape& shape) {
+  const ForceGains& gains = scene.controller.gains.force;
+  const bool is_default = options.trigger.empty();
+  const std::string text =
+      is_default ? fmt::format("force_N > {}", gains.contact_threshold_N) : options.trigger;
+  ScopeTrigger trigger{parseTrigger(text, shape), {options.pre_s, options.post_s}};
+  const double least_N = std::min(gains.transition.release_force_N, gains.contact_threshold_N);
+  trigger.window.hysteresis =
+      options.hysteresis.value_or(is_default ? gains.contact_threshold_N - least_N : 0.0);
+  trigger.window.holdoff_s = options.holdoff_s.value_or(0.0);
+  return trigger;
+}
+
+/// Takes cycles, shows captures.
+class Scope {
+ public:
+  Scope(const ScopeOptions& options, Scene scene, ScopeTrigger trigger)
+      : options_(options),
+        scene_(std::move(scene)),
+        ring_(trigger.condition, trigger.window),
+        screen_(ownScreen()),
+        view_{options.log, trigger.condition, options.pre_s, options.post_s, {}} {}
+
+  /// True: that was all. is_live: it is to be shown at once.
+  bool add(const CycleRecord& record, bool is_live) {
+    if (is_live && !was_live_) goLive(record.t_s);
+    const std::optional<Capture> capture = ring_.add(record);
+    if (capture && isWanted(*capture)) {
+      keep(*capture);
+      if (is_live) show();
+      return options_.is_single;
+    }
+    const bool is_late = record.t_s > shown_s_ + options_.pre_s + options_.post_s;
+    if (is_live && options_.is_auto && is_late) showNewest();
+    return false;
+  }
+
+  const Gains& gains() const { return scene_.controller.gains; }
+
+  /// At the end of the run.
+  void finish() {
+    const std::optional<Capture> capture = ring_.unfinished();
+    if (capture && isWanted(*capture)) {
+      keep(*capture);
+      has_new_ = true;
+    }
+    if (view_.traces.empty() && options_.is_auto) {
+      const Capture newest = ring_.newest();
+      if (!newest.records.empty()) keep(newest);
+    }
+    if (view_.traces.empty()) return showNone();
+    if (has_new_) show();
+  }
+
+ private:
+  /// What came before is shown once, but not to who waits for one.
+  void goLive(double t_s) {
+    was_live_ = true;
+    live_s_ = shown_s_ = t_s;
+    if (!view_.traces.empty() && !options_.is_single) show();
+  }
+
+  bool isWanted(const Capture& capture) const {
+    return !options_.is_single || !options_.follows || capture.trigger_s >= live_s_;
+  }
+
+  void keep(const Capture& capture) {
+    std::erase_if(view_.traces, [](const ScopeTrace& trace) { return !trace.is_triggered; });
+    view_.traces.push_back(scopeTrace(scene_, view_.condition, capture));
+    while (view_.traces.size() > static_cast<std::size_t>(options_.keep)) view_.traces.pop_front();
+    shown_s_ = capture.records.back().t_s;
+    has_new_ = true;
+  }
+
+  void showNewest() {
+    const Capture newest = ring_.newest();
+    const std::deque<ScopeTrace> kept = std::exchange(view_.traces, {});
+    keep(newest);
+    show();
+    view_.traces = kept;
+  }
+
+  void show() {
+    has_new_ = false;
+    if (!options_.output.empty()) write();
+    if (options_.json) {
+      printJson();
+    } else {
+      const bool clears = options_.follows && ::isatty(STDOUT_FILENO) == 1;
+      const std::string text = scopeText(view_, screen_);
+      std::fputs(((clears ? "\033[H\033[2J" : "") + text).c_str(), stdout);
+    }
+    std::fflush(stdout);
+  }
+
+  void showNone() const {
+    if (options_.json) {
+      if (!options_.follows) std::fputs("[]\n", stdout);
+      return;
+    }
+    const std::string text = fmt::format("no trigger: {}\n", escaped(view_.condition.text));
+    std::fputs(text.c_str(), stdout);
+  }
+
+  void printJson() {
+    Json all = Json::array();
+    for (const ScopeTrace& trace : view_.traces) {
+      if (options_.follows && trace.trigger_s <= printed_s_) continue;
+      all.push_back(scopeJson(trace));
+      printed_s_ = trace.trigger_s;
+    }
+    if (!options_.follows) std::fputs(jsonText(all).c_str(), stdout);
+    for (const Json& trace : all)
+      if (options_.follows) std::fputs((trace.dump() + "\n").c_str(), stdout);
+  }
+
+  /// Who reads the page meanwhile has the one before.
+  void write() const {
+    const std::string part = options_.output + ".part";
+    OutputFile file(part);
+    file.append(scopePage(view_));
+    file.flush();
+    file.rename(part, options_.output);
+    file.close();
+  }
+
+  const ScopeOptions& options_;
+  Scene scene_;
+  CaptureRing ring_;
+  ScopeScreen screen_;
+  ScopeView view_;
+  bool was_live_ = false, has_new_ = false;
+  double live_s_ = -kNoLimit, shown_s_ = 0.0;
+  double printed_s_ = -kNoLimit;  ///< the newest of those that are followed and printed
+};
+
+Scope makeScope(const ScopeOptions& options) {
+  std::ifstream in = openLog(options.log);
+  const UlogReader reader(in, options.log);
+  Scene scene = loggedScene(reader, options.log);
+  ScopeTrigger trigger = scopeTrigger(options, scene, reader.description().shape);
+  const std::string_view field = trigger.condition.columns.front().field;
+  if (!reader.has(field)) {
+    failAt({std::make_shared<std::string>(options.log), 1, 1}, field,
+           "is not in this log, which is of an older version", "expected another field");
+  }
+  return {options, std::move(scene), std::move(trigger)};
+}
+
+/// True: no more is wanted.
+template <class Stream, class IsLive>
+bool scopeCycles(Stream& in, const ScopeOptions& options, const Gains& gains, Scope& scope,
+                 const IsLive& is_live) {
+  UlogReader reader(in, options.log);
+  reader.assumeGains(gains);
+  CycleRecord record;
+  while (reader.next(record))
+    if (scope.add(record, is_live())) return true;
+  if (reader.cutOff() && !options.follows)
+    fmt::print(stderr, "{}: the log was cut off\n", escaped(options.log));
+  return false;
+}
+
+}  // namespace
+
+void runScope(ScopeOptions options) {
+  if (options.log.empty()) {
+    options.log = runningLog();
+    options.follows = true;
+  }
+  if (!options.output.empty()) refuseOverwriting(options.log, options.output);
+  if (!options.follows) checkLog(options.log);
+  Scope scope = makeScope(options);
+  const Gains gains = scope.gains();
+  if (!options.follows) {
+    std::ifstream in = openLog(options.log);
+    scopeCycles(in, options, gains, scope, [] { return false; });
+  }
+  for (bool goes_on = options.follows; goes_on;) {
+    GrowingFile file(options.log);
+    std::istream in(&file);
+    if (scopeCycles(in, options, gains, scope, [&file] { return file.isLive(); })) return;
+    goes_on = file.goesOn();
+  }
+  scope.finish();
+}
+
+}  // namespace tactus

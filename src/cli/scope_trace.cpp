@@ -1,0 +1,202 @@
+#include "tactus/cli/scope_trace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "tactus/record/contact_json.h"
+#include "tactus/scene/stability_check.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kLeastSpeed_m_per_s = 1e-4;
+constexpr double kSlowTouch_s = 10.0;  ///< until a soft contact passes F_th
+
+/// The module that feels most from the trigger on.
+int loudestModule(const Capture& capture, int modules) {
+  int loudest = 0;
+  double most_N = -kNoLimit;
+  for (const CycleRecord& record : capture.records) {
+    if (capture.is_triggered && record.t_s < capture.trigger_s) continue;
+    for (int i = 0; i < modules; ++i) {
+      if (!(record.force_sensor_N[i] > most_N)) continue;
+      most_N = record.force_sensor_N[i];
+      loudest = i;
+    }
+  }
+  return loudest;
+}
+
+/// The first cycle in which F_sen passes F_th on its way up; null: it does not.
+const CycleRecord* feltCycle(const Capture& capture, int module) {
+  const auto is_felt = [module](const CycleRecord& record) {
+    return record.force_sensor_N[module] > record.gains.force.contact_threshold_N;
+  };
+  for (std::size_t i = 1; i < capture.records.size(); ++i)
+    if (is_felt(capture.records[i]) && !is_felt(capture.records[i - 1])) return &capture.records[i];
+  return nullptr;
+}
+
+const CycleRecord& triggerCycle(const Capture& capture) {
+  const auto found = std::ranges::find_if(
+      capture.records, [&](const CycleRecord& record) { return record.t_s >= capture.trigger_s; });
+  return found == capture.records.end() ? capture.records.back() : *found;
+}
+
+TouchFit fitOf(const Scene& scene, const Capture& capture, int module, double felt_s) {
+  std::deque<TouchSample> samples;
+  for (const CycleRecord& record : capture.records) samples.push_back(touchSample(record, module));
+  return fitTouch(scene.controller, module, samples, felt_s);
+}
+
+/// Moved so that it passes F_th where F_sen does, felt_s after the trigger.
+ScopeCurve aligned(const std::vector<PredictedForce>& forces, double threshold_N, double felt_s,
+                   double from_s, double to_s) {
+  ScopeCurve curve;
+  const auto felt = std::ranges::find_if(
+      forces, [threshold_N](const PredictedForce& force) { return force.force_N > threshold_N; });
+  if (felt == forces.end()) return curve;
+  for (const PredictedForce& force : forces) {
+    const double t_s = force.t_s - felt->t_s + felt_s;
+    if (t_s < from_s || t_s > to_s) continue;
+    curve.t_s.push_back(t_s);
+    curve.value.push_back(force.force_N);
+  }
+  return curve;
+}
+
+void predict(const Scene& scene, int module, const CycleRecord* felt, ScopeTrace& trace) {
+  const std::optional<PredictedTouch> known =
+      predictedTouch(scene.controller, plantOf(scene), scene.period_s, module,
+                     felt ? felt->gains : scene.controller.gains);
+  if (!known) {
+    trace.why_not_predicted = "the scene's law or its rates have no such loop";
+  } else if (!felt) {
+    trace.why_not_predicted = "F_sen does not pass F_th";
+  } else if (!trace.touch.is_known) {
+    trace.why_not_predicted = "force and way do not tell c_e";
+  } else if (trace.touch.speed_m_per_s < kLeastSpeed_m_per_s) {
+    trace.why_not_predicted = "the contact point did not approach";
+  }
+  if (!trace.why_not_predicted.empty()) return;
+  PredictedTouch touch = *known;
+  touch.stiffness_N_per_m = trace.touch.stiffness_N_per_m;
+  touch.law_stiffness_N_per_m = trace.law_stiffness_N_per_m;
+  touch.speed_m_per_s = trace.touch.speed_m_per_s;
+  const double to_s = trace.force.t_s.back();
+  const std::vector<PredictedForce> forces = predictForce(touch, to_s + kSlowTouch_s);
+  trace.predicted = aligned(forces, touch.gains.force.contact_threshold_N,
+                            felt->t_s - trace.trigger_s, trace.force.t_s.front(), to_s);
+  if (trace.predicted.t_s.empty()) trace.why_not_predicted = "the loop alone does not come to F_th";
+}
+
+bool restsAboveActivation(const Scene& scene) {
+  if (!scene.controller.force_control) return false;
+  const Variant variant = scene.controller.force_control->variant;
+  return variant == Variant::kNullTask || variant == Variant::kNullJoint ||
+         variant == Variant::kNullLimit;
+}
+
+Json curveJson(const ScopeCurve& curve, const char* name) {
+  return {{"t_s", curve.t_s}, {name, curve.value}};
+}
+
+}  // namespace
+
+ScopeTrace scopeTrace(const Scene& scene, const TriggerCondition& condition,
+                      const Capture& capture) {
+  const int modules = std::max(1, static_cast<int>(scene.controller.tactile_modules.size()));
+  const int module = loudestModule(capture, modules);
+  const CycleRecord& trigger = triggerCycle(capture);
+  const CycleRecord* const felt =
+      scene.controller.tactile_modules.empty() ? nullptr : feltCycle(capture, module);
+  ScopeTrace trace;
+  trace.trigger_s = capture.trigger_s;
+  trace.is_triggered = capture.is_triggered;
+  trace.link = linkOfModule(scene.module_links, module);
+  trace.variant = scene.variant;
+  trace.gains = trigger.gains.force;
+  trace.law_stiffness_N_per_m = (felt ? *felt : trigger).stiffness_N_per_m;
+  trace.rest_N = trace.gains.contact_threshold_N +
+                 (restsAboveActivation(scene) ? trace.gains.activation_force_N : 0.0);
+  for (const CycleRecord& record : capture.records) {
+    const double t_s = record.t_s - capture.trigger_s;
+    trace.force.t_s.push_back(t_s);
+    trace.force.value.push_back(record.force_sensor_N[module]);
+    trace.signal.t_s.push_back(t_s);
+    trace.signal.value.push_back(signalOf(condition, record));
+    trace.peak_N = std::max(trace.peak_N, record.force_sensor_N[module]);
+  }
+  if (felt) trace.touch = fitOf(scene, capture, module, felt->t_s);
+  predict(scene, module, felt, trace);
+  return trace;
+}
+
+std::string gainsText(const ScopeTrace& trace) {
+  return fmt::format("T {:g} s, d {:g}, F_act {:g} N, F_th {:g} N, c {:.0f} N/m",
+                     trace.gains.time_constant_s, trace.gains.damping,
+                     trace.gains.activation_force_N, trace.gains.contact_threshold_N,
+                     trace.law_stiffness_N_per_m);
+}
+
+std::string touchText(const ScopeTrace& trace) {
+  const TouchFit& touch = trace.touch;
+  if (!touch.is_known) return "c_e not known";
+  return fmt::format("c_e {:.0f} ({:.0f}..{:.0f}) N/m met with {:.2g} m/s", touch.stiffness_N_per_m,
+                     touch.low_N_per_m, touch.high_N_per_m, touch.speed_m_per_s);
+}
+
+Json scopeJson(const ScopeTrace& trace) {
+  const TouchFit& touch = trace.touch;
+  Json json = {{"trigger_s", trace.trigger_s},
+               {"is_triggered", trace.is_triggered},
+               {"tactile_module", trace.link},
+               {"variant", trace.variant},
+               {"time_constant_s", trace.gains.time_constant_s},
+               {"damping", trace.gains.damping},
+               {"activation_force_N", trace.gains.activation_force_N},
+               {"contact_threshold_N", trace.gains.contact_threshold_N},
+               {"stiffness_N_per_m", trace.law_stiffness_N_per_m},
+               {"contact_stiffness_N_per_m", nullptr},
+               {"speed_m_per_s", nullptr},
+               {"rest_target_N", trace.rest_N},
+               {"peak_force_N", trace.peak_N},
+               {"force", curveJson(trace.force, "force_N")},
+               {"signal", curveJson(trace.signal, "value")},
+               {"predicted", nullptr},
+               {"why_not_predicted", trace.why_not_predicted}};
+  if (touch.is_known) {
+    json["contact_stiffness_N_per_m"] = {{"value", touch.stiffness_N_per_m},
+                                         {"low", touch.low_N_per_m},
+                                         {"high", touch.high_N_per_m}};
+    json["speed_m_per_s"] = touch.speed_m_per_s;
+  }
+  if (!trace.predicted.t_s.empty()) json["predicted"] = curveJson(trace.predicted, "force_N");
+  return json;
+}
+
+ScopeCurve thinned(const ScopeCurve& curve, std::size_t most) {
+  const std::size_t count = curve.t_s.size();
+  if (count <= most) return curve;
+  const std::size_t stretch = 2 * ((count + most - 1) / most);
+  ScopeCurve thin;
+  for (std::size_t from = 0; from < count; from += stretch) {
+    const auto begin = curve.value.begin() + static_cast<std::ptrdiff_t>(from);
+    const auto end =
+        curve.value.begin() + static_cast<std::ptrdiff_t>(std::min(from + stretch, count));
+    const auto [low, high] = std::minmax_element(begin, end);
+    for (const auto& extreme : {std::min(low, high), std::max(low, high)}) {
+      const auto i = static_cast<std::size_t>(extreme - curve.value.begin());
+      if (!thin.t_s.empty() && thin.t_s.back() == curve.t_s[i]) continue;
+      thin.t_s.push_back(curve.t_s[i]);
+      thin.value.push_back(curve.value[i]);
+    }
+  }
+  return thin;
+}
+
+}  // namespace tactus

@@ -1,0 +1,133 @@
+#include "tactus/record/touch_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+#include <random>
+
+#include "support/rail_robot.h"
+#include "support/random.h"
+#include "tactus/math/filter.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kFitCycle_s = 0.001;
+constexpr double kFelt_N = 1.2;
+constexpr int kSampleCycles = 4;
+
+/// A carriage that runs into a spring at 1 s, and is stopped and let back by it as in a contact.
+struct SpringTouch {
+  double stiffness_N_per_m = 2000.0;
+  double speed_m_per_s = 0.03;
+  double noise_N = 0.0;
+  double position_m = 0.5;
+};
+
+ControllerConfig fitConfig() {
+  ControllerConfig config = test::railController(Variant::kNullSpace);
+  config.gains.force.contact_threshold_N = kFelt_N;
+  return config;
+}
+
+struct FitRun {
+  std::deque<TouchSample> samples;
+  double felt_s = 0.0;
+};
+
+/// The way eases out to 1.5 to 6 N behind the touch, and then swings a little.
+FitRun touchRun(const SpringTouch& touch, std::uint64_t seed) {
+  test::Random random(seed);
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  const double deepest_m = random.uniform(2.0, 6.0) / touch.stiffness_N_per_m;
+  const double phase = random.uniform(0.0, 6.0);
+  ButterworthLowPass filter(15.0, 1.0 / kFitCycle_s);
+  FitRun run;
+  double held_N = 0.0;
+  std::uint64_t sequence = 0;
+  for (int i = 0; i < 3500; ++i) {
+    const double t_s = kFitCycle_s * i - 1.0;
+    double way_m = touch.speed_m_per_s * t_s;
+    if (t_s > 0.0)
+      way_m = deepest_m * (1.0 - std::exp(-touch.speed_m_per_s * t_s / deepest_m)) +
+              0.1 * deepest_m * std::sin(9.0 * t_s + phase) * (1.0 - std::exp(-5.0 * t_s));
+    const double filtered_N = filter.update(touch.stiffness_N_per_m * std::max(0.0, way_m));
+    if (i % kSampleCycles == 0) {
+      held_N = std::abs(filtered_N + touch.noise_N * noise(engine));
+      ++sequence;
+    }
+    TouchSample sample{.t_s = kFitCycle_s * i, .force_N = held_N, .position_m = touch.position_m};
+    sample.direction = held_N > 0.05 ? Vector3(-Vector3::UnitY()) : Vector3(Vector3::Zero());
+    sample.sequence = sequence;
+    sample.q[0] = way_m;
+    run.samples.push_back(sample);
+    if (held_N > kFelt_N && run.felt_s == 0.0) run.felt_s = sample.t_s;
+  }
+  return run;
+}
+
+TouchFit fitOf(const SpringTouch& touch, std::uint64_t seed) {
+  const FitRun run = touchRun(touch, seed);
+  EXPECT_GT(run.felt_s, 0.0);
+  return fitTouch(fitConfig(), 0, run.samples, run.felt_s);
+}
+
+TEST(TouchFit, FindsStiffnessPlaceAndSpeedOfAnySpring) {
+  test::Random random(3);
+  for (int i = 0; i < 100; ++i) {
+    SpringTouch touch{.stiffness_N_per_m = random.logUniform(50.0, 2e4),
+                      .speed_m_per_s = random.logUniform(0.01, 0.3)};
+    const TouchFit fit = fitOf(touch, static_cast<std::uint64_t>(i));
+    ASSERT_TRUE(fit.is_known);
+    EXPECT_NEAR(fit.stiffness_N_per_m, touch.stiffness_N_per_m, 0.005 * touch.stiffness_N_per_m);
+    EXPECT_LE(fit.low_N_per_m, fit.stiffness_N_per_m);
+    EXPECT_GE(fit.high_N_per_m, fit.stiffness_N_per_m);
+    if (fit.touch_s > 1.02) continue;  // a soft one touches before the samples begin
+    EXPECT_NEAR(fit.speed_m_per_s, touch.speed_m_per_s, 0.05 * touch.speed_m_per_s);
+  }
+}
+
+/// Of an interval of 95 % at least nine of ten have the stiffness in it, and it is no excuse.
+TEST(TouchFit, HasTheStiffnessInItsIntervalWhereTheSensorIsNoisy) {
+  test::Random random(4);
+  int inside = 0, known = 0;
+  double width = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    SpringTouch touch{.stiffness_N_per_m = random.logUniform(50.0, 2e4),
+                      .speed_m_per_s = random.logUniform(0.01, 0.2),
+                      .noise_N = 0.05};
+    const TouchFit fit = fitOf(touch, static_cast<std::uint64_t>(1000 + i));
+    if (!fit.is_known) continue;
+    ++known;
+    width += (fit.high_N_per_m - fit.low_N_per_m) / touch.stiffness_N_per_m;
+    inside +=
+        fit.low_N_per_m <= touch.stiffness_N_per_m && touch.stiffness_N_per_m <= fit.high_N_per_m
+            ? 1
+            : 0;
+  }
+  EXPECT_GT(known, 190);
+  EXPECT_GT(inside, 0.9 * known);
+  EXPECT_LT(width / known, 0.3);
+}
+
+TEST(TouchFit, IsUnknownWhereNothingTells) {
+  const ControllerConfig config = fitConfig();
+  EXPECT_FALSE(fitTouch(config, 0, {}, 1.0).is_known);
+  EXPECT_FALSE(fitOf({.position_m = 0.0005}, 1).is_known);  // at an end of the cover
+  FitRun run = touchRun({}, 1);
+  EXPECT_FALSE(fitTouch(config, 0, run.samples, 100.0).is_known);
+  std::deque<TouchSample> torn = run.samples;
+  torn.erase(torn.begin() + 1000, torn.begin() + 1100);
+  EXPECT_FALSE(fitTouch(config, 0, torn, run.felt_s).is_known);
+  std::deque<TouchSample> still = run.samples;
+  for (TouchSample& sample : still) sample.q[0] = 0.0;
+  EXPECT_FALSE(fitTouch(config, 0, still, run.felt_s).is_known);
+  std::deque<TouchSample> wrong = run.samples;
+  wrong[1100].q[0] = std::nan("");
+  EXPECT_FALSE(fitTouch(config, 0, wrong, run.felt_s).is_known);
+}
+
+}  // namespace
+}  // namespace tactus

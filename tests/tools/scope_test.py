@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""`tactus scope` while a log grows: each trigger once it is complete, --single that ends with the first
+that comes, --auto without any, the log of a daemon by its status; and what it refuses.
+
+usage: scope_test.py TACTUS
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import xml.etree.ElementTree
+
+TACTUS = pathlib.Path(sys.argv.pop(1)).resolve()
+SCENE = pathlib.Path(__file__).resolve().parents[2] / "config/scenes/whole_arm/crops9_skin_two_links.yaml"
+FIRST, SECOND = "force_N[1] > 1.2", "force_N[2] > 1.2"  # at 5.6 s and 7.2 s
+PIECE = 60007  # anywhere, also within a cycle
+
+
+class Scope(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.scratch.cleanup)
+        folder = pathlib.Path(cls.scratch.name)
+        subprocess.run([TACTUS, "simulate", SCENE, "--set", "simulation.duration_s=9", "-o", folder],
+                       check=True, capture_output=True)  # fmt: skip
+        cls.log = next(folder.glob("*/run.ulg"))
+        cls.live = folder / "live"
+        cls.live.mkdir()
+        cls.shown = cls.run_live()
+
+    @classmethod
+    def start(cls, *options, **environment):
+        return subprocess.Popen([TACTUS, "scope", "--post", "0.5", *options], text=True,
+                                stdout=subprocess.PIPE, env=os.environ | environment)  # fmt: skip
+
+    @classmethod
+    def run_live(cls):
+        """What each prints; the first contact is over when they begin."""
+        path = cls.live / "run.ulg"
+        content = cls.log.read_bytes()
+        at = int(0.72 * len(content))
+        path.write_bytes(content[:at])
+        (cls.live / "status.json").write_text(json.dumps({"log": {"folder": str(cls.live)}}))
+        followed = ["--follow", "--json", path]
+        programs = {
+            "normal": cls.start("--trigger", SECOND, *followed),
+            "both": cls.start("--trigger", FIRST, *followed),
+            "late": cls.start("--single", "--trigger", FIRST, *followed),
+            "auto": cls.start("--auto", "--trigger", "force_N > 1e6", *followed),
+            "daemon": cls.start("--trigger", SECOND, "--json", RUNTIME_DIRECTORY=str(cls.live)),
+        }
+        single = cls.start("--single", "--trigger", SECOND, "-o", cls.live / "page.html", *followed)
+        with open(path, "ab") as file:
+            while at < len(content):
+                file.write(content[at:at + PIECE])
+                file.flush()
+                at += PIECE
+                time.sleep(0.02)
+        # It ends by itself, while the run goes on.
+        shown = {"single": single.communicate(timeout=60)[0]}
+        assert single.returncode == 0
+        (cls.live / "summary.json").write_text("{}")
+        for name, program in programs.items():
+            shown[name] = program.communicate(timeout=60)[0]
+            assert program.returncode == 0, name
+        return {name: [json.loads(line) for line in text.splitlines()] for name, text in shown.items()}
+
+    def whole(self, trigger):
+        done = subprocess.run([TACTUS, "scope", "--post", "0.5", "--trigger", trigger, "--json", self.log],
+                              check=True, capture_output=True, text=True)  # fmt: skip
+        return json.loads(done.stdout)
+
+    def test_shows_what_the_whole_log_does(self):
+        expected = self.whole(SECOND)
+        self.assertEqual(len(expected), 1)
+        self.assertEqual(self.shown["normal"], expected)
+        self.assertEqual(self.shown["daemon"], expected)
+        self.assertEqual(self.shown["both"], self.whole(FIRST), "one that was there already, once")
+
+    def test_single_ends_with_the_first_that_comes(self):
+        self.assertEqual(self.shown["single"], self.whole(SECOND))
+        self.assertEqual(self.shown["late"], [], "what was before does not count")
+        self.assertIn("<svg", (self.live / "page.html").read_text())
+
+    def test_auto_shows_what_there_is(self):
+        self.assertGreater(len(self.shown["auto"]), 1)
+        for trace in self.shown["auto"]:
+            self.assertFalse(trace["is_triggered"])
+            self.assertEqual(trace["force"]["t_s"][-1], 0.0)
+
+    def test_page_is_well_formed(self):
+        page = (self.live / "page.html").read_text()
+        for svg in page.split("<svg")[1:]:
+            xml.etree.ElementTree.fromstring("<svg" + svg.split("</svg>")[0] + "</svg>")
+
+    def test_what_it_cannot_do_is_one_line(self):
+        missing = str(self.live / "nowhere")
+        for arguments, code, words in (
+                (["--trigger", "force > 1", self.log], 1, "--trigger:1:1: 'force > 1': 'force' is no field"),
+                (["--trigger", "force_N >", self.log], 1, "--trigger:1:10:"),
+                ([self.live / "none.ulg"], 1, "none.ulg"),
+                (["-o", self.log, self.log], 1, "is the input itself"),
+                (["-o", missing + "/x.html", self.log], 1, "x.html"),
+                ([], 3, "no daemon is running")):
+            done = subprocess.run([TACTUS, "scope", *arguments], capture_output=True, text=True,
+                                  env=os.environ | {"RUNTIME_DIRECTORY": missing})  # fmt: skip
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+            self.assertIn(words, done.stderr)
+        for arguments in (["--single", "--auto"], ["--keep", "0"], ["--pre", "-1"], ["--post", "nan"],
+                          ["--hysteresis", "-1"]):  # fmt: skip
+            done = subprocess.run([TACTUS, "scope", *arguments, self.log], capture_output=True)
+            self.assertEqual(done.returncode, 2, arguments)
+
+
+unittest.main()
