@@ -117,8 +117,10 @@ void CommissionCycle::finishReading() {
   if (judgeReading(trouble, counts)) {
     joint_->take(answer_, counts);
     rest_counts_ = counts;
-    const bool is_another = !joint_->isFinished() && joint_->node().node_id != node.node_id;
-    if (is_another || joint_->node().bus != node.bus) rest_counts_.reset();
+    const bool goes_on = !joint_->isFinished();
+    const bool is_same =
+        goes_on && joint_->node().bus == node.bus && joint_->node().node_id == node.node_id;
+    if (!is_same) rest_counts_.reset();
   } else {
     joint_->fail(trouble);
   }

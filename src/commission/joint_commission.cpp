@@ -19,7 +19,9 @@ constexpr int kMostScaleStrokes = 10;
 /// Of the way that was commanded.
 constexpr double kLeastShare = 0.8;
 /// Marks that are right to the measuring error lie no further off their line.
-constexpr double kMostMisfit_errors = 3.0;
+constexpr double kMostMisfit_errors = 2.0;
+/// So many at different places show a wrong one among them; fewer are believed in nothing.
+constexpr std::size_t kTrustedMarks = 3;
 
 }  // namespace
 
@@ -127,17 +129,22 @@ void JointCommission::takeDirection(const Answer& answer, double counts) {
 void JointCommission::takeMark(double q, double counts) {
   const double before = fewestCounts(joint_);
   marks_.push_back({counts, q});
-  fewest_ = std::clamp(fewestCountsPerUnit(marks_, allowed().measuring_error), before,
-                       kMostGrowth * before);
+  const double misfit = largestMisfit(marks_);
+  const double most = kMostMisfit_errors * allowed().measuring_error;
+  if (misfit > most || scale_strokes_ >= kMostScaleStrokes)
+    return fail({.kind = JointTroubleKind::kCannotTell, .value = misfit, .limit = most});
+  if (marks_.size() >= kTrustedMarks)
+    fewest_ = std::clamp(fewestCountsPerUnit(marks_, allowed().measuring_error), before,
+                         kMostGrowth * before);
   if (isWide()) return ask(Asked::kJog, counts);
-  if (scale_strokes_ >= kMostScaleStrokes) return fail({.kind = JointTroubleKind::kCannotTell});
-  begin(Step::kScale, scale_strokes_++ % 2 == 0 ? -1.0 : 1.0);
+  begin(Step::kScale, scale_strokes_++ % 4 < 2 ? -1.0 : 1.0);  // two there, two back
 }
 
 /// Motions are about as long as they may be, and the sign is told by marks, too.
 bool JointCommission::isWide() const noexcept {
   const auto known = scale();
-  return known && marks_.size() > 2 && fewestCounts(joint_) >= kWideShare * known->counts_per_unit;
+  return known && marks_.size() >= kTrustedMarks &&
+         fewestCounts(joint_) >= kWideShare * known->counts_per_unit;
 }
 
 void JointCommission::takeJog(const Answer& answer, double counts) {

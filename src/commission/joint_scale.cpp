@@ -17,7 +17,7 @@ double rounded(double value) {
   return std::round(value / unit) * unit;
 }
 
-Mark meanOf(std::span<const Mark> marks) {
+Mark meanOf(std::span<const Mark> marks) noexcept {
   Mark mean;
   for (const Mark& mark : marks) {
     mean.counts += mark.counts / static_cast<double>(marks.size());
@@ -26,24 +26,32 @@ Mark meanOf(std::span<const Mark> marks) {
   return mean;
 }
 
-}  // namespace
-
-std::optional<JointScale> fitScale(std::span<const Mark> marks, double q_error) {
-  const auto [first, last] = std::ranges::minmax_element(marks, {}, &Mark::counts);
-  if (marks.size() < 2 || !(last->counts > first->counts)) return std::nullopt;
-  const Mark mean = meanOf(marks);
+/// By least squares, m or rad a count; 0 of marks at one place.
+double slopeOf(std::span<const Mark> marks, const Mark& mean) noexcept {
   double counts_counts = 0.0, counts_q = 0.0;
   for (const Mark& mark : marks) {
     const double d = mark.counts - mean.counts;
     counts_counts += d * d;
     counts_q += d * (mark.q - mean.q);
   }
-  const double slope = counts_q / counts_counts;  // m or rad a count
+  return counts_counts > 0.0 ? counts_q / counts_counts : 0.0;
+}
+
+}  // namespace
+
+std::optional<JointScale> fitScale(std::span<const Mark> marks, double q_error) {
+  const auto [first, last] = std::ranges::minmax_element(marks, {}, &Mark::counts);
+  if (marks.size() < 2 || !(last->counts > first->counts)) return std::nullopt;
+  const Mark mean = meanOf(marks);
+  const double slope = slopeOf(marks, mean);
   const double baseline = std::abs(slope) * (last->counts - first->counts);
   if (!(baseline > kLeastBaseline_errors * q_error)) return std::nullopt;
   JointScale scale = fitOffset(marks, slope > 0.0 ? 1 : -1, rounded(1.0 / std::abs(slope)));
-  double spread = 0.0;  // what errors that all pull one way make of the slope
-  for (const Mark& mark : marks) spread += std::abs(mark.counts - mean.counts);
+  double spread = 0.0, counts_counts = 0.0;  // what errors that all pull one way make of the slope
+  for (const Mark& mark : marks) {
+    spread += std::abs(mark.counts - mean.counts);
+    counts_counts += (mark.counts - mean.counts) * (mark.counts - mean.counts);
+  }
   scale.uncertainty = q_error * spread / counts_counts / std::abs(slope);
   return scale;
 }
@@ -68,6 +76,15 @@ double largestMisfit(std::span<const Mark> marks, const JointScale& scale) noexc
   double largest = 0.0;
   for (const Mark& mark : marks)
     largest = std::max(largest, std::abs(scale.position(mark.counts) - mark.q));
+  return largest;
+}
+
+double largestMisfit(std::span<const Mark> marks) noexcept {
+  const Mark mean = meanOf(marks);
+  const double slope = slopeOf(marks, mean);
+  double largest = 0.0;
+  for (const Mark& mark : marks)
+    largest = std::max(largest, std::abs(mark.q - mean.q - slope * (mark.counts - mean.counts)));
   return largest;
 }
 
