@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -129,24 +128,6 @@ void checkGains(const std::string& path, const Json& running) {
         fmt::format("{}: {} could not be written", escaped(path), differing.items().begin().key()));
 }
 
-/// Written as a whole, or not at all; the old file stays beside it.
-void replaceFile(const std::string& path, const std::string& text, const Json& running) {
-  namespace fs = std::filesystem;
-  const std::string next = path + ".next";
-  OutputFile file(next);
-  file.append(text);
-  file.close();
-  try {
-    checkGains(next, running);
-  } catch (...) {
-    fs::remove(next);
-    throw;
-  }
-  fs::permissions(next, fs::status(path).permissions());
-  fs::copy_file(path, path + "~", fs::copy_options::overwrite_existing);
-  fs::rename(next, path);
-}
-
 int save(bool as_json) {
   const ControlClient daemon(controlPath());
   const Json answer = daemon.ask({{"do", "show"}});
@@ -160,7 +141,8 @@ int save(bool as_json) {
   const std::string changed = withGains(path, text, answer.at("ordered"));
   const bool is_new = changed != text;
   if (is_new) {
-    replaceFile(path, changed, answer.at("ordered"));
+    replaceFile(path, changed,
+                [&](const std::string& next) { checkGains(next, answer.at("ordered")); });
     daemon.ask({{"do", "reload"}});  // it has read what is there now
   }
   if (as_json)

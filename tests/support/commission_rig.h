@@ -117,6 +117,12 @@ class CommissionRig {
     return false;
   }
 
+  /// The engineer looks at the arm.
+  void noteQuestion() {
+    seen_ = at_question_;
+    for (std::size_t j = 0; j < truth.size(); ++j) at_question_[j] = position(int(j));
+  }
+
   void cycles(int count) {
     for (int i = 0; i < count; ++i) step();
   }
@@ -200,11 +206,6 @@ class CommissionRig {
     int index = 0;
     for (int j = 0; j < joint; ++j) index += truth[j].is_absent ? 0 : 1;
     return index;
-  }
-
-  void noteQuestion() {
-    seen_ = at_question_;
-    for (std::size_t j = 0; j < truth.size(); ++j) at_question_[j] = position(int(j));
   }
 
   Answer direction(int joint) {
