@@ -52,7 +52,7 @@ class Commissioning {
     desk_.say(protection + "A line that is typed while a joint moves stops it.\n");
     if (!confirm("Is nobody within reach, and everything that may fall held?")) return kExitFault;
     for (int joint = 0; joint < config_.joints(); ++joint)
-      if (isFinished(scene_, state_, joint)) learn(joint);
+      if (options_.joint != joint && isFinished(scene_, state_, joint)) learn(joint);
     for (int joint = 0; joint < config_.joints(); ++joint) {
       if (options_.joint ? joint != *options_.joint : isFinished(scene_, state_, joint)) continue;
       if (!commission(joint)) return kExitFault;
@@ -190,9 +190,9 @@ class Commissioning {
     double slowest_s = 0.0;
     for (int joint = 0; joint < scene.controller.chain.size(); ++joint) {
       if (!isFinished(scene, state, joint)) return std::nullopt;
-      slowest_s = std::max(slowest_s, state.at("joints")
-                                          .at(scene.joint_names[static_cast<std::size_t>(joint)])
-                                          .value("lag_s", 0.0));
+      const auto& name = scene.joint_names[static_cast<std::size_t>(joint)];
+      const Json lag_s = state.at("joints").at(name).value("lag_s", Json());
+      if (lag_s.is_number()) slowest_s = std::max(slowest_s, lag_s.get<double>());
     }
     return slowest_s;
   }

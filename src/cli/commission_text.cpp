@@ -104,11 +104,13 @@ std::string questionText(const Scene& scene, const CommissionConfig& config,
     case Asked::kDirection:
       return fmt::format(
           "{}.\nWhich way did {} go? If it moved less than {}, say none; if another "
-          "joint moved, its name.",
+          "joint moved, its name. Step back before you type.",
           axisText(scene, joint), jointText(scene, joint), lengthText(scene, joint, bounds.unseen));
     case Asked::kPlace:
-      return fmt::format("Measure {} as it is now{}. Where is it, in {}, by the URDF's zero and +?",
-                         jointText(scene, joint), here, slides(scene, joint) ? "mm" : "deg");
+      return fmt::format(
+          "Measure {} as it is now{}. Where is it, in {}, by the URDF's zero and +? Step back "
+          "before you type: it may move then.",
+          jointText(scene, joint), here, slides(scene, joint) ? "mm" : "deg");
     case Asked::kJog:
       return fmt::format(
           "{}{}: + or - to move it by {}, upper or lower if it may go no further, "

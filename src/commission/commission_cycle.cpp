@@ -41,6 +41,7 @@ void CommissionCycle::receive(int bus, std::span<const CanFrame> frames) noexcep
 void CommissionCycle::update(const CommissionInput& input) {
   for (FrameBatch& outbox : outboxes_) outbox.clear();
   is_line_high_ = !is_line_high_;
+  is_enabled_ = input.lines.enable;
   if (input.stop_requested) stop();
   switch (phase_) {
     case Phase::kScanning:

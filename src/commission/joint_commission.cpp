@@ -113,7 +113,8 @@ void JointCommission::takeDirection(const Answer& answer, double counts) {
     return tryNext();
   }
   if (answer.kind == Kind::kNothing) {
-    unseen_counts_ = std::abs(last_stroke_.end_counts - last_stroke_.start_counts);
+    const double gone = std::abs(last_stroke_.end_counts - last_stroke_.start_counts);
+    unseen_counts_ = std::max(unseen_counts_, gone);
     if (fewestCounts(joint_) < config_->file_factor * fileCounts(joint_))
       return begin(Step::kProbe, 1.0);
     uses_->dismiss(*node_);
@@ -220,12 +221,14 @@ StrokePlan JointCommission::stroke() const noexcept {
 void JointCommission::onStroke(const StrokeReport& report) {
   last_stroke_ = report;
   JointTrouble trouble{.kind = JointTroubleKind::kStroke, .stroke = report};
-  if (report.end == StrokeEnd::kStopped) trouble.kind = JointTroubleKind::kStopped;
-  if (report.end != StrokeEnd::kDone) return fail(trouble);
+  const bool is_stopped = report.end == StrokeEnd::kStopped;
+  if (is_stopped) trouble.kind = JointTroubleKind::kStopped;
+  const bool goes_on = is_stopped && report.is_seen_off;  // from where it stopped
+  if (report.end != StrokeEnd::kDone && !goes_on) return fail(trouble);
   const double unit = bounds().counts_per_unit;
   const double gone = std::abs(report.end_counts - report.start_counts);
   const bool is_step = shape_.kind == StrokeShape::Kind::kStep;
-  const double asked = is_step ? std::abs(shape_.distance) * unit : 0.0;
+  const double asked = is_step && !is_stopped ? std::abs(shape_.distance) * unit : 0.0;
   if (gone < kLeastShare * asked) {
     trouble.kind = JointTroubleKind::kMovedShort;
     trouble.value = gone;
@@ -234,7 +237,7 @@ void JointCommission::onStroke(const StrokeReport& report) {
   }
   error_counts_ = std::max(error_counts_, report.values.largest_error * unit);
   acceleration_counts_ = std::max(acceleration_counts_, report.values.largest_acceleration * unit);
-  if (step_ == Step::kWave) {
+  if (step_ == Step::kWave && !is_stopped) {
     findings_.lag_s = report.values.lag_s;
     return finish();
   }

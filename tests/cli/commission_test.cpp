@@ -94,6 +94,7 @@ class VirtualDesk final : public CommissionDesk {
   test::CommissionRig rig;
   std::string said;
   bool stops_after_writing = false;
+  int cycles_to_stop = 0;  ///< of motion, until a line is typed
 
   /// As another program that is started at the same arm.
   void restart(const Scene& scene) {
@@ -120,6 +121,7 @@ class VirtualDesk final : public CommissionDesk {
       rig.noteQuestion();
       return typed(*question);
     }
+    if (cycle().phase() == CommissionCycle::Phase::kMoving && --cycles_to_stop == 0) return "";
     if (cycle().phase() != CommissionCycle::Phase::kIdle) return std::nullopt;
     const bool asks_on = said.ends_with("end > ");
     const bool is_writing = said.ends_with("Write this? yes, no > ");
@@ -220,6 +222,19 @@ TEST(Commission, GoesOnWhereItWasLeft) {
   EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
   EXPECT_NE(desk.said.find("lift, perhaps"), std::string::npos);
   EXPECT_EQ(desk.said.find("roll, perhaps"), std::string::npos);
+}
+
+/// A motion that a line stops is no failure: it is asked again, from where it stopped.
+TEST(Commission, LineThatIsTypedStopsAMotion) {
+  for (const int cycles : {200, 700, 1500, 12'000, 40'000}) {
+    const CommissionFolder folder;
+    VirtualDesk desk(folder.scene());
+    desk.cycles_to_stop = cycles;
+    EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
+    EXPECT_LT(desk.cycles_to_stop, 0);
+    EXPECT_EQ(desk.said.find("is not finished"), std::string::npos);
+    expectFileIsRight(folder);
+  }
 }
 
 TEST(Commission, RefusesAFileThatChangedMeanwhile) {

@@ -47,7 +47,9 @@ class CommissionCycle {
   const Question* question() const noexcept;  ///< null but in kAsking
   bool answer(const Answer& answer);          ///< false: none of those that were asked for
   /// In kMoving: drives wait for the enable line.
-  bool isWaitingForEnable() const noexcept { return stroke_ && stroke_->mode() == Mode::kReady; }
+  bool isWaitingForEnable() const noexcept {
+    return stroke_ && stroke_->mode() == Mode::kReady && !is_enabled_;
+  }
 
   /// In kIdle, of the joint begun last; null before the first.
   const JointCommission* joint() const noexcept { return joint_ ? &*joint_ : nullptr; }
@@ -66,6 +68,7 @@ class CommissionCycle {
   std::vector<FrameBatch> outboxes_;  ///< one a bus
   CanFrame heartbeat_;
   bool is_line_high_ = false;  ///< of the heartbeat line
+  bool is_enabled_ = true;     ///< by the enable line
   Phase phase_ = Phase::kScanning;
   std::optional<JointCommission> joint_;
   std::optional<Stroke> stroke_;
