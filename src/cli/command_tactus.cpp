@@ -68,6 +68,7 @@ int tactusProgram(int argc, char** argv) {
   addCalibrateCommand(app, exit_code);
   addReplayCommand(app, exit_code);
   addPlantCommand(app, exit_code);
+  addCommissionCommand(app, exit_code);
   addBenchCommand(app, exit_code);
   addKeysCommand(app, exit_code);
   addDoctorCommand(app, exit_code);

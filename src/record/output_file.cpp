@@ -76,6 +76,24 @@ void OutputFile::close() {
   }
 }
 
+void replaceFile(const std::string& path, const std::string& text,
+                 const std::function<void(const std::string& next)>& check) {
+  namespace fs = std::filesystem;
+  const std::string next = path + ".next";
+  OutputFile file(next);
+  file.append(text);
+  file.close();
+  try {
+    if (check) check(next);
+  } catch (...) {
+    fs::remove(next);
+    throw;
+  }
+  fs::permissions(next, fs::status(path).permissions());
+  fs::copy_file(path, path + "~", fs::copy_options::overwrite_existing);
+  fs::rename(next, path);
+}
+
 void refuseOverwriting(const std::string& input, const std::string& output) {
   std::error_code ignored;  // of an output that does not exist yet
   if (std::filesystem::equivalent(input, output, ignored)) {

@@ -1,6 +1,7 @@
 #include "tactus/scene/yaml_edit.h"
 
 #include <algorithm>
+#include <charconv>
 #include <vector>
 
 #include "tactus/scene/yaml_tree.h"
@@ -10,14 +11,24 @@ namespace {
 
 using Words = std::vector<std::string>;
 
+/// "a.b[2].c" is a, b, [2], c.
 Words split(std::string_view key) {
   Words words;
   while (!key.empty()) {
-    const std::size_t dot = std::min(key.find('.'), key.size());
-    words.emplace_back(key.substr(0, dot));
-    key.remove_prefix(std::min(dot + 1, key.size()));
+    const std::size_t end = std::min(key.find_first_of(".[", 1), key.size());
+    words.emplace_back(key.substr(0, end));
+    key.remove_prefix(std::min(end + (key.substr(end, 1) == "." ? 1 : 0), key.size()));
   }
   return words;
+}
+
+/// Null if there is none.
+const YamlNode* child(const YamlNode& node, const std::string& word) {
+  if (word[0] != '[') return node.find(word);
+  const std::string digits = word.substr(1, word.find(']') - 1);
+  std::size_t index = node.items.size();
+  std::from_chars(digits.data(), digits.data() + digits.size(), index);
+  return index < node.items.size() ? &node.items[index] : nullptr;
 }
 
 std::size_t byteAt(std::string_view text, const SourcePosition& at) {
@@ -34,7 +45,7 @@ std::size_t tokenLength(std::string_view text) {
     while (end < text.size() && text[end] != quote) end += text[end] == '\\' ? 2 : 1;
     return std::min(end + 1, text.size());
   }
-  return std::min(text.find_first_of(" \t\r\n,}#"), text.size());
+  return std::min(text.find_first_of(" \t\r\n,}]#"), text.size());
 }
 
 /// "a: {b: value}"
@@ -72,8 +83,17 @@ std::string withNew(const SourceFile& file, const YamlNode& section, const Words
     const std::string rest = section.entries.empty() ? "" : ", ";
     return text.insert(begin + 1, flowText(words, first, value) + rest);
   }
-  const SourcePosition& entry = section.entries.front().key_at;
+  SourcePosition entry = section.entries.front().key_at;
   const auto indentation = static_cast<std::size_t>(entry.column) - 1;
+  const bool follows_dash =
+      text.substr(byteAt(text, {entry.file, entry.line, 1}), indentation).find('-') !=
+      std::string::npos;
+  const YamlNode::Kind kind = section.entries.front().value.kind;
+  if (follows_dash && kind != YamlNode::Kind::kScalar)
+    failAt(section.at, words[first], "cannot be written here",
+           "expected an entry that begins with a plain value");
+  if (follows_dash) ++entry.line;
+  if (follows_dash && text.back() != '\n') text += '\n';
   return text.insert(byteAt(text, {entry.file, entry.line, 1}),
                      blockText(words, first, indentation, value));
 }
@@ -85,7 +105,10 @@ std::string withValue(const SourceFile& file, std::string_view key, const std::s
   const Words words = split(key);
   const YamlNode* node = &root;
   std::size_t depth = 0;
-  while (depth < words.size() && node->find(words[depth])) node = node->find(words[depth++]);
+  while (depth < words.size() && child(*node, words[depth])) node = child(*node, words[depth++]);
+  const bool wants_item = std::any_of(words.begin() + static_cast<std::ptrdiff_t>(depth),
+                                      words.end(), [](const auto& word) { return word[0] == '['; });
+  if (wants_item) failAt(node->at, key, "has no such entry", "expected one that is there");
   const bool is_section =
       node->kind == YamlNode::Kind::kMap || (depth == 0 && node->kind == YamlNode::Kind::kEmpty);
   const bool is_value =

@@ -2,9 +2,9 @@
 """Refuses an #include that runs against the arrows between the layers:
 
     math -> control -> {sim, canopen}        sim -> analysis        {sim, canopen} -> plant
-    canopen -> supervisor -> io              {io, rt} -> doctor
+    canopen -> supervisor -> {io, commission}    {io, rt} -> doctor
     {analysis, plant} -> scene               {scene, supervisor} -> record
-    {record, io, rt} -> daemon               {daemon, doctor} -> cli -> bench
+    {record, io, rt} -> daemon               {daemon, doctor, commission} -> cli -> bench
 
 usage: include_check.py ROOT     checks ROOT/include/tactus/** and ROOT/src/**"""
 
@@ -20,6 +20,7 @@ LAYERS = {
     "analysis": ({"sim", "control", "math"}, {"Eigen", "unsupported"}),  # Eigen's exp of matrices
     "canopen": ({"control", "math"}, {"Eigen"}),
     "supervisor": ({"canopen", "control", "math"}, {"Eigen"}),
+    "commission": ({"supervisor", "canopen", "control", "math"}, {"Eigen"}),
     "plant": ({"canopen", "sim", "control", "math"}, {"Eigen"}),
     "io": ({"supervisor", "canopen", "control", "math"}, {"Eigen", "gpiod.h", "systemd"}),
     "rt": ({"math"}, {"seccomp.h", "malloc.h"}),
@@ -30,7 +31,7 @@ LAYERS = {
     "doctor": ({"io", "rt", "canopen", "math"}, {"fmt"}),
     "daemon": ({"record", "supervisor", "scene", "io", "rt", "canopen", "control", "math"},
                {"Eigen", "CLI", "fmt", "nlohmann", "systemd"}),
-    "cli": ({"daemon", "doctor", "record", "supervisor", "scene", "io", "rt", "analysis", "plant",
+    "cli": ({"commission", "daemon", "doctor", "record", "supervisor", "scene", "io", "rt", "analysis", "plant",
              "canopen", "sim", "control", "math"}, {"Eigen", "CLI", "fmt", "nlohmann"}),
     "bench": ({"cli", "record", "supervisor", "scene", "analysis", "sim", "control", "math"},
               {"Eigen", "CLI", "fmt", "kdl", "mujoco", "nlohmann", "valgrind"}),
@@ -40,7 +41,8 @@ LAYERS = {
 # as arguments, never by a call.
 SIDE_EFFECTS = {"chrono", "ctime", "thread", "mutex", "shared_mutex", "condition_variable",
                 "future", "filesystem", "fstream", "iostream", "cstdio", "csignal"}
-PURE_LAYERS = {"math", "control", "sim", "analysis", "canopen", "supervisor", "plant"}
+PURE_LAYERS = {"math", "control", "sim", "analysis", "canopen", "supervisor", "commission",
+               "plant"}
 
 POSIX = re.compile(r"(sys|linux|net|netinet|arpa)/.+|"
                    r"(unistd|fcntl|poll|pthread|sched|semaphore|signal|stdlib|time|errno)\.h")

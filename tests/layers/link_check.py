@@ -3,8 +3,8 @@
 
 - A pure layer calls nothing but memory, mathematics, exceptions and other pure layers. So no system
   call, clock, file or thread can be reached from it, also not through a header that allows it.
-- tactusd holds nothing that the commands, the plant or the benchmarks define, and finds no hosts: it
-  has no network.
+- tactusd holds nothing that the commands, commissioning, the plant or the benchmarks define, and
+  finds no hosts: it has no network.
 
 usage: link_check.py TACTUSD ARCHIVE...     ARCHIVE: libtactus_<layer>.a of all pure layers, of cli and
                                             plant, and of bench where it is built"""
@@ -18,7 +18,7 @@ sys.dont_write_bytecode = True
 
 from include_check import PURE_LAYERS  # noqa: E402
 
-NOT_IN_DAEMON = ("cli", "plant", "bench")
+NOT_IN_DAEMON = ("cli", "commission", "plant", "bench")
 REQUIRED = PURE_LAYERS | {"cli", "plant"}
 
 # What a pure layer may take from outside, as nm -C prints it.

@@ -35,6 +35,23 @@ TEST(YamlEdit, PutsANewOneIntoItsSection) {
   EXPECT_EQ(edited("", "controller.damping"), "controller:\n  damping: 0.6\n");
 }
 
+TEST(YamlEdit, GoesIntoListsThatAreThere) {
+  const std::string block =
+      "a:\n  b:\n    - name: x\n      # sign\n      sign: 1\n    - {name: y}\n";
+  EXPECT_EQ(edited(block, "a.b[0].sign", "-1"),
+            "a:\n  b:\n    - name: x\n      # sign\n      sign: -1\n    - {name: y}\n");
+  EXPECT_EQ(
+      edited(block, "a.b[0].offset"),
+      "a:\n  b:\n    - name: x\n      offset: 0.6\n      # sign\n      sign: 1\n    - {name: y}\n");
+  EXPECT_EQ(edited(block, "a.b[1].sign", "-1"),
+            "a:\n  b:\n    - name: x\n      # sign\n      sign: 1\n    - {sign: -1, name: y}\n");
+  EXPECT_EQ(edited("a: [1, 2, 3] # c\n", "a[1]"), "a: [1, 0.6, 3] # c\n");
+  for (const char* key : {"a.b[2].sign", "a.b[-1].sign", "a.b[0].c[0]", "a.c[0]", "a.b[x]", "a[0]"})
+    EXPECT_THROW(edited(block, key), InputError) << key;
+  EXPECT_EQ(edited("a:\n  - b: 1", "a[0].c"), "a:\n  - b: 1\n    c: 0.6\n");
+  EXPECT_THROW(edited("a:\n  - b: {}\n", "a[0].c"), InputError);
+}
+
 TEST(YamlEdit, RefusesWhereThereIsNoRoom) {
   EXPECT_THROW(edited("controller: ~\n", "controller.damping"), InputError);
   EXPECT_THROW(edited("controller: 3\n", "controller.damping"), InputError);

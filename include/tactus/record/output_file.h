@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -50,6 +51,12 @@ class OutputFile {
   std::size_t used_ = 0;
   std::uint64_t flushed_ = 0;  ///< bytes
 };
+
+/// Gives a file another content, as a whole or not at all; as it was it stays beside, with a tilde
+/// behind its name. check: of the new one by its path, before it takes the old one's place; what it
+/// throws leaves all as it was.
+void replaceFile(const std::string& path, const std::string& text,
+                 const std::function<void(const std::string& next)>& check = {});
 
 /// Throws InputError if writing to `output` would destroy the file `input`.
 void refuseOverwriting(const std::string& input, const std::string& output);

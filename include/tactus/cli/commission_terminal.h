@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tactus/cli/commission_desk.h"
+#include "tactus/io/can_socket.h"
+#include "tactus/io/gpio_lines.h"
+#include "tactus/rt/periodic_timer.h"
+
+namespace tactus {
+
+/// The cycle of commissioning on real buses and lines, a wake-up at a time, with an engineer at
+/// standard input. SIGINT, SIGTERM and the end of the input stop it for good.
+class CommissionTerminal final : public CommissionDesk {
+ public:
+  /// Throws std::system_error or std::runtime_error for what cannot be had.
+  CommissionTerminal(const CommissionConfig& config);
+
+  void runCycle() override;
+  CommissionCycle& cycle() override { return cycle_; }
+  void stopMotion() override { stops_motion_ = true; }
+  std::optional<std::pair<int, Fault>> takeBusFault() override;
+  void say(const std::string& text) override;
+  std::optional<std::string> takeLine() override;
+  bool isStopped() const override;
+
+ private:
+  struct Bus {
+    Bus(const HardwareConfig& hardware, int index);
+    InterfaceLock lock;
+    CanSocket socket;
+    FrameBatch frames;
+  };
+
+  void readInput();
+
+  CommissionCycle cycle_;
+  std::vector<std::unique_ptr<Bus>> buses_;
+  std::optional<GpioLines> lines_;
+  PeriodicTimer timer_;
+  CommissionInput input_;
+  std::optional<std::pair<int, Fault>> bus_fault_;
+  std::string typed_;
+  bool is_input_closed_ = false;
+  bool stops_motion_ = false;
+  bool are_lines_written_ = true;
+};
+
+}  // namespace tactus

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "tactus/commission/joint_scale.h"
+#include "tactus/commission/stroke.h"
+
+namespace tactus {
+
+/// Where counts per unit come from.
+enum class ScaleSource : std::uint8_t {
+  kMeasured,  ///< from the marks alone
+  kDrive,     ///< the drive's own objects, which the marks confirm
+  kFile,      ///< robot.yaml, which the marks confirm
+};
+
+/// All that is known of a joint that was commissioned.
+struct JointFindings {
+  int joint = 0, bus = 0, node_id = 0;
+  JointScale scale;
+  ScaleSource source = ScaleSource::kMeasured;
+  std::optional<double> drive_counts_per_unit;  ///< by 608F and 6091; of revolute joints
+  double misfit = 0.0;                          ///< of the marks, m or rad
+  std::optional<double> lower, upper;           ///< the margin is taken off; absent: not reached
+  double following_error = 0.0;                 ///< the largest, m or rad
+  double lag_s = 0.0;
+  double acceleration = 0.0;  ///< the largest measured, m/s^2 or rad/s^2
+};
+
+/// Why a joint could not be finished.
+enum class JointTroubleKind : std::uint8_t {
+  kNone,
+  kStopped,        ///< by the engineer
+  kNoNode,         ///< no drive is left that could be this joint's
+  kNodeSilent,     ///< its drive no longer answers
+  kOtherHasPower,  ///< another drive has power
+  kOtherSilent,    ///< another drive no longer answers, so that nobody knows that it is off
+  kStroke,         ///< a motion ended otherwise than it should: see the stroke's report
+  kMovedBetween,   ///< it moved, or its counts jumped, while it had no power
+  kMovedShort,     ///< it did not go as far as it was told, though its drive said nothing
+  kSignsDisagree,  ///< what was seen and what was measured go opposite ways
+  kCannotTell,     ///< the measured places are too close together, or contradict each other
+};
+
+struct JointTrouble {
+  JointTroubleKind kind = JointTroubleKind::kNone;
+  StrokeReport stroke{};              ///< of the last motion
+  int bus = 0, node_id = 0;         ///< of whom it speaks
+  double value = 0.0, limit = 0.0;  ///< counts, or m or rad for kCannotTell
+};
+
+}  // namespace tactus

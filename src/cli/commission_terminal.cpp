@@ -1,0 +1,123 @@
+#include "tactus/cli/commission_terminal.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "tactus/canopen/canopen.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::uint32_t kAnyNode = 0x780;  ///< mask of an id without its node
+constexpr std::size_t kMaxTyped = 4096;
+
+volatile sig_atomic_t was_interrupted = 0;
+
+void noteInterrupt(int) { was_interrupted = 1; }
+
+void catchInterrupts() {
+  struct sigaction action {};
+  action.sa_handler = noteInterrupt;
+  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+}
+
+/// Frames of all nodes, whichever there are.
+CanSocket openForAllNodes(const HardwareConfig& hardware, int bus) {
+  const std::array<IdFilter, 4> received = {{{cob_id::kEmergency, kAnyNode},
+                                             {cob_id::kTpdo1, kAnyNode},
+                                             {cob_id::kSdoAnswer, kAnyNode},
+                                             {cob_id::kHeartbeat, kAnyNode}}};
+  const auto master = static_cast<std::uint32_t>(hardware.canopen.master_node_id);
+  const std::array<IdFilter, 5> sent = {{{cob_id::kNmt},
+                                         {cob_id::kSync},
+                                         {cob_id::kRpdo1, kAnyNode},
+                                         {cob_id::kSdoRequest, kAnyNode},
+                                         {cob_id::kHeartbeat + master}}};
+  return {hardware.buses[static_cast<std::size_t>(bus)].interface, received, sent};
+}
+
+}  // namespace
+
+CommissionTerminal::Bus::Bus(const HardwareConfig& hardware, int index)
+    : lock(hardware.buses[static_cast<std::size_t>(index)].interface),
+      socket(openForAllNodes(hardware, index)) {}
+
+CommissionTerminal::CommissionTerminal(const CommissionConfig& config)
+    : cycle_(config), timer_(std::llround(1e9 * config.period_s)) {
+  const HardwareConfig& hardware = config.hardware;
+  for (std::size_t i = 0; i < hardware.buses.size(); ++i)
+    buses_.push_back(std::make_unique<Bus>(hardware, static_cast<int>(i)));
+  if (hardware.gpio) lines_.emplace(*hardware.gpio, config.period_s);
+  catchInterrupts();
+}
+
+bool CommissionTerminal::isStopped() const { return was_interrupted != 0 || is_input_closed_; }
+
+void CommissionTerminal::runCycle() {
+  const Wake wake = timer_.wait();
+  readInput();
+  for (std::size_t i = 0; i < buses_.size(); ++i) {
+    Bus& bus = *buses_[i];
+    bus.socket.receive(bus.frames);
+    bus.socket.monitor().update();
+    input_.bus_faults[i] = bus.socket.monitor().fault();
+    if (input_.bus_faults[i] != Fault::kNone && !bus_fault_)
+      bus_fault_.emplace(static_cast<int>(i), input_.bus_faults[i]);
+    cycle_.receive(static_cast<int>(i), bus.frames.frames());
+  }
+  if (lines_) input_.lines = lines_->read();
+  input_.are_lines_lost = !input_.lines.is_valid || !are_lines_written_;
+  input_.missed_cycles = static_cast<int>(std::min<std::int64_t>(wake.skipped, 1'000'000));
+  input_.stop_requested = isStopped() || std::exchange(stops_motion_, false);
+  cycle_.update(input_);
+  for (std::size_t i = 0; i < buses_.size(); ++i) {
+    CanSocket& socket = buses_[i]->socket;
+    const FrameBatch& outbox = cycle_.outbox(static_cast<int>(i));
+    if (socket.monitor().mayProbe()) {
+      socket.probe(cycle_.probe());
+    } else if (!outbox.empty()) {
+      socket.send(outbox.frames());
+    }
+  }
+  if (lines_) are_lines_written_ = lines_->write(cycle_.lines());
+}
+
+/// What is there, without waiting.
+void CommissionTerminal::readInput() {
+  if (is_input_closed_) return;
+  pollfd polled{STDIN_FILENO, POLLIN, 0};
+  if (poll(&polled, 1, 0) <= 0) return;
+  std::array<char, 512> bytes;
+  const ssize_t count = read(STDIN_FILENO, bytes.data(), bytes.size());
+  if (count <= 0) {
+    is_input_closed_ = true;
+    return;
+  }
+  if (typed_.size() < kMaxTyped) typed_.append(bytes.data(), static_cast<std::size_t>(count));
+}
+
+std::optional<std::string> CommissionTerminal::takeLine() {
+  const std::size_t end = typed_.find('\n');
+  if (end == std::string::npos) return std::nullopt;
+  std::string line = typed_.substr(0, end);
+  typed_.erase(0, end + 1);
+  return line;
+}
+
+void CommissionTerminal::say(const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+std::optional<std::pair<int, Fault>> CommissionTerminal::takeBusFault() {
+  return std::exchange(bus_fault_, std::nullopt);
+}
+
+}  // namespace tactus

@@ -1,0 +1,295 @@
+#include "tactus/commission/joint_commission.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace tactus {
+namespace {
+
+using Kind = Answer::Kind;
+
+/// Of one motion to the next, whatever was measured: one number that was typed wrong is not enough
+/// to make a motion long.
+constexpr double kMostGrowth = 3.0;
+/// Of the travel that is allowed: so near to it a motion does not get by measuring.
+constexpr double kWideShare = 0.8;
+constexpr int kMostScaleStrokes = 10;
+/// Of the way that was commanded.
+constexpr double kLeastShare = 0.8;
+/// Marks that are right to the measuring error lie no further off their line.
+constexpr double kMostMisfit_errors = 2.0;
+/// So many at different places show a wrong one among them; fewer are believed in nothing.
+constexpr std::size_t kTrustedMarks = 3;
+
+}  // namespace
+
+JointCommission::JointCommission(const CommissionConfig& config, int joint, NodeUses& uses)
+    : config_(&config), joint_(joint), uses_(&uses) {
+  uses.forgetTrials();
+  findings_.joint = joint;
+  tryNext();
+}
+
+void JointCommission::tryNext() {
+  node_ = uses_->candidate(joint_);
+  if (!node_) return fail({.kind = JointTroubleKind::kNoNode});
+  is_identified_ = uses_->isKnown(joint_);
+  unseen_counts_ = 0.0;
+  step_ = Step::kReady;
+  ask(Asked::kReady, 0.0);
+}
+
+void JointCommission::fail(const JointTrouble& trouble) {
+  trouble_ = trouble;
+  if (node_ && trouble_.node_id == 0) {
+    trouble_.bus = node_->bus;
+    trouble_.node_id = node_->node_id;
+  }
+  question_.reset();
+  step_ = Step::kFinished;
+}
+
+void JointCommission::ask(Asked asked, double counts) {
+  Question question{asked, joint_, node_->bus, node_->node_id, allowed().max_travel};
+  if (const auto known = scale()) question.position = known->position(counts);
+  question.is_upper = is_asked_upper_;
+  question_ = question;
+}
+
+bool JointCommission::isAnswer(const Answer& answer) const noexcept {
+  if (!question_) return false;
+  const auto is = [&answer](std::initializer_list<Kind> kinds) {
+    return std::ranges::find(kinds, answer.kind) != kinds.end();
+  };
+  switch (question_->asked) {
+    case Asked::kReady:
+      return is({Kind::kYes, Kind::kNo});
+    case Asked::kDirection:
+      if (answer.kind == Kind::kOtherJoint)
+        return !is_identified_ && answer.joint >= 0 && answer.joint < config_->joints() &&
+               answer.joint != joint_ && !uses_->isKnown(answer.joint);
+      return is({Kind::kPlus, Kind::kMinus, Kind::kNothing});
+    case Asked::kPlace:
+      return answer.kind == Kind::kNumber && std::isfinite(answer.value);
+    case Asked::kJog:
+      return is({Kind::kPlus, Kind::kMinus, Kind::kUpper, Kind::kLower, Kind::kDone});
+    case Asked::kEndPlace:
+      return answer.kind == Kind::kUnknown ||
+             (answer.kind == Kind::kNumber && std::isfinite(answer.value));
+  }
+  return false;
+}
+
+void JointCommission::take(const Answer& answer, double counts) {
+  const Asked asked = question_->asked;
+  question_.reset();
+  switch (asked) {
+    case Asked::kReady:
+      if (answer.kind == Kind::kNo) return fail({.kind = JointTroubleKind::kStopped});
+      return begin(Step::kProbe, 1.0);
+    case Asked::kDirection:
+      return takeDirection(answer, counts);
+    case Asked::kPlace:
+      return takeMark(answer.value, counts);
+    case Asked::kJog:
+      return takeJog(answer, counts);
+    case Asked::kEndPlace:
+      if (answer.kind == Kind::kNumber) marks_.push_back({counts, answer.value});
+      return ask(Asked::kJog, counts);
+  }
+}
+
+/// distance: as a share of the travel that is allowed, by the sign of counts.
+void JointCommission::begin(Step step, double distance) noexcept {
+  step_ = step;
+  shape_ = {StrokeShape::Kind::kStep, distance * allowed().max_travel};
+}
+
+void JointCommission::takeDirection(const Answer& answer, double counts) {
+  if (answer.kind == Kind::kOtherJoint) {
+    uses_->learn(answer.joint, node_->bus, node_->node_id);
+    return tryNext();
+  }
+  if (answer.kind == Kind::kNothing) {
+    const double gone = std::abs(last_stroke_.end_counts - last_stroke_.start_counts);
+    unseen_counts_ = std::max(unseen_counts_, gone);
+    if (fewestCounts(joint_) < config_->file_factor * fileCounts(joint_))
+      return begin(Step::kProbe, 1.0);
+    uses_->dismiss(*node_);
+    return tryNext();
+  }
+  seen_sign_ = answer.kind == Kind::kPlus ? 1 : -1;
+  is_identified_ = true;
+  uses_->learn(joint_, node_->bus, node_->node_id);
+  step_ = Step::kScale;
+  ask(Asked::kPlace, counts);
+}
+
+void JointCommission::takeMark(double q, double counts) {
+  const double before = fewestCounts(joint_);
+  marks_.push_back({counts, q});
+  const double misfit = largestMisfit(marks_);
+  const double most = kMostMisfit_errors * allowed().measuring_error;
+  if (misfit > most || scale_strokes_ >= kMostScaleStrokes)
+    return fail({.kind = JointTroubleKind::kCannotTell, .value = misfit, .limit = most});
+  if (marks_.size() >= kTrustedMarks)
+    fewest_ = std::clamp(fewestCountsPerUnit(marks_, allowed().measuring_error), before,
+                         kMostGrowth * before);
+  if (isWide()) return ask(Asked::kJog, counts);
+  begin(Step::kScale, scale_strokes_++ % 4 < 2 ? -1.0 : 1.0);  // two there, two back
+}
+
+/// Motions are about as long as they may be, and the sign is told by marks, too.
+bool JointCommission::isWide() const noexcept {
+  const auto known = scale();
+  return known && marks_.size() >= kTrustedMarks &&
+         fewestCounts(joint_) >= kWideShare * known->counts_per_unit;
+}
+
+void JointCommission::takeJog(const Answer& answer, double counts) {
+  const double sign = scale()->sign;
+  switch (answer.kind) {
+    case Kind::kPlus:
+      return begin(Step::kJog, sign);
+    case Kind::kMinus:
+      return begin(Step::kJog, -sign);
+    case Kind::kUpper:
+    case Kind::kLower:
+      is_asked_upper_ = answer.kind == Kind::kUpper;
+      (is_asked_upper_ ? upper_counts_ : lower_counts_) = counts;
+      return ask(Asked::kEndPlace, counts);
+    default:
+      break;
+  }
+  // The wave goes where there is room: to the middle, or away from the end that is known.
+  double away = 1.0;
+  const auto middle = [&] { return 0.5 * (*upper_counts_ + *lower_counts_); };
+  if (upper_counts_ && lower_counts_)
+    away = middle() > counts ? 1.0 : -1.0;
+  else if (upper_counts_)
+    away = -sign;
+  else if (lower_counts_)
+    away = sign;
+  step_ = Step::kWave;
+  shape_ = {StrokeShape::Kind::kWave, 0.5 * away * allowed().max_travel};
+}
+
+double JointCommission::fileCounts(int joint) const noexcept {
+  double fewest = std::numeric_limits<double>::infinity();
+  for (const DriveConfig& drive : config_->hardware.drives)
+    if (drive.joint == joint) fewest = drive.counts_per_unit;
+  const bool turns = !config_->is_prismatic[joint];
+  if (turns && node_->counts_per_turn)
+    fewest = std::min(fewest, *node_->counts_per_turn / (2.0 * std::numbers::pi));
+  return fewest;
+}
+
+/// A unit of this joint has at least so many, if this drive moves it.
+double JointCommission::fewestCounts(int joint) const noexcept {
+  const double assumed = fileCounts(joint) / config_->file_factor;
+  const double unseen = unseen_counts_ / config_->bounds(joint).unseen;
+  return std::max({assumed, unseen, joint == joint_ ? fewest_ : 0.0});
+}
+
+/// In this joint's unit, but kept for each joint that this drive may turn out to move.
+StrokeBounds JointCommission::bounds() const noexcept {
+  const MotionBounds& mine = allowed();
+  double travel = std::numeric_limits<double>::infinity();  // these in counts
+  double speed = travel, acceleration = travel, error = travel;
+  for (int joint = 0; joint < config_->joints(); ++joint) {
+    const bool is_possible = joint == joint_ || (!is_identified_ && !uses_->isKnown(joint));
+    if (!is_possible) continue;
+    const MotionBounds& bounds = config_->bounds(joint);
+    const double counts = fewestCounts(joint);
+    travel = std::min(travel, counts * bounds.max_travel);
+    speed = std::min(speed, counts * bounds.max_speed);
+    acceleration = std::min(acceleration, counts * bounds.max_acceleration);
+    error = std::min(error, counts * bounds.max_following_error);
+  }
+  constexpr double kJerkTime_s = 0.1;  // to reach the acceleration
+  const double unit = travel / mine.max_travel;
+  const double a = acceleration / unit;
+  return {unit, mine.max_travel, {speed / unit, a, a / kJerkTime_s}, error / unit};
+}
+
+StrokePlan JointCommission::stroke() const noexcept {
+  return {node_->bus, node_->node_id, bounds(), shape_};
+}
+
+void JointCommission::onStroke(const StrokeReport& report) {
+  last_stroke_ = report;
+  JointTrouble trouble{.kind = JointTroubleKind::kStroke, .stroke = report};
+  const bool is_stopped = report.end == StrokeEnd::kStopped;
+  if (is_stopped) trouble.kind = JointTroubleKind::kStopped;
+  const bool goes_on = is_stopped && report.is_seen_off;  // from where it stopped
+  if (report.end != StrokeEnd::kDone && !goes_on) return fail(trouble);
+  const double unit = bounds().counts_per_unit;
+  const double gone = std::abs(report.end_counts - report.start_counts);
+  const bool is_step = shape_.kind == StrokeShape::Kind::kStep;
+  const double asked = is_step && !is_stopped ? std::abs(shape_.distance) * unit : 0.0;
+  if (gone < kLeastShare * asked) {
+    trouble.kind = JointTroubleKind::kMovedShort;
+    trouble.value = gone;
+    trouble.limit = asked;
+    return fail(trouble);
+  }
+  error_counts_ = std::max(error_counts_, report.values.largest_error * unit);
+  acceleration_counts_ = std::max(acceleration_counts_, report.values.largest_acceleration * unit);
+  if (step_ == Step::kWave && !is_stopped) {
+    findings_.lag_s = report.values.lag_s;
+    return finish();
+  }
+  ask(step_ == Step::kProbe   ? Asked::kDirection
+      : step_ == Step::kScale ? Asked::kPlace
+                              : Asked::kJog,
+      report.end_counts);
+}
+
+std::optional<JointScale> JointCommission::scale() const {
+  return fitScale(marks_, allowed().measuring_error);
+}
+
+void JointCommission::finish() {
+  chooseScale();
+  const JointScale& scale = findings_.scale;
+  if (scale.sign != seen_sign_) return fail({.kind = JointTroubleKind::kSignsDisagree});
+  const double most = kMostMisfit_errors * allowed().measuring_error;
+  findings_.misfit = largestMisfit(marks_, scale);
+  if (findings_.misfit > most)
+    return fail({.kind = JointTroubleKind::kCannotTell, .value = findings_.misfit, .limit = most});
+  findings_.bus = node_->bus;
+  findings_.node_id = node_->node_id;
+  const double margin = allowed().margin;
+  if (upper_counts_) findings_.upper = scale.position(*upper_counts_) - margin;
+  if (lower_counts_) findings_.lower = scale.position(*lower_counts_) + margin;
+  findings_.following_error = error_counts_ / scale.counts_per_unit;
+  findings_.acceleration = acceleration_counts_ / scale.counts_per_unit;
+  question_.reset();
+  step_ = Step::kFinished;
+}
+
+/// A number that somebody computed from gears and encoder is better than one that was measured by
+/// hand, if the measured one confirms it.
+void JointCommission::chooseScale() {
+  const JointScale measured = *scale();
+  findings_.scale = measured;
+  findings_.source = ScaleSource::kMeasured;
+  const auto confirm = [&](double counts_per_unit, ScaleSource source) {
+    const double share = std::abs(counts_per_unit / measured.counts_per_unit - 1.0);
+    const bool is_free = findings_.source == ScaleSource::kMeasured;
+    if (!is_free || share > measured.uncertainty) return;
+    findings_.scale = fitOffset(marks_, measured.sign, counts_per_unit);
+    findings_.scale.uncertainty = measured.uncertainty;
+    findings_.source = source;
+  };
+  if (!config_->is_prismatic[joint_] && node_->counts_per_turn) {
+    findings_.drive_counts_per_unit = *node_->counts_per_turn / (2.0 * std::numbers::pi);
+    confirm(*findings_.drive_counts_per_unit, ScaleSource::kDrive);
+  }
+  for (const DriveConfig& drive : config_->hardware.drives)
+    if (drive.joint == joint_) confirm(drive.counts_per_unit, ScaleSource::kFile);
+}
+
+}  // namespace tactus

@@ -1,0 +1,71 @@
+#include "tactus/commission/object_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus {
+
+ObjectReader::ObjectReader(int node_id, std::vector<ObjectEntry> entries, int timeout_cycles,
+                           int tries)
+    : node_id_(node_id),
+      entries_(std::move(entries)),
+      sdo_(node_id, timeout_cycles),
+      tries_(tries) {
+  values_.reserve(entries_.size());
+}
+
+void ObjectReader::update(FrameBatch& out) noexcept {
+  if (isDone()) return;
+  judge();
+  const bool may_ask = sdo_.status() != SdoStatus::kBusy && !isDone();
+  if (may_ask) sdo_.upload(entries_[values_.size()]);
+  sdo_.update(out);
+}
+
+void ObjectReader::judge() noexcept {
+  switch (sdo_.status()) {
+    case SdoStatus::kIdle:
+    case SdoStatus::kBusy:
+      return;
+    case SdoStatus::kTimedOut:
+      is_silent_ = ++tried_ >= tries_;
+      return;
+    case SdoStatus::kAborted:
+      values_.emplace_back();
+      break;
+    case SdoStatus::kDone:
+      values_.emplace_back(sdo_.value());
+      break;
+  }
+  tried_ = 0;
+}
+
+BusReader::BusReader(const std::vector<int>& node_ids, const std::vector<ObjectEntry>& entries,
+                     int timeout_cycles, int tries, int pace_cycles)
+    : pace_cycles_(pace_cycles) {
+  for (const int id : node_ids) nodes_.emplace_back(id, entries, timeout_cycles, tries);
+}
+
+void BusReader::receive(const CanFrame& frame) noexcept {
+  for (ObjectReader& node : nodes_) node.receive(frame);
+}
+
+void BusReader::update(FrameBatch& out) noexcept {
+  const auto begun = std::min<std::size_t>(nodes_.size(), 1 + cycles_ / pace_cycles_);
+  for (std::size_t i = 0; i < begun; ++i) nodes_[i].update(out);
+  ++cycles_;
+}
+
+bool BusReader::isDone() const noexcept {
+  return std::ranges::all_of(nodes_, [](const ObjectReader& node) { return node.isDone(); });
+}
+
+int readingPace(double bit_rate_per_s, double period_s) noexcept {
+  constexpr double kFrameBits = 135.0;  // eight bytes, all stuff bits
+  constexpr double kShare = 0.5;
+  return std::max(
+      1, static_cast<int>(std::ceil(2.0 * kFrameBits / kShare / bit_rate_per_s / period_s)));
+}
+
+}  // namespace tactus

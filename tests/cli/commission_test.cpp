@@ -1,0 +1,337 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "support/commission_rig.h"
+#include "support/hardware_files.h"
+#include "tactus/cli/commission_file.h"
+#include "tactus/cli/commission_report.h"
+#include "tactus/cli/commission_run.h"
+#include "tactus/cli/commission_text.h"
+#include "tactus/record/output_file.h"
+#include "tactus/scene/exit_code.h"
+#include "tactus/scene/source_reader.h"
+
+/// The whole of `tactus commission` but sockets and terminal: what is asked and typed, and what the
+/// files then say.
+namespace tactus {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kLift = 0, kShoulder = 1, kRoll = 2;
+
+class CommissionFolder {
+ public:
+  CommissionFolder() {
+    std::string name = (fs::temp_directory_path() / "tactus-commission-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    const test::SceneFiles files = test::hardwareFiles();
+    put("scene.yaml", files.scene);
+    put("robot.yaml", "# a comment at the top\n" +
+                          test::replaced(files.robot, "drives:\n", "drives:  # and one here\n"));
+    put("robot.urdf", files.urdf);
+  }
+  ~CommissionFolder() { fs::remove_all(folder_); }
+
+  std::string path(const char* name) const { return (folder_ / name).string(); }
+  std::string content(const char* name) const { return readFromDisk(path(name)); }
+  void put(const char* name, const std::string& text) const {
+    OutputFile file(path(name));
+    file.append(text);
+    file.close();
+  }
+  Scene scene() const { return loadScene(path("scene.yaml"), {}); }
+
+ private:
+  fs::path folder_;
+};
+
+/// In the file both are the other way round, and shoulder and roll turn and count otherwise.
+std::vector<test::HiddenJoint> trueArm() {
+  std::vector<test::HiddenJoint> arm(3);
+  arm[kLift] = {.is_prismatic = true,
+                .bus = 0,
+                .node_id = 2,
+                .sign = 1,
+                .counts_per_unit = 1e7,
+                .offset = 0.25,
+                .start = 0.1,
+                .lower = 0.0,
+                .upper = 0.2};
+  arm[kShoulder] = {.is_prismatic = false,
+                    .bus = 0,
+                    .node_id = 1,
+                    .sign = -1,
+                    .counts_per_unit = 4.2e6,
+                    .offset = 0.7,
+                    .start = 0.2,
+                    .lower = -0.2,
+                    .upper = 0.6};
+  arm[kRoll] = {.is_prismatic = false,
+                .bus = 1,
+                .node_id = 9,
+                .sign = 1,
+                .counts_per_unit = 2e6,
+                .offset = -1.1,
+                .start = 0.3,
+                .lower = -0.1,
+                .upper = 0.7};
+  return arm;
+}
+
+/// An engineer who reads and types, at an arm in virtual time.
+class VirtualDesk final : public CommissionDesk {
+ public:
+  explicit VirtualDesk(const Scene& scene)
+      : rig(trueArm(), commissionConfig(scene, {}), 3), scene_(scene) {}
+
+  test::CommissionRig rig;
+  std::string said;
+  bool stops_after_writing = false;
+  int cycles_to_stop = 0;  ///< of motion, until a line is typed
+
+  /// As another program that is started at the same arm.
+  void restart(const Scene& scene) {
+    rig.config = commissionConfig(scene, {});
+    rig.restart();
+    said.clear();
+    stops_after_writing = false;
+    is_stopped_ = false;
+  }
+
+  void runCycle() override {
+    rig.step();
+    rig.input.stop_requested = false;
+    if (++cycles_ > 3'000'000) is_stopped_ = true;
+  }
+  CommissionCycle& cycle() override { return *rig.cycle; }
+  void stopMotion() override { rig.input.stop_requested = true; }
+  std::optional<std::pair<int, Fault>> takeBusFault() override { return std::nullopt; }
+  void say(const std::string& text) override { said += text; }
+  bool isStopped() const override { return is_stopped_; }
+
+  std::optional<std::string> takeLine() override {
+    if (const Question* const question = cycle().question()) {
+      rig.noteQuestion();
+      return typed(*question);
+    }
+    if (cycle().phase() == CommissionCycle::Phase::kMoving && --cycles_to_stop == 0) return "";
+    if (cycle().phase() != CommissionCycle::Phase::kIdle) return std::nullopt;
+    const bool asks_on = said.ends_with("end > ");
+    const bool is_writing = said.ends_with("Write this? yes, no > ");
+    if (is_writing && stops_after_writing) is_stopped_ = true;
+    return asks_on ? "end" : "yes";
+  }
+
+ private:
+  std::string typed(const Question& question) {
+    const Answer answer = rig.answer(question);
+    const double unit = rig.truth[question.joint].is_prismatic ? 1e-3 : std::numbers::pi / 180.0;
+    switch (answer.kind) {
+      case Answer::Kind::kYes:
+        return "yes";
+      case Answer::Kind::kNo:
+        return "no";
+      case Answer::Kind::kPlus:
+        return " + ";
+      case Answer::Kind::kMinus:
+        return "-";
+      case Answer::Kind::kOtherJoint:
+        return scene_.joint_names[static_cast<std::size_t>(answer.joint)];
+      case Answer::Kind::kNumber:
+        return fmt::format("{:.5f}", answer.value / unit);
+      case Answer::Kind::kUpper:
+        return "upper";
+      case Answer::Kind::kLower:
+        return "lower";
+      case Answer::Kind::kDone:
+        return "done";
+      default:
+        return "none";
+    }
+  }
+
+  Scene scene_;
+  bool is_stopped_ = false;
+  long cycles_ = 0;
+};
+
+void expectFileIsRight(const CommissionFolder& folder) {
+  const Scene scene = folder.scene();
+  const std::vector<test::HiddenJoint> arm = trueArm();
+  for (std::size_t j = 0; j < arm.size(); ++j) {
+    const DriveConfig& drive = scene.hardware->drives[j];
+    SCOPED_TRACE(scene.joint_names[j]);
+    EXPECT_EQ(drive.bus, arm[j].bus);
+    EXPECT_EQ(drive.node_id, arm[j].node_id);
+    EXPECT_EQ(drive.sign, arm[j].sign);
+    EXPECT_NEAR(drive.counts_per_unit / arm[j].counts_per_unit, 1.0, 0.03);
+    const double counts = arm[j].sign * arm[j].counts_per_unit * (arm[j].start - arm[j].offset);
+    EXPECT_NEAR(counts / (drive.sign * drive.counts_per_unit) + drive.offset, arm[j].start,
+                arm[j].is_prismatic ? 0.0015 : 0.0105);
+  }
+}
+
+TEST(Commission, WritesWhatItFindsAndKeepsTheRest) {
+  const CommissionFolder folder;
+  const std::string before = folder.content("robot.yaml");
+  VirtualDesk desk(folder.scene());
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
+  expectFileIsRight(folder);
+  EXPECT_TRUE(desk.said.ends_with("all joints are finished\n"));
+  const std::string after = folder.content("robot.yaml");
+  EXPECT_EQ(after.substr(0, 23), "# a comment at the top\n");
+  EXPECT_NE(after.find("drives:  # and one here\n"), std::string::npos);
+  // Counts that the marks confirm are left as somebody computed them.
+  EXPECT_NE(after.find("counts_per_m: 1e7"), std::string::npos);
+  EXPECT_NE(after.find("position_lag_s: 0.00"), std::string::npos);
+  EXPECT_NE(folder.content("robot.yaml~"), after);
+  EXPECT_NE(desk.said.find("- "), std::string::npos);
+  EXPECT_NE(before, after);
+}
+
+TEST(Commission, GoesOnWhereItWasLeft) {
+  const CommissionFolder folder;
+  VirtualDesk desk(folder.scene());
+  desk.stops_after_writing = true;
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitFault);
+  EXPECT_NE(folder.content("robot.yaml~"), folder.content("robot.yaml"));
+  const Json state = readState(statePath(robotFile(folder.scene())));
+  EXPECT_EQ(state.at("joints").size(), 1u);
+  desk.restart(folder.scene());
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
+  EXPECT_EQ(desk.said.find("lift, perhaps"), std::string::npos);
+  EXPECT_NE(desk.said.find("roll, perhaps"), std::string::npos);
+  expectFileIsRight(folder);
+
+  // One joint anew, though it is finished; and one whose entry somebody has changed since.
+  desk.restart(folder.scene());
+  CommissionOptions options;
+  options.joint = kRoll;
+  EXPECT_EQ(runCommission(folder.scene(), options, desk), kExitDone) << desk.said;
+  EXPECT_NE(desk.said.find("roll, perhaps"), std::string::npos);
+  folder.put("robot.yaml", test::replaced(folder.content("robot.yaml"), "counts_per_m: 1e7",
+                                          "counts_per_m: 1.1e7"));
+  desk.restart(folder.scene());
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
+  EXPECT_NE(desk.said.find("lift, perhaps"), std::string::npos);
+  EXPECT_EQ(desk.said.find("roll, perhaps"), std::string::npos);
+}
+
+/// A motion that a line stops is no failure: it is asked again, from where it stopped.
+TEST(Commission, LineThatIsTypedStopsAMotion) {
+  for (const int cycles : {200, 700, 1500, 12'000, 40'000}) {
+    const CommissionFolder folder;
+    VirtualDesk desk(folder.scene());
+    desk.cycles_to_stop = cycles;
+    EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
+    EXPECT_LT(desk.cycles_to_stop, 0);
+    EXPECT_EQ(desk.said.find("is not finished"), std::string::npos);
+    expectFileIsRight(folder);
+  }
+}
+
+TEST(Commission, RefusesAFileThatChangedMeanwhile) {
+  const CommissionFolder folder;
+  VirtualDesk desk(folder.scene());
+  const Scene scene = folder.scene();
+  folder.put("robot.yaml", folder.content("robot.yaml") + "# edited\n");
+  EXPECT_EQ(runCommission(scene, {}, desk), kExitFault);
+  EXPECT_NE(desk.said.find("was changed meanwhile"), std::string::npos);
+  EXPECT_TRUE(folder.content("robot.yaml").ends_with("# edited\n"));
+  EXPECT_FALSE(fs::exists(statePath(robotFile(scene))));
+}
+
+TEST(Commission, ScanAloneMovesNothing) {
+  const CommissionFolder folder;
+  VirtualDesk desk(folder.scene());
+  CommissionOptions options;
+  options.is_scan_alone = options.json = true;
+  EXPECT_EQ(runCommission(folder.scene(), options, desk), kExitDone);
+  const Json json = Json::parse(desk.said);
+  ASSERT_EQ(json.at("nodes").size(), 3u);
+  EXPECT_EQ(json.at("nodes").at(2).at("joint"), "roll");
+  EXPECT_EQ(json.at("nodes").at(2).at("node_id"), 9);
+  EXPECT_EQ(json.at("missing").size(), 0u);
+  EXPECT_EQ(desk.rig.most_powered, 0);
+}
+
+TEST(Commission, NamesNodesOfNobodyAndThoseThatAreMissing) {
+  const CommissionFolder folder;
+  const Scene scene = folder.scene();
+  const std::string text = nodesText(scene, {{0, 1, 0x20192, 0x7ac, 1, {}, {}},
+                                             {1, 44, 0x191, {}, {}, {}, {}},
+                                             {1, 100, {}, {}, {}, {}, {}}});
+  EXPECT_NE(text.find("node 1 on can0"), std::string::npos);
+  EXPECT_NE(text.find("drive (402), in the file of lift"), std::string::npos);
+  EXPECT_NE(text.find("no 402 device, not in the file"), std::string::npos);
+  EXPECT_NE(text.find("has the id of can.master_node_id"), std::string::npos);
+  EXPECT_NE(text.find("does not answer, in the file of roll"), std::string::npos);
+}
+
+TEST(Commission, StateOfAnotherProgramIsRefused) {
+  const CommissionFolder folder;
+  const std::string path = statePath(robotFile(folder.scene()));
+  for (const char* text : {"", "[]", "{\"joints\": 3}", "{", "\xff"}) {
+    folder.put("robot.yaml.commission.json", text);
+    EXPECT_THROW(readState(path), InputError) << text;
+  }
+  for (const char* text :
+       {R"({"joints": {"lift": 3}})", R"({"joints": {"lift": {"sign": "x"}}})"}) {
+    folder.put("robot.yaml.commission.json", text);
+    EXPECT_FALSE(isFinished(folder.scene(), readState(path), kLift)) << text;
+  }
+}
+
+TEST(Commission, WhatIsTypedIsUnderstoodOrNot) {
+  const CommissionFolder folder;
+  const Scene scene = folder.scene();
+  Question question;
+  question.joint = kShoulder;
+  const auto parsed = [&](Asked asked, const char* line) {
+    question.asked = asked;
+    return parseAnswer(scene, question, line);
+  };
+  EXPECT_NEAR(parsed(Asked::kPlace, " +90 \r")->value, std::numbers::pi / 2.0, 1e-12);
+  EXPECT_NEAR(parsed(Asked::kPlace, "-0.5")->value, -std::numbers::pi / 360.0, 1e-12);
+  question.joint = kLift;
+  EXPECT_NEAR(parsed(Asked::kEndPlace, "12.5")->value, 0.0125, 1e-12);
+  EXPECT_EQ(parsed(Asked::kDirection, "roll")->joint, kRoll);
+  for (const char* line : {"", " ", "1e999", "nan", "inf", "1,5", "1 2", "none", "++1", "0x10"})
+    EXPECT_FALSE(parsed(Asked::kPlace, line)) << line;
+  for (const char* line : {"", "Y", "+", "yes yes", "1"})
+    EXPECT_FALSE(parsed(Asked::kReady, line)) << line;
+  for (const char* line : {"", "yes", "+-", "elbow"})
+    EXPECT_FALSE(parsed(Asked::kDirection, line)) << line;
+}
+
+TEST(Commission, SaysWhichWayIsPlus) {
+  const CommissionFolder folder;
+  const Scene scene = folder.scene();
+  EXPECT_NE(axisText(scene, kLift).find("+ slides lift along its axis (0, 0, 1)"),
+            std::string::npos)
+      << axisText(scene, kLift);
+  EXPECT_NE(axisText(scene, kShoulder).find("along the base's +z"), std::string::npos);
+}
+
+TEST(Commission, TravelThatCannotBeMeasuredIsRefused) {
+  const CommissionFolder folder;
+  CommissionOptions options;
+  options.revolute.max_travel = 0.02;
+  EXPECT_THROW(commissionConfig(folder.scene(), options), InputError);
+}
+
+TEST(Commission, DifferenceShowsLinesThatChanged) {
+  EXPECT_EQ(differenceText("a\nb\nc\n", "a\nx\nc\nd\n"), "- b\n+ x\n+ d\n");
+  EXPECT_EQ(differenceText("a\n", "a\n"), "");
+  EXPECT_EQ(differenceText("", "a"), "+ a\n");
+}
+
+}  // namespace
+}  // namespace tactus
