@@ -174,7 +174,7 @@ class Scope {
   ScopeScreen screen_;
   ScopeView view_;
   bool was_live_ = false, has_new_ = false;
-  double live_s_ = -kNoLimit, shown_s_ = 0.0;
+  double live_s_ = kNoLimit, shown_s_ = 0.0;
   double printed_s_ = -kNoLimit;  ///< the newest of those that are followed and printed
 };
 

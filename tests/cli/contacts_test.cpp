@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/command_run.h"
@@ -44,6 +45,7 @@ TEST(Contacts, AreThoseOfTheSummary) {
   const Json contacts = run.contacts();
   ASSERT_EQ(contacts.size(), run.figures.contacts.size());
   ASSERT_GE(contacts.size(), 2u);
+  EXPECT_EQ(contacts, summaryJson(run.scene, run.figures, 1.0).at("contacts"));
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactSummary& expected = run.figures.contacts[i];
     EXPECT_EQ(contacts[i].at("start_s"), expected.start_s);
@@ -53,6 +55,20 @@ TEST(Contacts, AreThoseOfTheSummary) {
               run.scene.module_links[static_cast<std::size_t>(expected.module)]);
     EXPECT_LE(contacts[i].at("rest_force_N"), expected.peak_force_N);
     EXPECT_LE(contacts[i].at("tcp_error_max_m"), run.figures.tcp_error_max_m);
+  }
+}
+
+/// The springs of the scenes in series with what gives way before them.
+TEST(Contacts, TellHowStiffTheyWere) {
+  for (const auto& [name, stiffness_N_per_m] :
+       {std::pair{"scenario1_multi_space", 1.0 / (1.0 / 60.0 + 1.0 / 7000.0)},
+        std::pair{"scenario2_tactus", 1.0 / (1.0 / 30.0 + 1.0 / 7000.0)},
+        std::pair{"scenario3_tactus", 1.0 / (1.0 / 1400.0 + 1.0 / 17000.0 + 1.0 / 7000.0)}}) {
+    const Json fit = LoggedRun(name).contacts()[0].at("contact_stiffness_N_per_m");
+    EXPECT_NEAR(fit.at("value"), stiffness_N_per_m, 0.01 * stiffness_N_per_m) << name;
+    EXPECT_LE(fit.at("low"), fit.at("value"));
+    EXPECT_GE(fit.at("high"), fit.at("value"));
+    EXPECT_LT(fit.at("high"), 1.05 * stiffness_N_per_m);
   }
 }
 

@@ -94,8 +94,8 @@ double predictionError(const Json& trace) {
   return error_N / largest_N;
 }
 
-/// Measured: 0.8 to 1.9 % on bands of 30 and 60 N/m and on two of 300 N/m, 8.6 % on one where the
-/// arm also turns, 11 and 19 % on 1100 N/m, where posture and costs press on soonest.
+/// Measured: 0.8 to 1.9 % on soft bands, 8.6 % with the iiwa, 11 and 19 % on 1100 N/m, where
+/// posture and costs press on soonest.
 TEST(Scope, PredictsTheTouchesOfScenes) {
   const auto expectWithin = [](const char* name, double tolerance) {
     const Json traces = ScopedRun(name).traces({"--pre", "0.8"});

@@ -64,6 +64,7 @@ class Scope(unittest.TestCase):
         # It ends by itself, while the run goes on.
         shown = {"single": single.communicate(timeout=60)[0]}
         assert single.returncode == 0
+        cls.is_late_waiting = programs["late"].poll() is None
         (cls.live / "summary.json").write_text("{}")
         for name, program in programs.items():
             shown[name] = program.communicate(timeout=60)[0]
@@ -85,6 +86,7 @@ class Scope(unittest.TestCase):
     def test_single_ends_with_the_first_that_comes(self):
         self.assertEqual(self.shown["single"], self.whole(SECOND))
         self.assertEqual(self.shown["late"], [], "what was before does not count")
+        self.assertTrue(self.is_late_waiting)
         self.assertIn("<svg", (self.live / "page.html").read_text())
 
     def test_auto_shows_what_there_is(self):
