@@ -10,10 +10,10 @@ namespace tactus::test {
 
 inline constexpr int kTroubledJoint = 1;
 
-inline std::vector<HiddenJoint> turnedArm() {
+inline std::vector<HiddenJoint> turnedArm(double counts_per_rad = 4e5) {
   std::vector<HiddenJoint> arm = plainArm(3);
   arm[1].sign = -1;
-  arm[1].counts_per_unit = 4e5;
+  arm[1].counts_per_unit = counts_per_rad;
   arm[1].offset = 1.2;
   arm[1].start = 0.1;
   return arm;
@@ -28,8 +28,8 @@ inline CommissionConfig configWithLines() {
 }
 
 struct TroubledRig : CommissionRig {
-  explicit TroubledRig(std::uint64_t seed = 1)
-      : CommissionRig(turnedArm(), configWithLines(), seed) {
+  explicit TroubledRig(std::uint64_t seed = 1, double counts_per_rad = 4e5)
+      : CommissionRig(turnedArm(counts_per_rad), configWithLines(), seed) {
     jogs = false;
     EXPECT_TRUE(scan());
     on_cycle = [this] { watch(); };
