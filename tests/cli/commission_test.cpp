@@ -2,55 +2,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "support/commission_folder.h"
 #include "support/commission_rig.h"
-#include "support/hardware_files.h"
 #include "tactus/cli/commission_file.h"
-#include "tactus/cli/commission_report.h"
 #include "tactus/cli/commission_run.h"
-#include "tactus/cli/commission_text.h"
-#include "tactus/record/output_file.h"
 #include "tactus/scene/exit_code.h"
-#include "tactus/scene/source_reader.h"
 
 /// The whole of `tactus commission` but sockets and terminal: what is asked and typed, and what the
 /// files then say.
 namespace tactus {
 namespace {
 
-namespace fs = std::filesystem;
+using test::CommissionFolder;
 
 constexpr int kLift = 0, kShoulder = 1, kRoll = 2;
-
-class CommissionFolder {
- public:
-  CommissionFolder() {
-    std::string name = (fs::temp_directory_path() / "tactus-commission-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    const test::SceneFiles files = test::hardwareFiles();
-    put("scene.yaml", files.scene);
-    put("robot.yaml", "# a comment at the top\n" +
-                          test::replaced(files.robot, "drives:\n", "drives:  # and one here\n"));
-    put("robot.urdf", files.urdf);
-  }
-  ~CommissionFolder() { fs::remove_all(folder_); }
-
-  std::string path(const char* name) const { return (folder_ / name).string(); }
-  std::string content(const char* name) const { return readFromDisk(path(name)); }
-  void put(const char* name, const std::string& text) const {
-    OutputFile file(path(name));
-    file.append(text);
-    file.close();
-  }
-  Scene scene() const { return loadScene(path("scene.yaml"), {}); }
-
- private:
-  fs::path folder_;
-};
 
 /// In the file both are the other way round, and shoulder and roll turn and count otherwise.
 std::vector<test::HiddenJoint> trueArm() {
@@ -245,7 +214,7 @@ TEST(Commission, RefusesAFileThatChangedMeanwhile) {
   EXPECT_EQ(runCommission(scene, {}, desk), kExitFault);
   EXPECT_NE(desk.said.find("was changed meanwhile"), std::string::npos);
   EXPECT_TRUE(folder.content("robot.yaml").ends_with("# edited\n"));
-  EXPECT_FALSE(fs::exists(statePath(robotFile(scene))));
+  EXPECT_FALSE(std::filesystem::exists(statePath(robotFile(scene))));
 }
 
 TEST(Commission, ScanAloneMovesNothing) {
@@ -260,77 +229,6 @@ TEST(Commission, ScanAloneMovesNothing) {
   EXPECT_EQ(json.at("nodes").at(2).at("node_id"), 9);
   EXPECT_EQ(json.at("missing").size(), 0u);
   EXPECT_EQ(desk.rig.most_powered, 0);
-}
-
-TEST(Commission, NamesNodesOfNobodyAndThoseThatAreMissing) {
-  const CommissionFolder folder;
-  const Scene scene = folder.scene();
-  const std::string text = nodesText(scene, {{0, 1, 0x20192, 0x7ac, 1, {}, {}},
-                                             {1, 44, 0x191, {}, {}, {}, {}},
-                                             {1, 100, {}, {}, {}, {}, {}}});
-  EXPECT_NE(text.find("node 1 on can0"), std::string::npos);
-  EXPECT_NE(text.find("drive (402), in the file of lift"), std::string::npos);
-  EXPECT_NE(text.find("no 402 device, not in the file"), std::string::npos);
-  EXPECT_NE(text.find("has the id of can.master_node_id"), std::string::npos);
-  EXPECT_NE(text.find("does not answer, in the file of roll"), std::string::npos);
-}
-
-TEST(Commission, StateOfAnotherProgramIsRefused) {
-  const CommissionFolder folder;
-  const std::string path = statePath(robotFile(folder.scene()));
-  for (const char* text : {"", "[]", "{\"joints\": 3}", "{", "\xff"}) {
-    folder.put("robot.yaml.commission.json", text);
-    EXPECT_THROW(readState(path), InputError) << text;
-  }
-  for (const char* text :
-       {R"({"joints": {"lift": 3}})", R"({"joints": {"lift": {"sign": "x"}}})"}) {
-    folder.put("robot.yaml.commission.json", text);
-    EXPECT_FALSE(isFinished(folder.scene(), readState(path), kLift)) << text;
-  }
-}
-
-TEST(Commission, WhatIsTypedIsUnderstoodOrNot) {
-  const CommissionFolder folder;
-  const Scene scene = folder.scene();
-  Question question;
-  question.joint = kShoulder;
-  const auto parsed = [&](Asked asked, const char* line) {
-    question.asked = asked;
-    return parseAnswer(scene, question, line);
-  };
-  EXPECT_NEAR(parsed(Asked::kPlace, " +90 \r")->value, std::numbers::pi / 2.0, 1e-12);
-  EXPECT_NEAR(parsed(Asked::kPlace, "-0.5")->value, -std::numbers::pi / 360.0, 1e-12);
-  question.joint = kLift;
-  EXPECT_NEAR(parsed(Asked::kEndPlace, "12.5")->value, 0.0125, 1e-12);
-  EXPECT_EQ(parsed(Asked::kDirection, "roll")->joint, kRoll);
-  for (const char* line : {"", " ", "1e999", "nan", "inf", "1,5", "1 2", "none", "++1", "0x10"})
-    EXPECT_FALSE(parsed(Asked::kPlace, line)) << line;
-  for (const char* line : {"", "Y", "+", "yes yes", "1"})
-    EXPECT_FALSE(parsed(Asked::kReady, line)) << line;
-  for (const char* line : {"", "yes", "+-", "elbow"})
-    EXPECT_FALSE(parsed(Asked::kDirection, line)) << line;
-}
-
-TEST(Commission, SaysWhichWayIsPlus) {
-  const CommissionFolder folder;
-  const Scene scene = folder.scene();
-  EXPECT_NE(axisText(scene, kLift).find("+ slides lift along its axis (0, 0, 1)"),
-            std::string::npos)
-      << axisText(scene, kLift);
-  EXPECT_NE(axisText(scene, kShoulder).find("along the base's +z"), std::string::npos);
-}
-
-TEST(Commission, TravelThatCannotBeMeasuredIsRefused) {
-  const CommissionFolder folder;
-  CommissionOptions options;
-  options.revolute.max_travel = 0.02;
-  EXPECT_THROW(commissionConfig(folder.scene(), options), InputError);
-}
-
-TEST(Commission, DifferenceShowsLinesThatChanged) {
-  EXPECT_EQ(differenceText("a\nb\nc\n", "a\nx\nc\nd\n"), "- b\n+ x\n+ d\n");
-  EXPECT_EQ(differenceText("a\n", "a\n"), "");
-  EXPECT_EQ(differenceText("", "a"), "+ a\n");
 }
 
 }  // namespace

@@ -75,6 +75,9 @@ class JointCommission {
   void fail(const JointTrouble& trouble);
 
  private:
+  /// Marks that are right to the measuring error lie no further off their line.
+  static constexpr double kMostMisfit_errors = 2.0;
+
   enum class Step : std::uint8_t { kReady, kProbe, kScale, kJog, kWave, kFinished };
 
   void tryNext();

@@ -46,7 +46,7 @@ enum class JointTroubleKind : std::uint8_t {
 
 struct JointTrouble {
   JointTroubleKind kind = JointTroubleKind::kNone;
-  StrokeReport stroke{};              ///< of the last motion
+  StrokeReport stroke{};            ///< of the last motion
   int bus = 0, node_id = 0;         ///< of whom it speaks
   double value = 0.0, limit = 0.0;  ///< counts, or m or rad for kCannotTell
 };

@@ -1,0 +1,93 @@
+#include "tactus/cli/commission_text.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "support/commission_folder.h"
+#include "tactus/cli/commission_file.h"
+#include "tactus/cli/commission_report.h"
+#include "tactus/cli/commission_run.h"
+
+/// What commissioning says, and makes of what is typed and of files.
+namespace tactus {
+namespace {
+
+using test::CommissionFolder;
+
+constexpr int kLiftJoint = 0, kShoulderJoint = 1, kRollJoint = 2;
+
+TEST(CommissionText, NamesNodesOfNobodyAndThoseThatAreMissing) {
+  const CommissionFolder folder;
+  const Scene scene = folder.scene();
+  const std::string text = nodesText(scene, {{0, 1, 0x20192, 0x7ac, 1, {}, {}},
+                                             {1, 44, 0x191, {}, {}, {}, {}},
+                                             {1, 100, {}, {}, {}, {}, {}}});
+  EXPECT_NE(text.find("node 1 on can0"), std::string::npos);
+  EXPECT_NE(text.find("drive (402), in the file of lift"), std::string::npos);
+  EXPECT_NE(text.find("no 402 device, not in the file"), std::string::npos);
+  EXPECT_NE(text.find("has the id of can.master_node_id"), std::string::npos);
+  EXPECT_NE(text.find("does not answer, in the file of roll"), std::string::npos);
+}
+
+TEST(CommissionText, StateOfAnotherProgramIsRefused) {
+  const CommissionFolder folder;
+  const std::string path = statePath(robotFile(folder.scene()));
+  for (const char* text : {"", "[]", "{\"joints\": 3}", "{", "\xff"}) {
+    folder.put("robot.yaml.commission.json", text);
+    EXPECT_THROW(readState(path), InputError) << text;
+  }
+  for (const char* text :
+       {R"({"joints": {"lift": 3}})", R"({"joints": {"lift": {"sign": "x"}}})"}) {
+    folder.put("robot.yaml.commission.json", text);
+    EXPECT_FALSE(isFinished(folder.scene(), readState(path), kLiftJoint)) << text;
+  }
+}
+
+TEST(CommissionText, WhatIsTypedIsUnderstoodOrNot) {
+  const CommissionFolder folder;
+  const Scene scene = folder.scene();
+  Question question;
+  question.joint = kShoulderJoint;
+  const auto parsed = [&](Asked asked, const char* line) {
+    question.asked = asked;
+    return parseAnswer(scene, question, line);
+  };
+  EXPECT_NEAR(parsed(Asked::kPlace, " +90 \r")->value, std::numbers::pi / 2.0, 1e-12);
+  EXPECT_NEAR(parsed(Asked::kPlace, "-0.5")->value, -std::numbers::pi / 360.0, 1e-12);
+  question.joint = kLiftJoint;
+  EXPECT_NEAR(parsed(Asked::kEndPlace, "12.5")->value, 0.0125, 1e-12);
+  EXPECT_EQ(parsed(Asked::kDirection, "roll")->joint, kRollJoint);
+  for (const char* line : {"", " ", "1e999", "nan", "inf", "1,5", "1 2", "none", "++1", "0x10"})
+    EXPECT_FALSE(parsed(Asked::kPlace, line)) << line;
+  for (const char* line : {"", "Y", "+", "yes yes", "1"})
+    EXPECT_FALSE(parsed(Asked::kReady, line)) << line;
+  for (const char* line : {"", "yes", "+-", "elbow"})
+    EXPECT_FALSE(parsed(Asked::kDirection, line)) << line;
+}
+
+TEST(CommissionText, SaysWhichWayIsPlus) {
+  const CommissionFolder folder;
+  const Scene scene = folder.scene();
+  EXPECT_NE(axisText(scene, kLiftJoint).find("+ slides lift along its axis (0, 0, 1)"),
+            std::string::npos)
+      << axisText(scene, kLiftJoint);
+  EXPECT_NE(axisText(scene, kShoulderJoint).find("along the base's +z"), std::string::npos);
+}
+
+TEST(CommissionText, TravelThatCannotBeMeasuredIsRefused) {
+  const CommissionFolder folder;
+  CommissionOptions options;
+  options.revolute.max_travel = 0.02;
+  EXPECT_THROW(commissionConfig(folder.scene(), options), InputError);
+}
+
+TEST(CommissionText, DifferenceShowsLinesThatChanged) {
+  EXPECT_EQ(differenceText("a\nb\nc\n", "a\nx\nc\nd\n"), "- b\n+ x\n+ d\n");
+  EXPECT_EQ(differenceText("a\n", "a\n"), "");
+  EXPECT_EQ(differenceText("", "a"), "+ a\n");
+}
+
+}  // namespace
+}  // namespace tactus
