@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tactus/cli/replace_file.h"
 #include "tactus/cli/wrench_rows.h"
+#include "tactus/record/output_file.h"
 #include "tactus/record/run_error.h"
 #include "tactus/scene/scene_loader.h"
 #include "tactus/scene/tactile_loader.h"

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
-#include "tactus/cli/replace_file.h"
 #include "tactus/daemon/control_client.h"
 #include "tactus/daemon/control_socket.h"
+#include "tactus/record/output_file.h"
 #include "tactus/record/run_error.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/gain_keys.h"
