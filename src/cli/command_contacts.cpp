@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
-#include "tactus/cli/running_log.h"
+#include "tactus/daemon/running_log.h"
 #include "tactus/record/contact_figures.h"
+#include "tactus/record/contact_json.h"
 #include "tactus/record/contact_watch.h"
 #include "tactus/record/growing_file.h"
 #include "tactus/record/run_summary.h"
@@ -101,39 +102,18 @@ std::string contactsText(const LoggedContacts& logged) {
   return text;
 }
 
-Json contactJson(const Scene& scene, const ContactFigures& contact) {
-  const ContactSummary& summary = contact.summary;
-  const ForceGains& gains = contact.gains.force;
-  return {{"start_s", summary.start_s},
-          {"end_s", summary.end_s},
-          {"tactile_module", linkOf(scene, summary.module)},
-          {"position_m", contact.position_m},
-          {"peak_force_N", summary.peak_force_N},
-          {"time_above_s", contact.time_above_s},
-          {"settling_s", summary.settling_s},
-          {"rest_force_N", contact.rest_force_N},
-          {"swing_N", contact.swing_N},
-          {"swing_hz", contact.swing_hz},
-          {"stiffness_N_per_m", contact.stiffness_N_per_m},
-          {"tcp_error_max_m", contact.tcp_error_max_m},
-          {"null_space_share", contact.null_share},
-          {"time_constant_s", gains.time_constant_s},
-          {"damping", gains.damping},
-          {"activation_force_N", gains.activation_force_N},
-          {"contact_threshold_N", gains.contact_threshold_N}};
-}
-
 Json contactsJson(const LoggedContacts& logged) {
   Json json = Json::array();
   for (const ContactFigures& contact : logged.contacts)
-    json.push_back(contactJson(logged.scene, contact));
+    json.push_back(contactJson(contact, linkOf(logged.scene, contact.summary.module)));
   return json;
 }
 
 void printContacts(const Scene& scene, const std::vector<ContactFigures>& contacts, bool as_json) {
   for (const ContactFigures& contact : contacts) {
     const std::string line =
-        as_json ? contactJson(scene, contact).dump() + "\n" : contactText(scene, contact);
+        as_json ? contactJson(contact, linkOf(scene, contact.summary.module)).dump() + "\n"
+                : contactText(scene, contact);
     std::fputs(line.c_str(), stdout);
   }
   if (!contacts.empty()) std::fflush(stdout);

@@ -1,4 +1,4 @@
-#include "tactus/cli/running_log.h"
+#include "tactus/daemon/running_log.h"
 
 #include <fmt/format.h>
 
