@@ -33,5 +33,6 @@ void addStreamCommand(CLI::App& app, int& exit_code);
 void addMoveCommand(CLI::App& app, int& exit_code);
 void addFollowCommand(CLI::App& app, int& exit_code);
 void addHoldCommand(CLI::App& app, int& exit_code);
+void addPanelCommand(CLI::App& app, int& exit_code);
 
 }  // namespace tactus
