@@ -133,11 +133,6 @@ std::pair<std::string, std::uint64_t> DaemonWatch::all() const {
   return {panel_.all().dump(-1, ' ', false, Json::error_handler_t::replace), feed_.number()};
 }
 
-Json DaemonWatch::shown() const {
-  const std::lock_guard lock(mutex_);
-  return isSaid() ? said_.shown : Json();
-}
-
 std::optional<RunStart> DaemonWatch::start() const {
   const std::lock_guard lock(mutex_);
   return log_ ? log_->start() : std::nullopt;

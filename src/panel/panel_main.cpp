@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -48,7 +49,10 @@ void serve(const PanelPlace& place) {
   PanelRequests requests(watch);
   PanelServer server(place, token, feed, watch, requests);
   printAddress(place, server.port(), token);
-  std::jthread serving([&server] { server.serve(); });
+  const std::jthread serving([&server] {
+    server.serve();
+    ::kill(::getpid(), SIGTERM);  // nobody listens any more
+  });
   int signal = 0;
   sigwait(&signals, &signal);
   server.stop();

@@ -72,8 +72,7 @@ Json PanelRequests::keys() {
 
 PanelAnswer PanelRequests::check(const std::string& body) {
   return answerTo(body, [this](const Json& request) {
-    const Json shown = watch_.shown();
-    if (shown.is_null()) throw RunError("no daemon answers");
+    const Json shown = ControlClient(controlPath()).ask({{"do", "show"}});
     const std::lock_guard lock(mutex_);
     return check_.check(watch_.start(), shown, request.value("values", Json::object()));
   });

@@ -5,9 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <utility>
 
 #include "tactus/panel/panel_page.h"
@@ -66,8 +68,8 @@ void give(const PanelAnswer& answer, httplib::Response& response) {
   response.set_content(textOf(answer.json), kJsonType);
 }
 
-void refuse(int status, const std::string& reason, httplib::Response& response) {
-  give({status, {{"done", false}, {"error", reason}}}, response);
+void refuse(const HttpRefusal& refusal, httplib::Response& response) {
+  give({refusal.status, {{"done", false}, {"error", refusal.reason}}}, response);
 }
 
 /// Not SO_REUSEPORT, by which two panels would share a port.
@@ -98,13 +100,14 @@ struct PanelServer::Server {
   EventFeed& feed;
   const DaemonWatch& watch;
   PanelRequests& requests;
+  const std::vector<PageFile> files = pageFiles();
   std::atomic<int> streams{0};
+  std::atomic<bool> has_served{false};
   int port = 0;
 
   void limit();
   void guard();
-  void addPage();
-  void addRequests();
+  void answer(const httplib::Request& request, httplib::Response& response);
   void bind(const PanelPlace& place);
   void stream(httplib::Response& response);
   bool sendNew(std::uint64_t& number, httplib::DataSink& sink);
@@ -125,51 +128,45 @@ void PanelServer::Server::limit() {
 }
 
 void PanelServer::Server::guard() {
-  http.set_pre_routing_handler(
-      [this](const httplib::Request& request, httplib::Response& response) {
-        const std::optional<HttpRefusal> refusal = refusalOf(headOf(request), token);
-        if (!refusal) return httplib::Server::HandlerResponse::Unhandled;
-        refuse(refusal->status, refusal->reason, response);
-        return httplib::Server::HandlerResponse::Handled;
-      });
+  http.set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
+    const std::optional<HttpRefusal> refusal = bodyRefusal(headOf(request));
+    if (!refusal) return httplib::Server::HandlerResponse::Unhandled;
+    refuse(*refusal, response);
+    return httplib::Server::HandlerResponse::Handled;
+  });
+  const auto answer = [this](const httplib::Request& request, httplib::Response& response) {
+    this->answer(request, response);
+  };
+  http.Get(".*", answer);
+  http.Post(".*", answer);
   http.set_exception_handler(
       [](const httplib::Request&, httplib::Response& response, const std::exception_ptr&) {
-        refuse(500, "the panel failed", response);
+        refuse({500, "the panel failed"}, response);
       });
   http.set_error_handler([](const httplib::Request&, httplib::Response& response) {
     if (response.body.empty())
-      refuse(response.status, fmt::format("status {}", response.status), response);
+      refuse({response.status, fmt::format("status {}", response.status)}, response);
   });
 }
 
-void PanelServer::Server::addPage() {
-  for (const PageFile& file : pageFiles()) {
-    const std::string pattern = std::regex_replace(file.path, std::regex("\\."), "\\.");
-    http.Get(pattern, [file](const httplib::Request&, httplib::Response& response) {
-      response.set_content(file.text, file.type);
-    });
-  }
-}
-
-void PanelServer::Server::addRequests() {
-  http.Get("/api/keys", [](const httplib::Request&, httplib::Response& response) {
-    give({200, PanelRequests::keys()}, response);
-  });
-  http.Get("/api/events",
-           [this](const httplib::Request&, httplib::Response& response) { stream(response); });
-  http.Post("/api/check", [this](const httplib::Request& request, httplib::Response& response) {
-    give(requests.check(request.body), response);
-  });
-  http.Post(kWritePath, [](const httplib::Request& request, httplib::Response& response) {
-    give(PanelRequests::act(request.body), response);
-  });
+void PanelServer::Server::answer(const httplib::Request& request, httplib::Response& response) {
+  if (const auto refusal = senderRefusal(headOf(request), token)) return refuse(*refusal, response);
+  const bool is_post = request.method == "POST";
+  if (is_post && request.path == kWritePath)
+    return give(PanelRequests::act(request.body), response);
+  if (is_post && request.path == "/api/check") return give(requests.check(request.body), response);
+  if (!is_post && request.path == "/api/keys") return give({200, PanelRequests::keys()}, response);
+  if (!is_post && request.path == "/api/events") return stream(response);
+  const auto file = std::ranges::find(files, request.path, &PageFile::path);
+  if (is_post || file == files.end()) return refuse({404, "there is no such page"}, response);
+  response.set_content(file->text, file->type);
 }
 
 /// Server-sent events: at first all that there is, then what is new.
 void PanelServer::Server::stream(httplib::Response& response) {
   if (streams.fetch_add(1) >= kMaxStreams) {
     --streams;
-    return refuse(503, fmt::format("{} pages are open already", kMaxStreams), response);
+    return refuse({503, fmt::format("{} pages are open already", kMaxStreams)}, response);
   }
   auto number = std::make_shared<std::optional<std::uint64_t>>();
   response.set_chunked_content_provider(
@@ -222,8 +219,6 @@ PanelServer::PanelServer(const PanelPlace& place, std::string token, EventFeed& 
     : server_(new Server{{}, std::move(token), "", feed, watch, requests}) {
   server_->limit();
   server_->guard();
-  server_->addPage();
-  server_->addRequests();
   server_->bind(place);
 }
 
@@ -233,10 +228,16 @@ PanelServer::~PanelServer() {
 
 int PanelServer::port() const noexcept { return server_->port; }
 
-void PanelServer::serve() { server_->http.listen_after_bind(); }
+void PanelServer::serve() {
+  server_->http.listen_after_bind();
+  server_->has_served = true;
+}
 
 void PanelServer::stop() {
   server_->feed.end();
+  // The library forgets a stop of before it listens.
+  while (!server_->http.is_running() && !server_->has_served)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   server_->http.stop();
 }
 

@@ -40,8 +40,12 @@ std::optional<HttpRefusal> strangerRefusal(const RequestHead& head) {
   return std::nullopt;
 }
 
+}  // namespace
+
 /// The library reads what is encoded without a limit, and what has a length up to it.
 std::optional<HttpRefusal> bodyRefusal(const RequestHead& head) {
+  if (head.method != "GET" && head.method != "HEAD" && head.method != "POST")
+    return HttpRefusal{405, "expected GET or POST"};
   if (head.is_encoded) return HttpRefusal{415, "a body is to be sent as it is, with its length"};
   std::size_t length = 0;
   for (const std::string& text : head.lengths) {
@@ -58,13 +62,8 @@ std::optional<HttpRefusal> bodyRefusal(const RequestHead& head) {
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<HttpRefusal> refusalOf(const RequestHead& head, std::string_view token) {
-  if (head.method != "GET" && head.method != "HEAD" && head.method != "POST")
-    return HttpRefusal{405, "expected GET or POST"};
+std::optional<HttpRefusal> senderRefusal(const RequestHead& head, std::string_view token) {
   if (auto refusal = strangerRefusal(head)) return refusal;
-  if (auto refusal = bodyRefusal(head)) return refusal;
   const bool has_token = head.tokens.size() == 1 && isSameToken(head.tokens.front(), token);
   if (head.path == kWritePath && !has_token)
     return HttpRefusal{401, "changes need the token of the address that tactus panel prints"};

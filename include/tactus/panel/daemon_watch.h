@@ -22,8 +22,6 @@ class DaemonWatch {
 
   /// All that there is, and the number of the newest event in it.
   std::pair<std::string, std::uint64_t> all() const;
-  /// What the daemon answered last to "show"; null: it does not.
-  Json shown() const;
   /// Of the log that is followed.
   std::optional<RunStart> start() const;
 

@@ -24,7 +24,7 @@ class PanelServer {
   ~PanelServer();
 
   int port() const noexcept;  ///< 0 of an AF_UNIX socket
-  /// Until stop(), which another thread calls.
+  /// Until stop(), which another thread calls, or until the socket fails.
   void serve();
   void stop();
 

@@ -28,8 +28,11 @@ struct HttpRefusal {
   std::string reason;
 };
 
-/// Nothing: it may be answered. token: what a write has to bring along.
-std::optional<HttpRefusal> refusalOf(const RequestHead& head, std::string_view token);
+/// Of a request that is not even read to its end; nothing: it may be.
+std::optional<HttpRefusal> bodyRefusal(const RequestHead& head);
+
+/// Of who sends it; nothing: it may be answered. token: what a write has to bring along.
+std::optional<HttpRefusal> senderRefusal(const RequestHead& head, std::string_view token);
 
 /// A name of this machine to itself, with or without a port: a name that somebody else's server
 /// has led here (DNS rebinding) is none.

@@ -141,29 +141,28 @@ function colours() {
   return { line: of("--line"), faint: of("--faint"), warn: of("--warn"), series };
 }
 
-/** Two points a bin, so that the smallest and the largest force are both drawn. */
-function points(force, module) {
+/** Smallest and largest force of a bin, in the order in which they most likely came. */
+function extremes(low, high, i) {
+  const falls = i > 0 && low[i] + high[i] < low[i - 1] + high[i - 1];
+  return falls ? [high[i], low[i]] : [low[i], high[i]];
+}
+
+/** Two rows a bin, [t, N of each module, ...], so that the smallest and the largest force are both drawn. */
+function rowsOf(force) {
   const made = [];
   force.t.forEach((t, i) => {
-    const [low, high] = [force.low[module][i], force.high[module][i]];
-    const next = i + 1 < force.t.length ? force.t[i + 1] : t + 0.01;
-    made.push([t, low]);
-    if (high !== null && high - low > 0.01) made.push([t + (next - t) / 2, high]);
+    const half = ((i + 1 < force.t.length ? force.t[i + 1] : t + 0.01) - t) / 2;
+    const both = force.low.map((low, module) => extremes(low, force.high[module], i));
+    made.push([t, ...both.map((pair) => pair[0])], [t + half, ...both.map((pair) => pair[1])]);
   });
   return made;
 }
 
 function takeForce(force) {
-  const modules = force.low.length;
-  force.t.forEach((t, i) => {
-    const next = i + 1 < force.t.length ? force.t[i + 1] : t + 0.01;
-    rows.push([t, ...force.low.map((low) => low[i])]);
-    rows.push([t + (next - t) / 2, ...force.high.map((high) => high[i])]);
-  });
-  if (modules && force.t.length) forces = force.high.map((high) => high[high.length - 1]);
+  if (force.low.length && force.t.length) forces = force.high.map((high) => high[high.length - 1]);
+  rows = rows.concat(rowsOf(force));
   const last = rows.length ? rows[rows.length - 1][0] : 0;
-  const first = rows.findIndex((row) => row[0] >= last - SHOWN_S);
-  if (first > 0) rows = rows.slice(first);
+  rows = rows.filter((row) => row[0] >= last - SHOWN_S);
 }
 
 /** F_th and F_act + F_th, at which contacts begin and rest. */
@@ -262,7 +261,7 @@ function drawOverlay(traced) {
   const series = colours().series;
   const data = [];
   traced.forEach((contact, i) => {
-    for (const [t, force] of points(contact.trace, 0)) {
+    for (const [t, force] of rowsOf(contact.trace)) {
       const row = [t, ...traced.map(() => null)];
       row[i + 1] = force;
       data.push(row);
@@ -488,7 +487,7 @@ function taskText(task) {
   const words = { given_up: "has given up, was blocked", late: "the stream was late" };
   let text = `${words[task.state] || task.state}, at ${where} m`;
   if (task.waiting) text += `, ${task.waiting} waypoints left`;
-  if (task.contact) text += `; held by ${task.contact.force_N.toFixed(2)} N on ${task.contact.module}`;
+  if (task.contact) text += `; contact of ${task.contact.force_N.toFixed(2)} N on ${task.contact.module}`;
   return text;
 }
 
