@@ -105,13 +105,18 @@ bool DaemonWatch::isSaid() const {
   return !said_.shown.is_null() && monotonicTime_s() - said_.at_s <= kMaxAge_s;
 }
 
+/// Why there is no status; empty: there is one.
+std::string DaemonWatch::problem(const Json& status, double age_s) const {
+  if (age_s <= kMaxAge_s) return "";
+  if (isSaid()) return "the daemon writes no status";
+  const bool is_of_before = status.is_null() || age_s == kNoLimit;
+  return is_of_before ? "no daemon is running" : "no word from the daemon";
+}
+
 Json DaemonWatch::state(const Json& status, double age_s, const LogNews& news) const {
   const bool is_fresh = age_s <= kMaxAge_s;
-  Json state = {{"run", run_}, {"is_there", is_fresh || isSaid()}, {"problem", ""}};
-  if (!is_fresh)
-    state["problem"] = status.is_null() || age_s == kNoLimit
-                           ? std::string("no daemon is running")
-                           : fmt::format("no word from the daemon for {:.0f} s", age_s);
+  Json state = {
+      {"run", run_}, {"is_there", is_fresh || isSaid()}, {"problem", problem(status, age_s)}};
   if (is_fresh) state["status"] = shortStatus(status);
   state["control_problem"] = isSaid() ? std::string() : said_.problem;
   if (isSaid()) {

@@ -201,7 +201,7 @@ class Stories(unittest.TestCase):
     def test_07_says_that_the_daemon_is_gone_and_goes_on_when_it_is_back(self):
         for is_killed in (False, True):
             self.rig.stop_daemon(is_killed)
-            wait_for("a word", lambda: "No daemon: " in self.page.text("banner"))
+            wait_for("a word", lambda: "goes on when there is one again" in self.page.text("banner"))
             self.assertEqual(self.page.text("mode"), "no daemon")
             self.assertFalse(self.page.at("undo").is_enabled())
             self.rig.start_daemon(POST, pace=3)

@@ -38,6 +38,7 @@ class DaemonWatch {
   void look();
   void followLog(const Json& status);
   Json state(const Json& status, double age_s, const LogNews& news) const;
+  std::string problem(const Json& status, double age_s) const;
   bool isSaid() const;
 
   EventFeed& feed_;

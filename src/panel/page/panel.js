@@ -39,6 +39,8 @@ function numberText(value, digits = 4) {
 
 const fixed = (value, digits) => (typeof value === "number" ? value.toFixed(digits) : "-");
 
+const sentence = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
+
 /** Errors name the place of a setting that nobody has written here. */
 const withoutPlace = (error) => error.replace(/^--set \S+?:\d+:\d+: /, "");
 
@@ -97,8 +99,8 @@ function showBanner() {
   const isDeaf = !source || source.readyState !== EventSource.OPEN;
   const isGone = state && !state.is_there;
   if (isDeaf) parts.push("The panel does not answer; this page tries again.");
-  else if (isGone) parts.push(`No daemon: ${state.problem}. This page goes on when it is back.`);
-  else if (state && state.problem) parts.push(`No status: ${state.problem}.`);
+  else if (state && state.problem) parts.push(sentence(state.problem));
+  if (isGone && !isDeaf) parts.push("This page goes on when there is one again.");
   if (!isDeaf && !isGone && state && state.control_problem)
     parts.push(`No gains and no task: ${state.control_problem}.`);
   if (!token) parts.push("Read only: changes need the whole address that tactus panel has printed.");
@@ -129,7 +131,7 @@ function showState() {
   showTask();
   const note = state.is_reading ? "Reading the log of the run so far ..." : state.log_problem;
   at("log-note").hidden = !note;
-  show("log-note", note || "", "note");
+  show("log-note", note ? sentence(note.replace(/[. ]*$/, "")) : "", "note");
 }
 
 // Plots.
@@ -197,6 +199,7 @@ function makePlot(id) {
     highlightCircleSize: 0,
     legend: "never",
     connectSeparatedPoints: true,
+    strokeWidth: 1.5,
     includeZero: true,
     axisLabelFontSize: 12,
     xRangePad: 0,
@@ -272,7 +275,6 @@ function drawOverlay(traced) {
     file: data.length ? data : [[0, null]],
     labels: ["t", ...(data.length ? traced.map((_, i) => `contact ${i + 1}`) : ["-"])],
     colors: traced.length ? traced.map((_, i) => series[i % series.length]) : [series[0]],
-    strokeWidth: 1.5,
     dateWindow: [-0.2, Math.max(1, ...data.map((row) => row[0]))],
     valueRange: forceRange(data),
   });
@@ -391,7 +393,10 @@ function showGains() {
     part.disabled = !gains || !token;
   });
   allowSet();
-  if (!gains) return show("gain-state", "", "note");
+  if (!gains) {
+    check.ordered = "";  // judged anew once there are some
+    return show("gain-state", "", "note");
+  }
   show("gain-state", gainStateText(gains), gains.trouble ? "bad" : "note");
   at("gain-state").dataset.state = gains.state;
   for (const row of document.querySelectorAll("#gains tr[data-key]")) {
