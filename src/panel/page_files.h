@@ -1,11 +1,15 @@
 #pragma once
 
+#include <span>
+
+namespace tactus {
+
+struct EmbeddedFile {
+  const char* name;
+  const char* text;
+};
+
 /// The files of src/panel/page, put into the program by the build.
-namespace tactus::page {
+std::span<const EmbeddedFile> embeddedFiles() noexcept;
 
-extern const char* const kIndex;
-extern const char* const kStyle;
-extern const char* const kScript;
-extern const char* const kIcon;
-
-}  // namespace tactus::page
+}  // namespace tactus

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <exception>
 #include <string>
 #include <thread>
 
@@ -13,7 +14,6 @@
 #include "tactus/panel/panel_server.h"
 #include "tactus/panel/request_guard.h"
 #include "tactus/scene/exit_code.h"
-#include "tactus/scene/input_error.h"
 #include "tactus/scene/located_error.h"
 
 namespace tactus {
@@ -58,12 +58,9 @@ void serve(const PanelPlace& place) {
   server.stop();
 }
 
-}  // namespace
-}  // namespace tactus
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"A page in the browser for who works at the running arm", "tactus panel"};
-  tactus::PanelPlace place{tactus::kUsualPort, ""};
+  PanelPlace place{kUsualPort, ""};
   CLI::Option* const port =
       app.add_option("--port", place.port, "Of 127.0.0.1; 0: any that is free")
           ->check(CLI::Range(0, 65535))
@@ -72,15 +69,21 @@ int main(int argc, char** argv) {
       ->excludes(port);
   try {
     app.parse(argc, argv);
-    tactus::serve(place);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? tactus::kExitDone : tactus::kExitUsage;
-  } catch (const tactus::InputError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return tactus::kExitBadInput;
+    return app.exit(error) == 0 ? kExitDone : kExitUsage;
+  }
+  serve(place);
+  return kExitDone;
+}
+
+}  // namespace
+}  // namespace tactus
+
+int main(int argc, char** argv) {
+  try {
+    return tactus::run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return tactus::kExitFault;
   }
-  return tactus::kExitDone;
 }

@@ -1,9 +1,8 @@
 #include "tactus/panel/panel_page.h"
 
-#include <fmt/format.h>
-
 #include <fstream>
 #include <iterator>
+#include <string_view>
 
 #include "page_files.h"
 #include "tactus/record/run_error.h"
@@ -11,28 +10,34 @@
 namespace tactus {
 namespace {
 
-constexpr const char* kHtml = "text/html; charset=utf-8";
-constexpr const char* kCss = "text/css; charset=utf-8";
-constexpr const char* kJavaScript = "text/javascript; charset=utf-8";
+/// A page has no others.
+const char* typeOf(std::string_view name) noexcept {
+  if (name.ends_with(".html")) return "text/html; charset=utf-8";
+  if (name.ends_with(".css")) return "text/css; charset=utf-8";
+  if (name.ends_with(".js")) return "text/javascript; charset=utf-8";
+  return "image/svg+xml";
+}
 
-PageFile ofDygraphs(const std::string& name, const char* type) {
+std::string readDygraphs(const std::string& name) {
   const std::string path = std::string(TACTUS_DYGRAPHS) + "/" + name;
   std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::string text{std::istreambuf_iterator<char>(file), {}};
   if (text.empty())
     throw RunError(path + ": cannot be read, expected the package libjs-dygraphs to be installed");
-  return {"/" + name, type, text};
+  return text;
 }
 
 }  // namespace
 
 std::vector<PageFile> pageFiles() {
-  return {{"/", kHtml, page::kIndex},
-          {"/panel.css", kCss, page::kStyle},
-          {"/panel.js", kJavaScript, page::kScript},
-          {"/icon.svg", "image/svg+xml", page::kIcon},
-          ofDygraphs("dygraph.min.js", kJavaScript),
-          ofDygraphs("dygraph.min.css", kCss)};
+  std::vector<PageFile> files;
+  for (const auto& [name, text] : embeddedFiles()) {
+    const std::string path = std::string_view(name) == "index.html" ? "" : name;
+    files.push_back({"/" + path, typeOf(name), text});
+  }
+  for (const char* name : {"dygraph.min.js", "dygraph.min.css"})
+    files.push_back({std::string("/") + name, typeOf(name), readDygraphs(name)});
+  return files;
 }
 
 }  // namespace tactus

@@ -7,19 +7,16 @@ SCREENSHOTS in the environment: a folder for pictures of the page.
 """
 import os
 import pathlib
-import re
 import sys
 import unittest
 
-from selenium import webdriver
-from selenium.webdriver.chrome.options import Options
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 
+from panel_browser import Page  # noqa: E402
 from panel_rig import POST, Rig, wait_for  # noqa: E402
 
 DAEMON = pathlib.Path(sys.argv.pop(2)).resolve()
@@ -32,70 +29,6 @@ new MutationObserver(() => seen.push(at.textContent)).observe(at, {childList: tr
 window.seen = seen;"""
 
 
-def make_browser():
-    options = Options()
-    options.binary_location = "/usr/bin/chromium"
-    for option in ("headless=new", "no-sandbox", "disable-gpu", "disable-dev-shm-usage", "window-size=1200,900"):
-        options.add_argument(f"--{option}")
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-
-
-class Page:
-    """What a user sees and does."""
-
-    def __init__(self, address):
-        self.browser = make_browser()
-        self.address = address
-
-    def open(self):
-        self.browser.get("about:blank")  # another fragment alone would load nothing
-        self.browser.get(self.address)
-        wait_for("a page that is alive", lambda: self.text("mode") == "running" and self.rows())
-        return self
-
-    def at(self, name):
-        return self.browser.find_element(By.ID, name)
-
-    def text(self, name):
-        return self.at(name).text
-
-    def rows(self):
-        return self.browser.find_elements(By.CSS_SELECTOR, "#gains tr[data-key]")
-
-    def input(self, key):
-        return self.at(f"gain-{key}")
-
-    def runs(self, key):
-        return self.browser.find_element(By.CSS_SELECTOR, f'[data-key="{key}"] td:nth-child(2)').text
-
-    def gain_state(self):
-        return self.at("gain-state").get_attribute("data-state")
-
-    def may_set(self):
-        return self.at("set").is_enabled()
-
-    def type(self, key, text):
-        field = self.input(key)
-        field.clear()
-        field.send_keys(text)
-
-    def set(self, key, text):
-        self.type(key, text)
-        wait_for("the margin", self.may_set)
-        self.at("set").click()
-
-    def contacts(self):
-        return self.browser.execute_script(
-            "return [...document.querySelectorAll('#contacts tbody tr')].map("
-            "(row) => [...row.cells].map((cell) => cell.textContent))")
-
-    def problems(self):
-        """Errors of the console, as of a script or of the page's policy."""
-        return [entry["message"] for entry in self.browser.get_log("browser")
-                if not re.search("/api/(events|do) - Failed to load", entry["message"])]
-
-
 class Stories(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -105,10 +38,11 @@ class Stories(unittest.TestCase):
         cls.rig.start_panel()
         cls.page = Page(cls.rig.address)
         cls.addClassCleanup(cls.page.browser.quit)
+        cls.page.open()
         cls.start_m = cls.rig.task()["p_BaseTool_m"]
 
     def setUp(self):
-        self.page.open()
+        self.page.reload()
 
     def tearDown(self):
         self.assertEqual(self.page.problems(), [])
@@ -284,7 +218,9 @@ class Stories(unittest.TestCase):
 
     def assert_fits(self, width):
         """Nothing is wider than the screen, and no control is cut off or covered by another one."""
-        self.assertLessEqual(self.page.browser.execute_script("return document.documentElement.scrollWidth"), width)
+        def widest():
+            return self.page.browser.execute_script("return document.documentElement.scrollWidth")
+        wait_for("plots of the new width", lambda: widest() <= width)
         hidden = self.page.browser.execute_script("""
             return [...document.querySelectorAll("button, input, section")].filter((part) => {
               const box = part.getBoundingClientRect();
@@ -297,7 +233,7 @@ class Stories(unittest.TestCase):
         self.page.browser.execute_script("sessionStorage.clear()")
         self.page.browser.get("about:blank")
         self.page.browser.get(self.rig.address.partition("#")[0])
-        wait_for("a page that is alive", lambda: self.page.text("mode") == "running" and self.page.rows())
+        self.page.await_life()
         self.assertIn("Read only", self.page.text("banner"))
         for name in ("set", "undo", "save", "hold", "move"):
             self.assertFalse(self.page.at(name).is_enabled(), name)
