@@ -11,7 +11,8 @@
 
 #include "tactus/cli/commands.h"
 #include "tactus/cli/logged_scene.h"
-#include "tactus/cli/running_log.h"
+#include "tactus/daemon/running_log.h"
+#include "tactus/record/contact_figures.h"
 #include "tactus/record/contact_json.h"
 #include "tactus/record/contact_watch.h"
 #include "tactus/record/growing_file.h"

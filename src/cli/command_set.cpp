@@ -11,14 +11,9 @@
 #include "tactus/cli/commands.h"
 #include "tactus/daemon/control_client.h"
 #include "tactus/daemon/control_socket.h"
-#include "tactus/record/output_file.h"
-#include "tactus/record/run_error.h"
+#include "tactus/daemon/gain_save.h"
 #include "tactus/scene/command_scene.h"
-#include "tactus/scene/gain_keys.h"
 #include "tactus/scene/located_error.h"
-#include "tactus/scene/source_hash.h"
-#include "tactus/scene/source_reader.h"
-#include "tactus/scene/yaml_edit.h"
 
 /// The gains of the running daemon: set, reload, undo, diff, save.
 namespace tactus {
@@ -76,23 +71,10 @@ Json setRequest(const ChangeOptions& options) {
   return request;
 }
 
-/// The gains of a scene file that are not those that run: each key with `file` and `running`, null
-/// without a limit.
-Json differences(const std::string& path, const Json& running) {
-  const Gains in_file = loadScene(path, {}).controller.gains;
-  Json differing = Json::object();
-  for (const GainKey& key : gainKeys()) {
-    const Json file = gainAt(in_file, key.offset);
-    const Json& now = running.at(key.path);
-    if (file.dump() != now.dump()) differing[key.path] = {{"file", file}, {"running", now}};
-  }
-  return differing;
-}
-
 int diff(const ChangeOptions& options) {
   const Json answer = ControlClient(controlPath()).ask({{"do", "show"}});
   const auto path = answer.at("scene").get<std::string>();
-  const Json differing = differences(path, answer.at("ordered"));
+  const Json differing = gainDifferences(path, answer.at("ordered"));
   if (options.json) {
     std::fputs(jsonText(differing).c_str(), stdout);
     return kExitDone;
@@ -104,47 +86,14 @@ int diff(const ChangeOptions& options) {
   return kExitDone;
 }
 
-/// The scene file with the gains that run, all else of it as it is.
-std::string withGains(const std::string& path, std::string text, const Json& running) {
-  const Json differing = differences(path, running);
-  for (const auto& [key, values] : differing.items()) {
-    const Json& value = values.at("running");
-    text = withValue({path, text}, key, value.is_null() ? "~" : value.dump());
-  }
-  return text;
-}
-
-/// Whatever was changed: what is written has to be read as what runs.
-void checkGains(const std::string& path, const Json& running) {
-  const Json differing = differences(path, running);
-  if (!differing.empty())
-    throw RunError(
-        fmt::format("{}: {} could not be written", escaped(path), differing.items().begin().key()));
-}
-
 int save(bool as_json) {
-  const ControlClient daemon(controlPath());
-  const Json answer = daemon.ask({{"do", "show"}});
-  const std::string path = answer.at("scene");
-  const std::string text = readFromDisk(path);
-  if (fmt::format("{:016x}", sourceHash(text)) != answer.at("scene_hash"))
-    throw InputError(
-        fmt::format("{}: was changed since the daemon read it, expected no change; "
-                    "`tactus diff` shows what differs, `tactus reload` takes it",
-                    escaped(path)));
-  const std::string changed = withGains(path, text, answer.at("ordered"));
-  const bool is_new = changed != text;
-  if (is_new) {
-    replaceFile(path, changed,
-                [&](const std::string& next) { checkGains(next, answer.at("ordered")); });
-    daemon.ask({{"do", "reload"}});  // it has read what is there now
-  }
+  const SavedGains saved = saveGains(ControlClient(controlPath()));
   if (as_json)
-    std::fputs(jsonText({{"scene", path}, {"written", is_new}}).c_str(), stdout);
-  else if (is_new)
-    fmt::print("{} written, as it was is {}~\n", escaped(path), escaped(path));
+    std::fputs(jsonText({{"scene", saved.path}, {"written", saved.is_new}}).c_str(), stdout);
+  else if (saved.is_new)
+    fmt::print("{} written, as it was is {}~\n", escaped(saved.path), escaped(saved.path));
   else
-    fmt::print("{} has all that runs\n", escaped(path));
+    fmt::print("{} has all that runs\n", escaped(saved.path));
   return kExitDone;
 }
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
-#include "tactus/cli/running_log.h"
+#include "tactus/daemon/running_log.h"
 #include "tactus/io/datagram_socket.h"
 #include "tactus/record/growing_file.h"
 #include "tactus/record/run_error.h"

@@ -82,6 +82,7 @@ int tactusProgram(int argc, char** argv) {
   addMoveCommand(app, exit_code);
   addFollowCommand(app, exit_code);
   addHoldCommand(app, exit_code);
+  addPanelCommand(app, exit_code);
   try {
     if (argc > 1) refuseUnknownCommand(app, argv[1]);
     app.parse(argc, argv);

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "tactus/cli/logged_scene.h"
-#include "tactus/cli/running_log.h"
+#include "tactus/daemon/running_log.h"
 #include "tactus/cli/scope_page.h"
 #include "tactus/cli/scope_text.h"
 #include "tactus/record/growing_file.h"

@@ -20,7 +20,8 @@ constexpr const char* kSignOfTheEnd = "summary.json";
 
 }  // namespace
 
-GrowingFile::GrowingFile(std::string path) : path_(std::move(path)) {
+GrowingFile::GrowingFile(std::string path, std::stop_token stop)
+    : path_(std::move(path)), stop_(std::move(stop)) {
   openLog(path_);  // says what is wrong with it
   fd_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
 }
@@ -45,7 +46,7 @@ bool GrowingFile::isOver() const {
 
 GrowingFile::int_type GrowingFile::underflow() {
   if (gptr() < egptr()) return traits_type::to_int_type(*gptr());
-  while (true) {
+  while (!stop_.stop_requested()) {
     // What was written before the end is there once the end is seen.
     const bool is_other = isOther(), is_over = isOver();
     const long size = fill();
@@ -60,6 +61,7 @@ GrowingFile::int_type GrowingFile::underflow() {
     }
     std::this_thread::sleep_for(kPause);
   }
+  return traits_type::eof();
 }
 
 }  // namespace tactus

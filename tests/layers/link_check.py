@@ -3,11 +3,12 @@
 
 - A pure layer calls nothing but memory, mathematics, exceptions and other pure layers. So no system
   call, clock, file or thread can be reached from it, also not through a header that allows it.
-- tactusd holds nothing that the commands, commissioning, the plant or the benchmarks define, and
-  finds no hosts: it has no network.
+- tactusd holds nothing that the commands, commissioning, the plant, the panel or the benchmarks define,
+  and finds no hosts: it has no network.
+- No layer but the panel uses the HTTP library.
 
 usage: link_check.py TACTUSD ARCHIVE...     ARCHIVE: libtactus_<layer>.a of all pure layers, of cli and
-                                            plant, and of bench where it is built"""
+                                            plant, and of panel and bench where they are built"""
 
 import pathlib
 import re
@@ -18,7 +19,7 @@ sys.dont_write_bytecode = True
 
 from include_check import PURE_LAYERS  # noqa: E402
 
-NOT_IN_DAEMON = ("cli", "commission", "plant", "bench")
+NOT_IN_DAEMON = ("cli", "commission", "plant", "panel", "bench")
 REQUIRED = PURE_LAYERS | {"cli", "plant"}
 
 # What a pure layer may take from outside, as nm -C prints it.
@@ -85,12 +86,19 @@ def networks(daemon):
             if re.match("getaddrinfo|gethost|inet_", name)]
 
 
+def listeners(archives):
+    return [f"{layer_of(path)} must not use {name}, only panel does" for path in archives
+            if layer_of(path) != "panel"
+            for name in sorted({name for _, name in symbols(path) if "httplib::" in name})]
+
+
 def main():
     daemon, *archives = map(pathlib.Path, sys.argv[1:])
     layers = [layer_of(path) for path in archives]
     found = [f"no archive of {layer}" for layer in sorted(REQUIRED - set(layers))]
     found += [f"{path} defines nothing" for path in archives if not defined(path)]
-    found += impurities(archives) + strangers(daemon, archives) + networks(daemon)
+    found += impurities(archives) + strangers(daemon, archives)
+    found += networks(daemon) + listeners(archives)
     print("\n".join(found) or f"{len(archives)} layers: the pure ones are pure, and tactusd holds "
                               f"nothing of {', '.join(x for x in NOT_IN_DAEMON if x in layers)}")
     return 1 if found else 0

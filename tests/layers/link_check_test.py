@@ -114,6 +114,12 @@ class LinkCheck(unittest.TestCase):
         self.compile("int main() {}", "-s", "-o", self.folder / "d")
         self.assertIn("stripped", link_check.strangers(self.folder / "d", [])[0])
 
+    def test_finds_the_http_library_outside_of_the_panel(self):
+        text = "namespace httplib { void listen(); } void f() { httplib::listen(); }"
+        found = link_check.listeners([self.archive("cli", text)])
+        self.assertEqual(found, ["cli must not use httplib::listen(), only panel does"])
+        self.assertEqual(link_check.listeners([self.archive("panel", text)]), [])
+
     def test_finds_a_network(self):
         self.assertIn("getaddrinfo", link_check.networks(pathlib.Path(TACTUS))[0])
 

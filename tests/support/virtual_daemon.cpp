@@ -1,49 +1,99 @@
 // The daemon's cycle, its control socket and the plant in one process, without CAN and real time:
 // for clients of the socket, and much faster. The socket is in RUNTIME_DIRECTORY.
 //
-// usage: virtual_daemon SCENE.yaml [KEY=VALUE...]
+// usage: virtual_daemon [--log FOLDER PACE] SCENE.yaml [KEY=VALUE...]
+//
+// With a folder, which exists, it writes log and status as the daemon does, at PACE times the speed
+// of the clock.
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <string>
 #include <thread>
 
 #include "support/virtual_robot_cell.h"
 #include "tactus/daemon/control_socket.h"
+#include "tactus/daemon/telemetry.h"
 #include "tactus/scene/command_scene.h"
 
 namespace {
 
+using namespace tactus;
+
 volatile std::sig_atomic_t is_over = 0;
+
+/// What HardwareLoop does with orders and reports.
+void exchange(ControlCycle& cycle, LoopLink& link) {
+  ToolOrder order;
+  while (link.tool_orders.pop(order)) cycle.order(order);
+  GainOrder gains;
+  if (link.gain_orders.take(gains)) cycle.order(gains);
+  cycle.prepare();
+  link.gain_reports.put(cycle.gainReport());
+  if (!cycle.toolReport()) return;
+  ToolSight sight;
+  cycle.fill(sight);
+  link.tool_sights.put(sight);
+}
+
+/// And with what is logged.
+void publish(const ControlCycle& cycle, ModeReport& reported, LoopLink& link) {
+  if (LoopRecord* const record = link.records.reserve()) {
+    record->is_in_motion = cycle.isRecorded();
+    if (record->is_in_motion) cycle.fill(record->cycle);
+    link.records.commit();
+  }
+  const ModeReport& report = cycle.report();
+  const bool is_new = report.mode != reported.mode || report.fault != reported.fault;
+  if (!is_new && link.pulse.cycles.fetch_add(1) > 0) return;
+  reported = report;
+  link.reports.push(report);
+}
+
+void keepPace(std::chrono::steady_clock::time_point start, std::int64_t t_ns, double pace) {
+  const std::chrono::nanoseconds passed(
+      static_cast<std::int64_t>(static_cast<double>(t_ns) / pace));
+  std::this_thread::sleep_until(start + passed);
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace tactus;
+  std::string folder;
+  double pace = 0.0;
+  if (argc > 3 && std::strcmp(argv[1], "--log") == 0) {
+    folder = argv[2];
+    pace = std::atof(argv[3]);
+    argc -= 3;
+    argv += 3;
+  }
   if (argc < 2) return 2;
   std::signal(SIGTERM, [](int) { is_over = 1; });
   const Scene scene = loadScene(argv[1], parseOverrides({argv + 2, argv + argc}));
   test::VirtualRobotCell cell(scene);
   LoopLink link;
+  std::optional<Telemetry> telemetry;
+  if (!folder.empty()) telemetry.emplace(scene, folder, link);
   const ControlSocket socket(scene, link);
+  ModeReport reported;
   bool is_said = false;
+  const auto start = std::chrono::steady_clock::now();
   for (long i = 0; !is_over; ++i) {
     cell.step();
-    ToolOrder order;
-    while (link.tool_orders.pop(order)) cell.cycle.order(order);
-    GainOrder gains;
-    if (link.gain_orders.take(gains)) cell.cycle.order(gains);
-    cell.cycle.prepare();
-    link.gain_reports.put(cell.cycle.gainReport());
-    if (cell.cycle.toolReport()) {
-      ToolSight sight;
-      cell.cycle.fill(sight);
-      link.tool_sights.put(sight);
-    }
+    if (telemetry) publish(cell.cycle, reported, link);
+    exchange(cell.cycle, link);
     if (!is_said && cell.cycle.report().mode == Mode::kRunning) {
       is_said = true;
       std::puts("running");
       std::fflush(stdout);
     }
-    if (i % 10 == 9) std::this_thread::sleep_for(std::chrono::microseconds(100));
+    if (telemetry && i % 20 == 19) telemetry->drain();
+    if (telemetry && i % 10 == 9) keepPace(start, cell.t_ns, pace);
+    if (!telemetry && i % 10 == 9) std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
+  if (telemetry) telemetry->finish({});
   return 0;
 }

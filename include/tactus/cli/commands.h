@@ -37,5 +37,6 @@ void addFollowCommand(CLI::App& app, int& exit_code);
 void addHoldCommand(CLI::App& app, int& exit_code);
 void addCalibrateCommand(CLI::App& app, int& exit_code);
 void addInitCommand(CLI::App& app, int& exit_code);
+void addPanelCommand(CLI::App& app, int& exit_code);
 
 }  // namespace tactus

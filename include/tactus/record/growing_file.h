@@ -1,17 +1,19 @@
 #pragma once
 
 #include <array>
+#include <stop_token>
 #include <streambuf>
 #include <string>
 
 namespace tactus {
 
 /// A log that somebody else writes: where others are at its end, this waits for more. It ends where
-/// the run has ended, told by the summary beside it, and where the log goes on in another file.
+/// the run has ended, told by the summary beside it, where the log goes on in another file, and at
+/// the end of what is there once nobody waits for more.
 class GrowingFile final : public std::streambuf {
  public:
   /// Throws InputError as openLog().
-  explicit GrowingFile(std::string path);
+  explicit GrowingFile(std::string path, std::stop_token stop = {});
   ~GrowingFile() override;
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
@@ -30,6 +32,7 @@ class GrowingFile final : public std::streambuf {
   bool isOver() const;
 
   std::string path_;
+  std::stop_token stop_;
   int fd_ = -1;
   bool is_live_ = false;
   bool goes_on_ = false;

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "tactus/scene/json.h"
+
+namespace tactus {
+
+/// status.json of the daemon that runs; null: there is none that can be read.
+Json readRunStatus();
+
+/// Path of the log that a status names; empty: none.
+std::string logOf(const Json& status);
+
+/// Path of the log that the daemon writes, by its status. Throws RunError: none runs, or it writes
+/// none.
+std::string runningLog();
+
+}  // namespace tactus

@@ -1,0 +1,67 @@
+#include "tactus/daemon/gain_save.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tactus/record/output_file.h"
+#include "tactus/record/run_error.h"
+#include "tactus/scene/gain_keys.h"
+#include "tactus/scene/located_error.h"
+#include "tactus/scene/scene_loader.h"
+#include "tactus/scene/source_hash.h"
+#include "tactus/scene/source_reader.h"
+#include "tactus/scene/yaml_edit.h"
+
+namespace tactus {
+namespace {
+
+/// The scene file with the gains that run, all else of it as it is.
+std::string withGains(const std::string& path, std::string text, const Json& running) {
+  const Json differing = gainDifferences(path, running);
+  for (const auto& [key, values] : differing.items()) {
+    const Json& value = values.at("running");
+    text = withValue({path, text}, key, value.is_null() ? "~" : value.dump());
+  }
+  return text;
+}
+
+/// Whatever was changed: what is written has to be read as what runs.
+void checkGains(const std::string& path, const Json& running) {
+  const Json differing = gainDifferences(path, running);
+  if (!differing.empty())
+    throw RunError(
+        fmt::format("{}: {} could not be written", escaped(path), differing.items().begin().key()));
+}
+
+}  // namespace
+
+Json gainDifferences(const std::string& path, const Json& running) {
+  const Gains in_file = loadScene(path, {}).controller.gains;
+  Json differing = Json::object();
+  for (const GainKey& key : gainKeys()) {
+    const Json file = gainAt(in_file, key.offset);
+    const Json& now = running.at(key.path);
+    if (file.dump() != now.dump()) differing[key.path] = {{"file", file}, {"running", now}};
+  }
+  return differing;
+}
+
+SavedGains saveGains(const ControlClient& daemon) {
+  const Json answer = daemon.ask({{"do", "show"}});
+  const std::string path = answer.at("scene");
+  const std::string text = readFromDisk(path);
+  if (fmt::format("{:016x}", sourceHash(text)) != answer.at("scene_hash"))
+    throw InputError(
+        fmt::format("{}: was changed since the daemon read it, expected no change; "
+                    "`tactus diff` shows what differs, `tactus reload` takes it",
+                    escaped(path)));
+  const std::string changed = withGains(path, text, answer.at("ordered"));
+  if (changed == text) return {path, false};
+  replaceFile(path, changed,
+              [&](const std::string& next) { checkGains(next, answer.at("ordered")); });
+  daemon.ask({{"do", "reload"}});  // it has read what is there now
+  return {path, true};
+}
+
+}  // namespace tactus

@@ -1,0 +1,42 @@
+#include "tactus/daemon/running_log.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "tactus/daemon/run_status.h"
+#include "tactus/record/run_error.h"
+#include "tactus/record/run_log.h"
+#include "tactus/scene/located_error.h"
+
+namespace tactus {
+
+Json readRunStatus() {
+  std::ifstream file(runtimePath(kStatusName), std::ios::binary);
+  if (!file) return nullptr;
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  Json status = Json::parse(text, nullptr, false);
+  return status.is_object() ? status : Json();
+}
+
+std::string logOf(const Json& status) {
+  const auto log = status.is_object() ? status.find("log") : status.end();
+  if (log == status.end() || !log->is_object() || !log->contains("folder") ||
+      !log->at("folder").is_string())
+    return "";
+  return log->at("folder").get<std::string>() + "/" + logName(0);
+}
+
+std::string runningLog() {
+  const std::string path = runtimePath(kStatusName);
+  if (!std::filesystem::exists(path))
+    throw RunError(fmt::format("{}: no daemon is running, or a log is to be named", escaped(path)));
+  const std::string log = logOf(readRunStatus());
+  if (log.empty()) throw RunError(fmt::format("{}: the daemon writes no log", escaped(path)));
+  return log;
+}
+
+}  // namespace tactus

@@ -1,0 +1,146 @@
+#include "tactus/panel/daemon_watch.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "tactus/daemon/control_client.h"
+#include "tactus/daemon/control_socket.h"
+#include "tactus/daemon/run_status.h"
+#include "tactus/daemon/running_log.h"
+#include "tactus/scene/gain_keys.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{100};
+constexpr std::chrono::milliseconds kAsk{200};
+/// The daemon writes its status each half second, and answers at once.
+constexpr double kMaxAge_s = 2.0;
+
+/// Infinite: nobody says.
+double ageOf_s(const Json& status) {
+  const auto found = status.is_object() ? status.find("monotonic_s") : status.end();
+  if (found == status.end() || !found->is_number()) return kNoLimit;
+  const double age_s = monotonicTime_s() - found->get<double>();
+  return age_s >= 0.0 ? age_s : kNoLimit;  // of before the machine began anew
+}
+
+/// Gains on their way, where they are.
+Json gainsNow(const LogNews& news, const Json& ordered) {
+  Json now = Json::object();
+  if (!news.gains || !news.is_live) return now;
+  for (const GainKey& key : gainKeys()) {
+    const Json value = gainAt(*news.gains, key.offset);
+    if (ordered.contains(key.path) && value.dump() != ordered.at(key.path).dump())
+      now[key.path] = value;
+  }
+  return now;
+}
+
+/// What a page shows of the status.
+Json shortStatus(const Json& status) {
+  Json shown = Json::object();
+  for (const char* name : {"scene", "variant", "mode", "fault", "description", "missed_cycles",
+                           "dropped_records", "motion", "modules_lost", "log"})
+    if (status.contains(name)) shown[name] = status.at(name);
+  return shown;
+}
+
+}  // namespace
+
+DaemonWatch::DaemonWatch(EventFeed& feed)
+    : feed_(feed),
+      asking_([this](const std::stop_token& stop) { ask(stop); }),
+      watching_([this](const std::stop_token& stop) { watch(stop); }) {}
+
+/// In a thread of its own: a daemon that hangs takes its time.
+void DaemonWatch::ask(const std::stop_token& stop) {
+  std::optional<ControlClient> daemon;
+  while (!stop.stop_requested()) {
+    Said said{nullptr, "", monotonicTime_s()};
+    try {
+      if (!daemon) daemon.emplace(controlPath());
+      said.shown = daemon->ask({{"do", "show"}});
+    } catch (const std::exception& error) {
+      daemon.reset();
+      said.problem = error.what();
+    }
+    said.at_s = monotonicTime_s();
+    {
+      const std::lock_guard lock(mutex_);
+      said_ = std::move(said);
+    }
+    std::this_thread::sleep_for(kAsk);
+  }
+}
+
+void DaemonWatch::watch(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    look();
+    std::this_thread::sleep_for(kLook);
+  }
+}
+
+void DaemonWatch::look() {
+  const Json status = readRunStatus();
+  const double age_s = ageOf_s(status);
+  const std::lock_guard lock(mutex_);
+  if (age_s <= kMaxAge_s) followLog(status);
+  const LogNews news = log_ ? log_->news() : LogNews{};
+  const Json event = panel_.update(state(status, age_s, news), news);
+  if (!event.is_null()) feed_.publish(event.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+void DaemonWatch::followLog(const Json& status) {
+  const std::string path = logOf(status);
+  const std::string run = fmt::format("{} {}", status.value("pid", 0), path);
+  if (run == run_) return;
+  run_ = run;
+  log_.reset();
+  if (!path.empty()) log_ = std::make_unique<LogFollower>(path);
+}
+
+bool DaemonWatch::isSaid() const {
+  return !said_.shown.is_null() && monotonicTime_s() - said_.at_s <= kMaxAge_s;
+}
+
+/// Why there is no status; empty: there is one.
+std::string DaemonWatch::problem(const Json& status, double age_s) const {
+  if (age_s <= kMaxAge_s) return "";
+  if (isSaid()) return "the daemon writes no status";
+  const bool is_of_before = status.is_null() || age_s == kNoLimit;
+  return is_of_before ? "no daemon is running" : "no word from the daemon";
+}
+
+Json DaemonWatch::state(const Json& status, double age_s, const LogNews& news) const {
+  const bool is_fresh = age_s <= kMaxAge_s;
+  Json state = {
+      {"run", run_}, {"is_there", is_fresh || isSaid()}, {"problem", problem(status, age_s)}};
+  if (is_fresh) state["status"] = shortStatus(status);
+  state["control_problem"] = isSaid() ? std::string() : said_.problem;
+  if (isSaid()) {
+    Json gains = said_.shown;
+    state["task"] = gains.value("task", Json());
+    gains.erase("task");
+    gains.erase("done");
+    state["now"] = gainsNow(news, gains.at("ordered"));
+    state["gains"] = std::move(gains);
+  }
+  state["links"] = news.links;
+  state["log_problem"] = log_ ? news.problem : std::string("the daemon writes no log");
+  state["is_reading"] = log_ && news.problem.empty() && !news.is_live;
+  return state;
+}
+
+std::pair<std::string, std::uint64_t> DaemonWatch::all() const {
+  const std::lock_guard lock(mutex_);
+  return {panel_.all().dump(-1, ' ', false, Json::error_handler_t::replace), feed_.number()};
+}
+
+std::optional<RunStart> DaemonWatch::start() const {
+  const std::lock_guard lock(mutex_);
+  return log_ ? log_->start() : std::nullopt;
+}
+
+}  // namespace tactus

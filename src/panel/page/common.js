@@ -1,0 +1,52 @@
+"use strict";
+// What all parts of the page share. The scripts are read in the order in which index.html names them.
+
+const at = (id) => document.getElementById(id);
+let token = "";
+let state = null; // the newest of the panel's events
+
+function element(name, text = "", className = "") {
+  const made = document.createElement(name);
+  made.textContent = text;
+  if (className) made.className = className;
+  return made;
+}
+
+function show(id, text, className = "") {
+  const shown = at(id);
+  if (shown.textContent !== text) shown.textContent = text;
+  if (shown.className !== className) shown.className = className;
+}
+
+/** Four digits, as short as they are; null: there is none. */
+function numberText(value, digits = 4) {
+  if (value === null || value === undefined) return "none";
+  const short = Number(value.toPrecision(digits));
+  return Math.abs(short) >= 1e6 ? short.toExponential() : String(short);
+}
+
+const fixed = (value, digits) => (typeof value === "number" ? value.toFixed(digits) : "-");
+
+const sentence = (text) => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
+
+/** Errors name the place of a setting that nobody has written here. */
+const withoutPlace = (error) => error.replace(/^--set \S+?:\d+:\d+: /, "");
+
+function takeToken() {
+  const found = location.hash.match(/^#token=([0-9a-f]+)$/);
+  if (found) sessionStorage.setItem("token", found[1]);
+  if (location.hash) history.replaceState(null, "", "/");
+  token = sessionStorage.getItem("token") || "";
+}
+
+async function post(path, request) {
+  const headers = { "Content-Type": "application/json" };
+  if (token) headers["X-Tactus-Token"] = token;
+  try {
+    const body = JSON.stringify(request);
+    const answer = await fetch(path, { method: "POST", headers, body });
+    return await answer.json();
+  } catch {
+    return { done: false, error: "the panel does not answer" };
+  }
+}

@@ -1,0 +1,104 @@
+"use strict";
+// Events come from the panel and are handed to the parts of the page.
+
+let source = null;
+
+function listen() {
+  source = new EventSource("/api/events");
+  source.onmessage = (message) => take(JSON.parse(message.data));
+  source.onerror = () => {
+    showBanner();
+    if (source.readyState !== EventSource.CLOSED) return;
+    setTimeout(listen, 2000);
+  };
+  source.onopen = showBanner;
+}
+
+function take(event) {
+  if (event.begins) {
+    contacts = [];
+    lasting = [];
+    rows = [];
+    forces = [];
+  }
+  if (event.state) state = event.state;
+  if (event.force) takeForce(event.force);
+  if (event.contacts) contacts = contacts.concat(event.contacts).slice(-50);
+  if (event.lasting) lasting = event.lasting;
+  if (event.state || event.begins) showState();
+  if (event.begins || event.force) drawForce();
+  if (event.begins || event.contacts || event.lasting) showContacts();
+}
+
+function showBanner() {
+  const parts = [];
+  const isDeaf = !source || source.readyState !== EventSource.OPEN;
+  const isGone = state && !state.is_there;
+  if (isDeaf) parts.push("The panel does not answer; this page tries again.");
+  else if (state && state.problem) parts.push(sentence(state.problem));
+  if (isGone && !isDeaf) parts.push("This page goes on when there is one again.");
+  if (!isDeaf && !isGone && state && state.control_problem)
+    parts.push(`No gains and no task: ${state.control_problem}.`);
+  if (!token) parts.push("Read only: changes need the whole address that tactus panel has printed.");
+  at("banner").hidden = parts.length === 0;
+  show("banner", parts.join(" "), isDeaf || isGone ? "bad" : "");
+  document.querySelector("main").className = isDeaf || isGone ? "stale" : "";
+}
+
+function showMode() {
+  const status = state.status || {};
+  const mode = state.is_there ? status.mode || "unknown" : "no daemon";
+  const kind = { running: "running", fault: "bad", off: "bad", "no daemon": "bad" }[mode] || "waiting";
+  show("mode", mode, `pill ${kind}`);
+  const hasFault = Boolean(status.fault && status.fault !== "none");
+  at("fault").hidden = !hasFault;
+  show("fault", hasFault ? `fault: ${status.fault}` : "", "pill bad");
+  const isMore = status.description && status.description !== mode;
+  const lost = (status.modules_lost || []).map((link) => `${link} lost: goes on slowly without`);
+  show("description", [isMore ? status.description : "", ...lost].filter(Boolean).join("; "));
+  show("scene", status.scene ? `${status.scene} (${status.variant})` : "");
+  document.title = `${mode} - Tactus`;
+}
+
+function showState() {
+  showBanner();
+  showMode();
+  showGains();
+  showTask();
+  const note = state.is_reading ? "Reading the log of the run so far ..." : state.log_problem;
+  at("log-note").hidden = !note;
+  show("log-note", note ? sentence(note.replace(/[. ]*$/, "")) : "", "note");
+}
+
+async function begin() {
+  takeToken();
+  addEventListener("hashchange", () => {
+    takeToken();
+    if (state) showState();
+  });
+  at("gains-form").addEventListener("submit", set);
+  at("move-form").addEventListener("submit", move);
+  at("undo").addEventListener("click", () => act({ do: "undo" }, "message", (answer) => `Change ${answer.number} sent, back to what was kept before.`));
+  at("save").addEventListener("click", () => act({ do: "save" }, "message", (answer) =>
+    answer.written ? `${answer.scene} written, as it was is ${answer.scene}~.` : `${answer.scene} has all that runs.`));
+  at("hold").addEventListener("click", () => act({ do: "hold" }, "move-message", () => "Holding."));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    drawForce();
+    showContacts();
+  });
+  // It writes styles into its elements, which the page's policy forbids.
+  Dygraph.PLUGINS = Dygraph.PLUGINS.filter((plugin) => plugin !== Dygraph.Plugins.Legend);
+  plots = { force: makePlot("force-plot"), overlay: makePlot("overlay-plot") };
+  while (!keys.length) {
+    try {
+      keys = await (await fetch("/api/keys")).json();
+    } catch {
+      await new Promise((done) => setTimeout(done, 1000));
+    }
+  }
+  makeGains();
+  showContacts();
+  listen();
+}
+
+begin();

@@ -1,0 +1,40 @@
+"use strict";
+// Where the tool is, and where it shall go.
+
+function taskText(task) {
+  const where = task.p_BaseTool_m.map((value) => value.toFixed(3)).join(", ");
+  const words = { given_up: "has given up, was blocked", late: "the stream was late" };
+  let text = `${words[task.state] || task.state}, at ${where} m`;
+  if (task.waiting) text += `, ${task.waiting} waypoints left`;
+  if (task.contact) text += `; contact of ${task.contact.force_N.toFixed(2)} N on ${task.contact.module}`;
+  return text;
+}
+
+function showTask() {
+  const task = state.task;
+  const isTold = Boolean(task);
+  at("hold").hidden = !isTold;
+  at("move-form").hidden = !isTold;
+  at("hold").disabled = at("move").disabled = !token || !isTold || !task.is_running;
+  show("task-state", isTold ? taskText(task) : state.gains ? "The task is a trajectory: nobody tells the tool where to go." : "", "note");
+  at("task-state").dataset.state = isTold ? task.state : "";
+}
+
+function move(event) {
+  event.preventDefault();
+  const texts = ["x", "y", "z"].map((axis) => at(axis).value.trim());
+  const to_m = texts.map((text) => (text === "" ? null : Number(text)));
+  const speed = at("speed").value.trim();
+  if (to_m.some(Number.isNaN) || Number.isNaN(Number(speed)))
+    return show("move-message", "expected numbers", "bad");
+  if (to_m.every((value) => value === null))
+    return show("move-message", "no target, expected one of x, y and z", "bad");
+  const request = { do: "move", to_m };
+  if (at("relative").checked) {
+    request.relative = true;
+    request.to_m = to_m.map((value) => value || 0);
+  }
+  if (speed) request.speed_m_per_s = Number(speed);
+  act(request, "move-message", (answer) => answer.task.duration_s === undefined
+    ? "On its way." : `On its way, ${answer.task.duration_s.toFixed(1)} s without contacts.`);
+}
