@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "tactus/record/contact_json.h"
-#include "tactus/record/growing_file.h"
 #include "tactus/scene/scene_loader.h"
 
 namespace tactus {
@@ -42,8 +41,11 @@ void LogFollower::follow(const std::stop_token& stop) {
 
 /// One file of the log; true: it goes on in another one.
 bool LogFollower::readFile(const std::stop_token& stop) {
-  GrowingFile file(path_, stop);
-  std::istream in(&file);
+  {
+    const std::lock_guard lock(mutex_);
+    file_.emplace(path_, stop);
+  }
+  std::istream in(&*file_);
   UlogReader reader(in, path_);
   const LogDescription& description = reader.description();
   const Scene scene = loadScene(description.sources, description.overrides, SceneUse::kSimulation);
@@ -55,8 +57,8 @@ bool LogFollower::readFile(const std::stop_token& stop) {
     news_.links = scene.module_links;
   }
   CycleRecord record;
-  while (!stop.stop_requested() && reader.next(record)) add(record, file.isLive());
-  return file.goesOn() && !stop.stop_requested();
+  while (!stop.stop_requested() && reader.next(record)) add(record, file_->isLive());
+  return file_->goesOn() && !stop.stop_requested();
 }
 
 void LogFollower::add(const CycleRecord& record, bool is_live) {
@@ -74,7 +76,6 @@ void LogFollower::add(const CycleRecord& record, bool is_live) {
     news_.bins.push_back(bin);
   }
   news_.gains = record.gains;
-  news_.is_live = is_live;
   for (const ContactFigures& figures : over) news_.contacts.push_back(contact(figures));
   if (news_.contacts.size() > kMaxContacts) news_.contacts.erase(news_.contacts.begin());
   if (news_.bins.size() > kPastBins) news_.bins = fewerBins(news_.bins, kPastBins / 2);
@@ -108,6 +109,8 @@ Json LogFollower::trace(const ContactSummary& contact) const {
 
 LogNews LogFollower::news() {
   const std::lock_guard lock(mutex_);
+  // Also of a log that stands still; and for good, where it goes on in another file.
+  news_.is_live = news_.is_live || (start_ && file_ && file_->isLive());
   LogNews news = news_;
   news_.bins.clear();
   news_.contacts.clear();

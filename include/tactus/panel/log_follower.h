@@ -12,6 +12,7 @@
 #include "tactus/panel/force_bins.h"
 #include "tactus/record/contact_figures.h"
 #include "tactus/record/contact_watch.h"
+#include "tactus/record/growing_file.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/json.h"
 
@@ -58,7 +59,8 @@ class LogFollower {
   double lasting_s_ = 0.0;  ///< when contacts that last were looked at
 
   mutable std::mutex mutex_;
-  std::deque<ForceBin> past_;  ///< for the traces
+  std::optional<GrowingFile> file_;  ///< made anew under the lock, read without
+  std::deque<ForceBin> past_;        ///< for the traces
   /// Of long contacts the trace at the touch, which is not among those any more.
   struct Begun {
     double start_s = -1.0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <stop_token>
 #include <streambuf>
 #include <string>
@@ -18,7 +19,7 @@ class GrowingFile final : public std::streambuf {
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
 
-  /// All that was there has been read; what comes is new.
+  /// All that was there has been read; what comes is new. From any thread.
   bool isLive() const noexcept { return is_live_; }
   /// At the end: another file of this name has the rest.
   bool goesOn() const noexcept { return goes_on_; }
@@ -34,7 +35,7 @@ class GrowingFile final : public std::streambuf {
   std::string path_;
   std::stop_token stop_;
   int fd_ = -1;
-  bool is_live_ = false;
+  std::atomic<bool> is_live_ = false;
   bool goes_on_ = false;
   std::array<char, 1 << 16> buffer_;
 };
