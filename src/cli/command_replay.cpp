@@ -28,7 +28,7 @@ namespace tactus {
 namespace {
 
 constexpr std::string_view kMissedCycles = "missed_cycles";
-constexpr std::uint64_t kCyclesBetweenReports = 1000;
+constexpr std::uint64_t kCyclesBetweenLooks = 1000;
 
 using CycleProgress = std::function<void(std::uint64_t cycles)>;
 
@@ -151,7 +151,7 @@ class LogReplay {
     CycleRecord recorded;
     while (reader.next(recorded)) {
       if (!has_path_time) recorded.path_time_s = recorded.task_time_s;  // nothing waited then
-      if (++cycles_ % kCyclesBetweenReports == 0) progress(cycles_);
+      if (++cycles_ % kCyclesBetweenLooks == 0) progress(cycles_);
       checkMotion(path, scene_, recorded);
       tune(path, recorded);
       const CycleRecord replayed = replayer_.replay(recorded);
