@@ -58,7 +58,7 @@ ScopeTrigger scopeTrigger(const ScopeOptions& options, const Scene& scene,
 /// Takes cycles, shows captures.
 class Scope {
  public:
-  Scope(const ScopeOptions& options, Scene scene, ScopeTrigger trigger)
+  Scope(const ScopeOptions& options, Scene scene, const ScopeTrigger& trigger)
       : options_(options),
         scene_(std::move(scene)),
         ring_(trigger.condition, trigger.window),

@@ -13,16 +13,14 @@ ContactWatch::ContactWatch(const ControllerConfig& config, std::size_t expected_
 std::vector<ContactFigures> ContactWatch::add(const CycleRecord& record) {
   std::vector<ContactFigures> over;
   for (ContactFollower& module : modules_)
-    if (std::optional<ContactFigures> figures = module.add(record))
-      over.push_back(std::move(*figures));
+    if (std::optional<ContactFigures> figures = module.add(record)) over.push_back(*figures);
   return over;
 }
 
 std::vector<ContactFigures> ContactWatch::present() const {
   std::vector<ContactFigures> lasting;
   for (const ContactFollower& module : modules_)
-    if (std::optional<ContactFigures> figures = module.present())
-      lasting.push_back(std::move(*figures));
+    if (std::optional<ContactFigures> figures = module.present()) lasting.push_back(*figures);
   return lasting;
 }
 

@@ -62,6 +62,7 @@ class LogFollower {
   std::optional<GrowingFile> file_;  ///< made anew under the lock, read without
   std::deque<ForceBin> past_;        ///< for the traces
   /// Of long contacts the trace at the touch, which is not among those any more.
+  // NOLINTNEXTLINE(bugprone-exception-escape): of a JSON that is null
   struct Begun {
     double start_s = -1.0;
     Json trace;
