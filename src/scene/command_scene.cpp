@@ -1,6 +1,6 @@
 #include "tactus/scene/command_scene.h"
 
-#include "tactus/scene/input_error.h"
+#include "tactus/scene/located_error.h"
 
 namespace tactus {
 
@@ -14,8 +14,8 @@ Scene loadHardwareScene(const std::string& path, const std::vector<std::string>&
                         const char* purpose) {
   Scene scene = loadScene(path, parseOverrides(settings));
   if (!scene.hardware)
-    throw InputError(path + ":1:1: robot: has no can section, expected buses and drives " +
-                     purpose);
+    failAt({std::make_shared<std::string>(path), 1, 1}, "robot", "has no can section",
+           std::string("expected buses and drives ") + purpose);
   return scene;
 }
 

@@ -99,15 +99,9 @@ std::string inQuotes(std::string_view user_text) {
 
 void failAt(const SourcePosition& at, std::string_view key, std::string_view problem,
             std::string_view expectation) {
-  const ErrorPlace place = {at.file && !at.file->empty() ? escaped(*at.file) : "-",
-                            escapedKey(shortened(key, kMaxShownKeyBytes)),
-                            at.line,
-                            at.column,
-                            escaped(problem),
-                            escaped(expectation)};
-  throw LocatedError(fmt::format("{}:{}:{}: {}: {}, {}", place.file, place.line, place.column,
-                                 place.key, place.problem, place.expected),
-                     place);
+  throw LocatedError({at.file && !at.file->empty() ? escaped(*at.file) : "-",
+                      escapedKey(shortened(key, kMaxShownKeyBytes)), at.line, at.column,
+                      escaped(problem), escaped(expectation)});
 }
 
 SourcePosition positionAt(std::shared_ptr<const std::string> file, std::string_view text,

@@ -245,7 +245,12 @@ Scene load(const std::string& path, const std::vector<Override>& overrides, Scen
     const std::string_view text = error.what();
     const std::string scene = escaped(path);
     if (text.starts_with(scene + ":") || text.starts_with("--set ")) throw;
-    throw InputError(fmt::format("{} (for the scene {})", text, scene));
+    const std::string where = fmt::format(" (for the scene {})", scene);
+    const auto* located = dynamic_cast<const LocatedError*>(&error);
+    if (!located) throw InputError(error.what() + where);
+    ErrorPlace place = located->place;
+    place.expected += where;
+    throw LocatedError(place);
   }
 }
 

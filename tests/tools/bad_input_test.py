@@ -284,8 +284,9 @@ class BadInput(unittest.TestCase):
     def expect_output_refused(self, output, *options):
         """No scene runs; the one line names the path and -o."""
         result = self.run_tactus("simulate", GOOD, SECOND, *SHORT, "-o", output, *options)
-        self.assertEqual((result.returncode, result.stdout), (1, ""), result)
+        self.assertEqual(result.returncode, 1, result)
         self.assertRegex(result.stderr, ONE_LINE)
+        self.expect_taken_apart(result, "--json" in options)
         self.assertIn(":1:1: -o: ", result.stderr)
         self.assertEqual(list(self.folder.rglob("run.ulg")), [])
 
@@ -314,7 +315,9 @@ class BadInput(unittest.TestCase):
         (folder / "summary.json").write_text("stale")
         (folder / "run.ulg").symlink_to("/dev/full")
         result = self.run_tactus("simulate", GOOD, *SHORT, "-o", "out", "--json")
-        self.assertEqual((result.returncode, result.stdout), (3, ""), result)
+        self.assertEqual(result.returncode, 3, result)
+        error = json.loads(result.stdout)
+        self.assertEqual((error["done"], error["error"] + "\n"), (False, result.stderr))
         self.assertFalse((folder / "summary.json").exists())
 
     def test_full_standard_output(self):

@@ -21,8 +21,14 @@ struct ErrorPlace {
 };
 class LocatedError : public InputError {
  public:
-  LocatedError(const std::string& text, ErrorPlace at) : InputError(text), place(std::move(at)) {}
+  explicit LocatedError(ErrorPlace at) : InputError(line(at)), place(std::move(at)) {}
   ErrorPlace place;
+
+ private:
+  static std::string line(const ErrorPlace& at) {
+    return at.file + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
+           at.key + ": " + at.problem + ", " + at.expected;
+  }
 };
 
 }  // namespace tactus
