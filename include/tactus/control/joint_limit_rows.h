@@ -19,8 +19,9 @@ class JointLimitRows {
   /// fades: the latter.
   JointLimitRows(const JointLimits& limits, bool fades) : limits_(limits), fades_(fades) {}
 
-  /// Adds a row for each joint that its own limits let come faster than that. share: of the contact
-  /// that is left, 1 in contact; the rows widen as it fades.
+  /// Adds a row for each joint that is near a limit; where they do not fade only if its own limits
+  /// let it come faster than that. share: of the contact that is left, 1 in contact; the rows widen
+  /// as it fades.
   void add(const JointVector& q, const TaskKinematics& kinematics,
            const ScaledVector& inv_sqrt_weights, double share, SpeedRows& rows) const noexcept;
 
