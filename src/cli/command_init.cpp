@@ -50,7 +50,7 @@ class NewFiles {
 
   [[noreturn]] static void refuse(const std::string& path) {
     const bool is_there = errno == EEXIST;
-    failAt({std::make_shared<std::string>(path), 1, 1}, "-",
+    failAt(beginOf(path), "-",
            is_there ? std::string("is there already")
                     : std::string("cannot be written: ") + std::strerror(errno),
            is_there ? "expected another folder: nothing is overwritten"
@@ -64,8 +64,7 @@ void makeFolder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    failAt({std::make_shared<std::string>(folder), 1, 1}, "-", "cannot be made: " + error.message(),
-           "expected a folder");
+    failAt(beginOf(folder), "-", "cannot be made: " + error.message(), "expected a folder");
 }
 
 Json jointsJson(const RobotDraft& draft) {

@@ -185,8 +185,8 @@ Scope makeScope(const ScopeOptions& options) {
   ScopeTrigger trigger = scopeTrigger(options, scene, reader.description().shape);
   const std::string_view field = trigger.condition.columns.front().field;
   if (!reader.has(field)) {
-    failAt({std::make_shared<std::string>(options.log), 1, 1}, field,
-           "is not in this log, which is of an older version", "expected another field");
+    failAt(beginOf(options.log), field, "is not in this log, which is of an older version",
+           "expected another field");
   }
   return {options, std::move(scene), std::move(trigger)};
 }

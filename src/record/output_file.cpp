@@ -23,7 +23,7 @@ OutputFile::OutputFile(const std::string& path)
                       : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
       buffer_(new char[kBufferSize]) {
   if (descriptor_ < 0) {
-    failAt({std::make_shared<std::string>(path_), 1, 1}, "-",
+    failAt(beginOf(path_), "-",
            fmt::format("cannot be opened for writing: {}", std::strerror(errno)),
            "expected a path that can be written");
   }
@@ -97,8 +97,7 @@ void replaceFile(const std::string& path, const std::string& text,
 void refuseOverwriting(const std::string& input, const std::string& output) {
   std::error_code ignored;  // of an output that does not exist yet
   if (std::filesystem::equivalent(input, output, ignored)) {
-    failAt({std::make_shared<std::string>(output), 1, 1}, "-o", "is the input itself",
-           "expected another file");
+    failAt(beginOf(output), "-o", "is the input itself", "expected another file");
   }
 }
 
