@@ -150,8 +150,9 @@ PlotRange signalRange(const ScopeView& view) {
   range.low = std::min(range.low, view.condition.level);
   range.high = std::max(range.high, view.condition.level);
   if (!(range.high > range.low)) {
-    range.low -= 1.0;
-    range.high += 1.0;
+    const double margin = std::max(1.0, 1e-6 * std::abs(range.low));  // also of large numbers
+    range.low -= margin;
+    range.high += margin;
   }
   return range;
 }
