@@ -163,11 +163,11 @@ std::string titleOf(const ScopeTrace& trace) {
 std::string forceFigure(const ScopeView& view) {
   const Drawing drawing{forceRange(view), kForceHeight};
   const ScopeTrace& newest = view.traces.back();
-  const double high = drawing.y(newest.rest_N * (1.0 + kSettlingBand));
-  const double low = drawing.y(newest.rest_N * (1.0 - kSettlingBand));
+  const double high = drawing.y(newest.rest_N * (1.0 + kDrawnBand));
+  const double low = drawing.y(newest.rest_N * (1.0 - kDrawnBand));
   std::string svg = fmt::format(
       "<rect class=\"band\" x=\"{}\" y=\"{:.1f}\" width=\"{}\" height=\"{:.1f}\">"
-      "<title>settled: within 5 % of {:g} N</title></rect>\n",
+      "<title>5 % about {:g} N</title></rect>\n",
       kLeft, high, kWidth - kLeft - kRight, low - high, newest.rest_N);
   svg += levelOf(drawing, newest.rest_N, fmt::format("{:g} N: where it shall rest", newest.rest_N));
   if (!newest.predicted.t_s.empty())
