@@ -12,11 +12,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "tactus/cli/logged_scene.h"
 #include "tactus/cli/scope_page.h"
 #include "tactus/cli/scope_text.h"
 #include "tactus/daemon/running_log.h"
 #include "tactus/record/growing_file.h"
+#include "tactus/record/logged_scene.h"
 #include "tactus/record/output_file.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/located_error.h"

@@ -1,4 +1,4 @@
-#include "tactus/cli/logged_scene.h"
+#include "tactus/record/logged_scene.h"
 
 #include <memory>
 
