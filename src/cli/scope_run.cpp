@@ -138,6 +138,10 @@ class Scope {
   }
 
   void showNone() const {
+    if (!options_.output.empty())
+      failAt(beginOf(options_.output), "-o",
+             "is not written: no trigger " + inQuotes(view_.condition.text),
+             "expected a condition that the run meets, or --auto");
     if (options_.json) {
       if (!options_.follows) std::fputs("[]\n", stdout);
       return;
@@ -162,9 +166,14 @@ class Scope {
   void write() const {
     const std::string part = options_.output + ".part";
     OutputFile file(part);
-    file.append(scopePage(view_));
-    file.flush();
-    file.rename(part, options_.output);
+    try {
+      file.append(scopePage(view_));
+      file.flush();
+      file.rename(part, options_.output);
+    } catch (...) {
+      std::remove(part.c_str());
+      throw;
+    }
     file.close();
   }
 
@@ -212,6 +221,8 @@ void runScope(ScopeOptions options) {
     options.log = runningLog();
     options.follows = true;
   }
+  if (options.output == "-")
+    failAt(beginOf("-"), "-o", "standard output has the drawing", "expected a file for the page");
   if (!options.output.empty()) refuseOverwriting(options.log, options.output);
   if (!options.follows) checkLog(options.log);
   Scope scope = makeScope(options);
