@@ -145,6 +145,25 @@ class Places(unittest.TestCase):
                               env=self.rig.environment())  # fmt: skip
         self.assertEqual((done.returncode, path.read_text()), (3, "mine"), done.stderr)
 
+    def test_a_socket_that_is_in_use_stays(self):
+        for kind in (socket.SOCK_SEQPACKET, socket.SOCK_STREAM):
+            path = self.rig.folder / f"other{kind}"
+            with socket.socket(socket.AF_UNIX, kind) as other:
+                other.bind(str(path))
+                other.listen()  # and says nothing
+                before = os.stat(path).st_ino
+                done = subprocess.run([PANEL, "--socket", path], capture_output=True, text=True,
+                                      timeout=PATIENCE_S, env=self.rig.environment())  # fmt: skip
+                self.assertEqual((done.returncode, os.stat(path).st_ino), (3, before), done.stderr)
+
+    def test_a_socket_of_who_came_after_stays(self):
+        path = self.rig.folder / "panel.sock"
+        self.rig.start_panel("--socket", path)
+        path.rename(self.rig.folder / "moved")
+        path.write_text("another")
+        self.rig.stop_panel()
+        self.assertEqual(path.read_text(), "another")
+
     def test_without_a_daemon_it_says_so(self):
         self.rig.start_panel()
         events = self.rig.events()
