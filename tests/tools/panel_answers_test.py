@@ -11,6 +11,7 @@ import socket
 import stat
 import subprocess
 import sys
+import time
 import unittest
 
 sys.dont_write_bytecode = True
@@ -163,6 +164,33 @@ class Places(unittest.TestCase):
         path.write_text("another")
         self.rig.stop_panel()
         self.assertEqual(path.read_text(), "another")
+
+    def test_a_status_of_other_types_ends_nothing(self):
+        status = {"pid": "x", "mode": {}, "log": 3, "scene": None}
+        self.rig.start_panel()
+        events = self.rig.events()
+        for monotonic_s in (time.monotonic(), [], "now"):
+            (self.rig.runtime / "status.json").write_text(json.dumps(status | {"monotonic_s": monotonic_s}))
+            time.sleep(0.3)
+        (self.rig.runtime / "status.json").write_text(json.dumps(status | {"monotonic_s": time.monotonic()}))
+        wait_for("a state", lambda: (next(events).get("state") or {}).get("is_there"))
+        events.close()
+        self.assertIsNone(self.rig.panel.poll())
+
+    def test_a_daemon_of_another_version_is_named(self):
+        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as daemon:
+            daemon.bind(str(self.rig.runtime / "control"))
+            daemon.listen()
+            self.rig.start_panel()
+            events = self.rig.events()
+            connection, _ = daemon.accept()
+            connection.recv(65536)
+            connection.send(b'{"done": true, "task": 1}')
+            wait_for("its problem", lambda: "another version" in
+                     (next(events).get("state") or {}).get("control_problem", ""))  # fmt: skip
+            events.close()
+            self.assertIsNone(self.rig.panel.poll())
+            connection.close()
 
     def test_without_a_daemon_it_says_so(self):
         self.rig.start_panel()
