@@ -135,7 +135,9 @@ class Places(unittest.TestCase):
             connection.close()
             self.rig.panel.kill()
             self.rig.panel.communicate()
-        self.rig.start_panel("--socket", path)
+        self.rig.start_panel("--socket", os.path.relpath(path))
+        self.assertTrue(os.path.samefile(self.rig.address.split()[0], path), self.rig.address)
+        self.assertTrue(self.rig.address.startswith("/"), "for another folder")
         self.rig.stop_panel()
         self.assertFalse(path.exists())
 
