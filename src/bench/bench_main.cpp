@@ -45,7 +45,7 @@ std::string studyHelp() {
 
 [[noreturn]] void fail(const std::string& place, const std::string& problem,
                        const std::string& expectation) {
-  failAt({std::make_shared<std::string>(place), 1, 1}, "-", problem, "expected " + expectation);
+  failAt(beginOf(place), "-", problem, "expected " + expectation);
 }
 
 fs::path ownPath() { return fs::read_symlink("/proc/self/exe"); }

@@ -22,8 +22,7 @@ constexpr double kLargestEntry = 1e3;  ///< of a calibration, as robot.yaml take
 
 [[noreturn]] void refusePushes(const PushFile& file, const std::string& problem,
                                const std::string& expectation) {
-  failAt({std::make_shared<std::string>(file.path), 1, 1}, "records", problem,
-         "expected " + expectation);
+  failAt(beginOf(file.path), "records", problem, "expected " + expectation);
 }
 
 void judgeProblem(const PushFile& file, const CalibrationFit& fit) {
@@ -144,7 +143,7 @@ SceneModule sceneModule(const Scene& scene, std::size_t index) {
 SceneModule sceneModule(const Scene& scene, const PushFile& file) {
   const auto found = std::ranges::find(scene.module_links, file.link);
   if (found == scene.module_links.end())
-    failAt({std::make_shared<std::string>(file.path), 1, 1}, "module",
+    failAt(beginOf(file.path), "module",
            inQuotes(file.link) + " has no tactile module in " + escaped(scene.sources.front().path),
            fmt::format("expected one of {}",
                        escaped(fmt::format("{}", fmt::join(scene.module_links, ", ")))));

@@ -76,7 +76,7 @@ class Recording {
     SourceReader reader(readFromDisk);
     const SourceFile source = reader.readFirst(session.path);
     file_ = readPushFile(source);
-    const SourcePosition begin{std::make_shared<std::string>(session.path), 1, 1};
+    const SourcePosition begin = beginOf(session.path);
     if (file_.link != session.link)
       failAt(begin, "module", "the pushes are of " + inQuotes(file_.link),
              "expected those of " + inQuotes(session.link) + ", or another file");
@@ -102,8 +102,7 @@ class Recording {
   static void checkFolder(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     if (!folder.empty() && !std::filesystem::is_directory(folder))
-      failAt({std::make_shared<std::string>(path), 1, 1}, "-", "its folder is not there",
-             "expected a file in a folder that is");
+      failAt(beginOf(path), "-", "its folder is not there", "expected a file in a folder that is");
   }
 
   void checkContinuation(const SourceFile& source, const SourcePosition& begin) const {

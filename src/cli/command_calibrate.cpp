@@ -32,7 +32,7 @@ struct CalibrateOptions {
 
 [[noreturn]] void refuseScene(const std::string& path, const char* key, const std::string& problem,
                               const std::string& expectation) {
-  failAt({std::make_shared<std::string>(path), 1, 1}, key, problem, "expected " + expectation);
+  failAt(beginOf(path), key, problem, "expected " + expectation);
 }
 
 /// A scene whose modules are read: one without a controller is given the one that does nothing.

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
-#include "tactus/cli/logged_scene.h"
 #include "tactus/daemon/running_log.h"
 #include "tactus/record/contact_figures.h"
 #include "tactus/record/contact_json.h"
 #include "tactus/record/contact_watch.h"
 #include "tactus/record/growing_file.h"
+#include "tactus/record/logged_scene.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/located_error.h"
 

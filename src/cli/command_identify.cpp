@@ -35,8 +35,7 @@ constexpr double kMaxRelativeDeviation = 0.1;
 
 [[noreturn]] void refuse(const IdentifyOptions& options, const std::string& problem,
                          const std::string& expectation) {
-  failAt({std::make_shared<std::string>(options.path), 1, 1}, "cover", problem,
-         "expected " + expectation);
+  failAt(beginOf(options.path), "cover", problem, "expected " + expectation);
 }
 
 /// What there is to find out, and what was found.
@@ -83,8 +82,7 @@ Scene loadLogged(const IdentifyOptions& options, const LogDescription& descripti
 
 Identified fitLog(const IdentifyOptions& options) {
   if (!options.settings.empty())
-    failAt({std::make_shared<std::string>("--set"), 1, 1}, "-", "a log says what its scene was",
-           "expected a scene");
+    failAt(beginOf("--set"), "-", "a log says what its scene was", "expected a scene");
   checkLog(options.path);
   std::ifstream in = openLog(options.path);
   UlogReader reader(in, options.path);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "tactus/cli/commands.h"
@@ -31,7 +32,8 @@ class NewFiles {
     try {
       for (const SourceFile& file : files) write(file);
     } catch (...) {
-      for (const std::string& path : written_) std::filesystem::remove(path);
+      std::error_code ignored;  // the first one is told
+      for (const std::string& path : written_) std::filesystem::remove(path, ignored);
       throw;
     }
   }
@@ -50,7 +52,7 @@ class NewFiles {
 
   [[noreturn]] static void refuse(const std::string& path) {
     const bool is_there = errno == EEXIST;
-    failAt({std::make_shared<std::string>(path), 1, 1}, "-",
+    failAt(beginOf(path), "-",
            is_there ? std::string("is there already")
                     : std::string("cannot be written: ") + std::strerror(errno),
            is_there ? "expected another folder: nothing is overwritten"
@@ -60,13 +62,34 @@ class NewFiles {
   std::vector<std::string> written_;
 };
 
-void makeFolder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    failAt({std::make_shared<std::string>(folder), 1, 1}, "-", "cannot be made: " + error.message(),
-           "expected a folder");
-}
+/// A folder with those that it lies in; those that were made are gone at the end unless kept.
+class NewFolders {
+ public:
+  explicit NewFolders(const std::string& folder) {
+    std::error_code error;
+    std::filesystem::path missing = std::filesystem::absolute(folder, error).lexically_normal();
+    for (; !missing.empty() && !std::filesystem::exists(missing, error) && !error;
+         missing = missing.parent_path())
+      missing_.push_back(missing);
+    std::filesystem::create_directories(folder, error);
+    if (!error) return;
+    remove();
+    failAt(beginOf(folder), "-", "cannot be made: " + error.message(), "expected a folder");
+  }
+  ~NewFolders() { remove(); }
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+
+  void keep() { missing_.clear(); }
+
+ private:
+  void remove() const noexcept {
+    std::error_code ignored;  // of one that is not empty
+    for (const auto& folder : missing_) std::filesystem::remove(folder, ignored);
+  }
+
+  std::vector<std::filesystem::path> missing_;  ///< the innermost first
+};
 
 Json jointsJson(const RobotDraft& draft) {
   Json joints = Json::array();
@@ -136,8 +159,9 @@ void init(const InitOptions& options) {
     files.push_back({(folder / draft.urdf_reference).string(), draft.completed.text});
   files.push_back({robot, draft.robot_text});
   files.push_back({scene, draft.scene_text});
-  makeFolder(options.folder);
+  NewFolders folders(options.folder);
   const NewFiles written(files);
+  folders.keep();
   std::fputs(
       (options.json ? jsonText(draftJson(draft, files)) : draftSummary(draft, files)).c_str(),
       stdout);

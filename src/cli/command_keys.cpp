@@ -38,7 +38,7 @@ struct Selection {
     }
   }
   const std::string nearest = nearestWord(path.substr(path.rfind('.') + 1), known);
-  failAt({std::make_shared<std::string>("KEY"), 1, 1}, path, "no such key",
+  failAt(beginOf("KEY"), path, "no such key",
          nearest.empty() ? "expected a key of a scene or of a robot"
                          : "expected perhaps " + inQuotes(nearest));
 }

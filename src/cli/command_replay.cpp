@@ -41,7 +41,7 @@ struct ReplayOptions {
 void checkSize(const std::string& log, const char* field, const char* what, int logged,
                int of_scene) {
   if (logged == of_scene) return;
-  failAt({std::make_shared<std::string>(log), 1, 1}, field,
+  failAt(beginOf(log), field,
          fmt::format("the cycles have {} {}, the log's scene {}", logged, what, of_scene),
          "expected the log of a run of its scene");
 }
@@ -49,8 +49,8 @@ void checkSize(const std::string& log, const char* field, const char* what, int 
 /// Its cycles came when they came.
 void refusePeriod(const std::vector<Override>& settings) {
   if (std::ranges::count(settings, "period_s", &Override::key) == 0) return;
-  failAt({std::make_shared<std::string>("--set period_s"), 1, 1}, "period_s",
-         "cannot be set in a replay", "expected keys other than the period of recorded cycles");
+  failAt(beginOf("--set period_s"), "period_s", "cannot be set in a replay",
+         "expected keys other than the period of recorded cycles");
 }
 
 /// The scene of the first log with its own overrides and then those of the command line.
@@ -61,8 +61,7 @@ Scene loadLoggedScene(const ReplayOptions& options, const LogDescription& descri
   refusePeriod(settings);
   overrides.insert(overrides.end(), settings.begin(), settings.end());
   if (description.sources.empty()) {
-    failAt({std::make_shared<std::string>(log), 1, 1}, "source_path", "the log holds no scene",
-           "expected the files of the run");
+    failAt(beginOf(log), "source_path", "the log holds no scene", "expected the files of the run");
   }
   Scene scene = loadScene(description.sources, overrides, SceneUse::kSimulation);
   const RecordShape expected = describeLog(scene).shape;
@@ -92,7 +91,7 @@ void refuseUnknown(const std::vector<std::string>& logs, LogContinuity continuit
   }
   if (continuity.stretches().empty()) return;
   const UnknownStretch& first = continuity.stretches().front();
-  failAt({std::make_shared<std::string>(logs.front()), 1, 1}, "cycle",
+  failAt(beginOf(logs.front()), "cycle",
          fmt::format("none with a command can be replayed: from {:.9g} s on {}", first.from_s,
                      first.reason),
          "expected all logs of the run, the oldest first");
@@ -115,14 +114,14 @@ void checkGains(const std::string& path, const Scene& scene, const CycleRecord& 
   const GainUse use = gainUse(controller.force_control, controller.tactile_modules.size());
   const auto problem = findGainProblem(recorded.gains, use, scene.period_s);
   if (!problem) return;
-  failAt({std::make_shared<std::string>(path), 1, 1}, problem->path,
+  failAt(beginOf(path), problem->path,
          fmt::format("{}, in the gains recorded at {:.9g} s", problem->problem, recorded.t_s),
          "expected " + problem->expectation);
 }
 
 void checkMotion(const std::string& path, const Scene& scene, const CycleRecord& recorded) {
   if (!scene.controller.task.commands || isValid(recorded.tool_motion)) return;
-  failAt({std::make_shared<std::string>(path), 1, 1}, kToolMotionTopic,
+  failAt(beginOf(path), kToolMotionTopic,
          fmt::format("no motion of a tool at {:.9g} s", recorded.t_s),
          "expected finite numbers, and limits above 0");
 }

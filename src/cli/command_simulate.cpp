@@ -39,7 +39,7 @@ void checkName(const SimulateOptions& options) {
   if (!options.name) return;
   checkRunName(*options.name);
   if (options.scenes.size() == 1) return;
-  failAt({std::make_shared<std::string>(*options.name), 1, 1}, "--name",
+  failAt(beginOf(*options.name), "--name",
          fmt::format("one folder for {} scenes", options.scenes.size()), "expected one scene");
 }
 
@@ -51,8 +51,7 @@ std::vector<Scene> loadScenes(const SimulateOptions& options) {
   for (const std::string& path : options.scenes) {
     scenes.push_back(loadScene(path, overrides, SceneUse::kSimulation));
     if (!names.insert(scenes.back().name).second) {
-      failAt({std::make_shared<std::string>(path), 1, 1}, "-",
-             "a second scene named " + inQuotes(scenes.back().name),
+      failAt(beginOf(path), "-", "a second scene named " + inQuotes(scenes.back().name),
              "expected names that differ, each names a folder");
     }
   }

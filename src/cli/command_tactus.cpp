@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
@@ -33,6 +34,11 @@ void refuseUnknownCommand(const CLI::App& app, const char* word) {
       "tactus", {nearest.empty() ? std::string(word) : std::string(word) + ", perhaps " + nearest});
 }
 
+/// One line: also where what was asked for is an object a line.
+void printJsonLine(const Json& json) {
+  std::fputs((json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n').c_str(), stdout);
+}
+
 /// For people on standard error, and for programs, which have asked for JSON, on standard output.
 int refuse(const std::exception& error, bool as_json, int exit_code) {
   std::fprintf(stderr, "%s\n", error.what());
@@ -45,8 +51,14 @@ int refuse(const std::exception& error, bool as_json, int exit_code) {
                  {"key", located->place.key},
                  {"problem", located->place.problem},
                  {"expected", located->place.expected}});
-  std::fputs(jsonText(json).c_str(), stdout);
+  printJsonLine(json);
   return exit_code;
+}
+
+/// The library's text has its quotes around paths, which are a user's.
+RunError fileError(const std::filesystem::filesystem_error& error) {
+  const std::string path = error.path1().empty() ? "a file" : escaped(error.path1().string());
+  return RunError(path + ": " + error.code().message());
 }
 
 }  // namespace
@@ -88,10 +100,12 @@ int tactusProgram(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (app.exit(error) == 0) return exitCodeAfterFlush(kExitDone);
-    if (as_json) std::fputs(jsonText({{"done", false}, {"error", error.what()}}).c_str(), stdout);
+    if (as_json) printJsonLine({{"done", false}, {"error", error.what()}});
     return kExitUsage;
   } catch (const RunError& error) {
     return refuse(error, as_json, kExitFault);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return refuse(fileError(error), as_json, kExitFault);
   } catch (const std::system_error& error) {  // of fmt::print
     std::fprintf(stderr, "standard output: %s\n", error.what());
     return kExitFault;

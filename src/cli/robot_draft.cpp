@@ -23,10 +23,6 @@ namespace fs = std::filesystem;
 constexpr double kAssumedToFullSpeed_s = 0.2;
 constexpr double kMostAcceleration = 50.0;  ///< rad/s^2 or m/s^2
 
-SourcePosition beginOf(const std::string& path) {
-  return {std::make_shared<std::string>(path), 1, 1};
-}
-
 std::string chooseTip(const SourceFile& urdf, const std::vector<ArmEnd>& ends,
                       const std::string& tip) {
   if (!tip.empty()) return tip;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "tactus/scene/located_error.h"
 
@@ -81,24 +82,35 @@ double gridStep(double low, double high) {
   return 10.0 * decade;
 }
 
+/// Of the range. Bounded: of numbers so large that a step is less than their last digit there are
+/// none to be told apart.
+std::vector<double> gridLines(double low, double high) {
+  constexpr int kMost = 20;
+  const double step = gridStep(low, high), first = std::ceil(low / step);
+  std::vector<double> lines;
+  for (int i = 0; i < kMost && (first + i) * step <= high; ++i) {
+    const double line = (first + i) * step + 0.0;  // no -0
+    if (lines.empty() || line > lines.back()) lines.push_back(line);
+  }
+  return lines;
+}
+
 std::string gridOf(const Drawing& drawing) {
   const PlotRange& range = drawing.range;
   std::string svg;
-  const double step = gridStep(range.low, range.high);
-  for (double i = std::ceil(range.low / step) + 0.0; i * step <= range.high; ++i) {
-    const double y = drawing.y(i * step);
+  for (const double value : gridLines(range.low, range.high)) {
+    const double y = drawing.y(value);
     svg += fmt::format(
         "<line class=\"grid\" x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\"/>"
         "<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:g}</text>\n",
-        kLeft, kWidth - kRight, y, y, kLeft - 6.0, y + 4.0, i * step);
+        kLeft, kWidth - kRight, y, y, kLeft - 6.0, y + 4.0, value);
   }
-  const double step_s = gridStep(range.from_s, range.to_s);
-  for (double i = std::ceil(range.from_s / step_s) + 0.0; i * step_s <= range.to_s; ++i) {
-    const double x = drawing.x(i * step_s);
+  for (const double t_s : gridLines(range.from_s, range.to_s)) {
+    const double x = drawing.x(t_s);
     svg += fmt::format(
         "<line class=\"grid\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{}\" y2=\"{}\"/>"
         "<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{:g}</text>\n",
-        x, x, kTop, drawing.height - kBottom, x, drawing.height - kBottom + 16.0, i * step_s);
+        x, x, kTop, drawing.height - kBottom, x, drawing.height - kBottom + 16.0, t_s);
   }
   return svg + fmt::format(
                    "<line class=\"trigger\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" "
@@ -151,11 +163,11 @@ std::string titleOf(const ScopeTrace& trace) {
 std::string forceFigure(const ScopeView& view) {
   const Drawing drawing{forceRange(view), kForceHeight};
   const ScopeTrace& newest = view.traces.back();
-  const double high = drawing.y(newest.rest_N * (1.0 + kSettlingBand));
-  const double low = drawing.y(newest.rest_N * (1.0 - kSettlingBand));
+  const double high = drawing.y(newest.rest_N * (1.0 + kDrawnBand));
+  const double low = drawing.y(newest.rest_N * (1.0 - kDrawnBand));
   std::string svg = fmt::format(
       "<rect class=\"band\" x=\"{}\" y=\"{:.1f}\" width=\"{}\" height=\"{:.1f}\">"
-      "<title>settled: within 5 % of {:g} N</title></rect>\n",
+      "<title>5 % about {:g} N</title></rect>\n",
       kLeft, high, kWidth - kLeft - kRight, low - high, newest.rest_N);
   svg += levelOf(drawing, newest.rest_N, fmt::format("{:g} N: where it shall rest", newest.rest_N));
   if (!newest.predicted.t_s.empty())
@@ -168,8 +180,8 @@ std::string forceFigure(const ScopeView& view) {
           ? "No prediction: " + newest.why_not_predicted + "."
           : std::string("Dotted, predicted for the newest: ") + kPredictionText;
   return figureOf(drawing, "Force of the contacts over time", svg,
-                  fmt::format("F_sen in N. Dashed: {:g} N, where it shall rest, with the settling "
-                              "band of 5 %. {}",
+                  fmt::format("F_sen in N. Dashed: {:g} N, where it shall rest, with a band "
+                              "of 5 % about it. {}",
                               newest.rest_N, prediction));
 }
 

@@ -12,11 +12,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "tactus/cli/logged_scene.h"
 #include "tactus/cli/scope_page.h"
 #include "tactus/cli/scope_text.h"
 #include "tactus/daemon/running_log.h"
 #include "tactus/record/growing_file.h"
+#include "tactus/record/logged_scene.h"
 #include "tactus/record/output_file.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/located_error.h"
@@ -138,6 +138,10 @@ class Scope {
   }
 
   void showNone() const {
+    if (!options_.output.empty())
+      failAt(beginOf(options_.output), "-o",
+             "is not written: no trigger " + inQuotes(view_.condition.text),
+             "expected a condition that the run meets, or --auto");
     if (options_.json) {
       if (!options_.follows) std::fputs("[]\n", stdout);
       return;
@@ -162,9 +166,14 @@ class Scope {
   void write() const {
     const std::string part = options_.output + ".part";
     OutputFile file(part);
-    file.append(scopePage(view_));
-    file.flush();
-    file.rename(part, options_.output);
+    try {
+      file.append(scopePage(view_));
+      file.flush();
+      file.rename(part, options_.output);
+    } catch (...) {
+      std::remove(part.c_str());
+      throw;
+    }
     file.close();
   }
 
@@ -185,8 +194,8 @@ Scope makeScope(const ScopeOptions& options) {
   ScopeTrigger trigger = scopeTrigger(options, scene, reader.description().shape);
   const std::string_view field = trigger.condition.columns.front().field;
   if (!reader.has(field)) {
-    failAt({std::make_shared<std::string>(options.log), 1, 1}, field,
-           "is not in this log, which is of an older version", "expected another field");
+    failAt(beginOf(options.log), field, "is not in this log, which is of an older version",
+           "expected another field");
   }
   return {options, std::move(scene), std::move(trigger)};
 }
@@ -212,6 +221,8 @@ void runScope(ScopeOptions options) {
     options.log = runningLog();
     options.follows = true;
   }
+  if (options.output == "-")
+    failAt(beginOf("-"), "-o", "standard output has the drawing", "expected a file for the page");
   if (!options.output.empty()) refuseOverwriting(options.log, options.output);
   if (!options.follows) checkLog(options.log);
   Scope scope = makeScope(options);

@@ -81,8 +81,8 @@ std::string forcePlot(const ScopeView& view, const ScopeScreen& screen) {
   BrailleCanvas canvas(screen.columns - kAxisColumns, kForceRows, range);
   const ScopeTrace& newest = view.traces.back();
   canvas.drawTime(0.0, kGrey, 1, 4);
-  canvas.drawLevel(newest.rest_N * (1.0 - kSettlingBand), kGrey, 1, 6);
-  canvas.drawLevel(newest.rest_N * (1.0 + kSettlingBand), kGrey, 1, 6);
+  canvas.drawLevel(newest.rest_N * (1.0 - kDrawnBand), kGrey, 1, 6);
+  canvas.drawLevel(newest.rest_N * (1.0 + kDrawnBand), kGrey, 1, 6);
   canvas.drawLevel(newest.rest_N, kRest, 4, 8);
   canvas.draw(newest.predicted, kPredicted, 1, 3);
   for (std::size_t i = 0; i < view.traces.size(); ++i)
@@ -134,7 +134,7 @@ PlotRange forceRange(const ScopeView& view) {
   PlotRange range = timesOf(view);
   for (const ScopeTrace& trace : view.traces) {
     widen(trace.force, range);
-    range.high = std::max(range.high, trace.rest_N * (1.0 + 2.0 * kSettlingBand));
+    range.high = std::max(range.high, trace.rest_N * (1.0 + 2.0 * kDrawnBand));
   }
   // A prediction that goes through the roof shall not hide what was measured.
   const double measured = range.high;
@@ -150,8 +150,9 @@ PlotRange signalRange(const ScopeView& view) {
   range.low = std::min(range.low, view.condition.level);
   range.high = std::max(range.high, view.condition.level);
   if (!(range.high > range.low)) {
-    range.low -= 1.0;
-    range.high += 1.0;
+    const double margin = std::max(1.0, 1e-6 * std::abs(range.low));  // also of large numbers
+    range.low -= margin;
+    range.high += margin;
   }
   return range;
 }

@@ -8,6 +8,7 @@
 #include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/run_status.h"
 #include "tactus/daemon/running_log.h"
+#include "tactus/record/run_error.h"
 #include "tactus/scene/gain_keys.h"
 
 namespace tactus {
@@ -24,6 +25,21 @@ double ageOf_s(const Json& status) {
   if (found == status.end() || !found->is_number()) return kNoLimit;
   const double age_s = monotonicTime_s() - found->get<double>();
   return age_s >= 0.0 ? age_s : kNoLimit;  // of before the machine began anew
+}
+
+/// Null where there is none.
+Json entry(const Json& object, const char* name) {
+  const auto found = object.is_object() ? object.find(name) : object.end();
+  return found == object.end() ? Json() : *found;
+}
+
+/// What `show` says. Throws RunError of a daemon that says it in another way.
+Json shownBy(const ControlClient& daemon) {
+  Json shown = daemon.ask({{"do", "show"}});
+  for (const char* name : {"ordered", "kept"})
+    if (!entry(shown, name).is_object())
+      throw RunError(fmt::format("the daemon is of another version: its gains have no {}", name));
+  return shown;
 }
 
 /// Gains on their way, where they are.
@@ -61,7 +77,7 @@ void DaemonWatch::ask(const std::stop_token& stop) {
     Said said{nullptr, "", monotonicTime_s()};
     try {
       if (!daemon) daemon.emplace(controlPath());
-      said.shown = daemon->ask({{"do", "show"}});
+      said.shown = shownBy(*daemon);
     } catch (const std::exception& error) {
       daemon.reset();
       said.problem = error.what();
@@ -77,9 +93,27 @@ void DaemonWatch::ask(const std::stop_token& stop) {
 
 void DaemonWatch::watch(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    look();
+    try {
+      look();
+    } catch (const std::exception& error) {
+      tellProblem(error.what());
+    }
     std::this_thread::sleep_for(kLook);
   }
+}
+
+/// Of what nobody foresaw, from a daemon of another version: the page goes on.
+void DaemonWatch::tellProblem(const std::string& problem) {
+  const std::lock_guard lock(mutex_);
+  const Json state = {
+      {"run", run_},           {"is_there", false}, {"problem", "cannot be read: " + problem},
+      {"control_problem", ""}, {"log_problem", ""}, {"links", Json::array()},
+      {"is_reading", false}};
+  publish(panel_.update(state, LogNews{}));
+}
+
+void DaemonWatch::publish(const Json& event) {
+  if (!event.is_null()) feed_.publish(event.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 void DaemonWatch::look() {
@@ -88,13 +122,12 @@ void DaemonWatch::look() {
   const std::lock_guard lock(mutex_);
   if (age_s <= kMaxAge_s) followLog(status);
   const LogNews news = log_ ? log_->news() : LogNews{};
-  const Json event = panel_.update(state(status, age_s, news), news);
-  if (!event.is_null()) feed_.publish(event.dump(-1, ' ', false, Json::error_handler_t::replace));
+  publish(panel_.update(state(status, age_s, news), news));
 }
 
 void DaemonWatch::followLog(const Json& status) {
   const std::string path = logOf(status);
-  const std::string run = fmt::format("{} {}", status.value("pid", 0), path);
+  const std::string run = fmt::format("{} {}", entry(status, "pid").dump(), path);
   if (run == run_) return;
   run_ = run;
   log_.reset();
@@ -121,7 +154,7 @@ Json DaemonWatch::state(const Json& status, double age_s, const LogNews& news) c
   state["control_problem"] = isSaid() ? std::string() : said_.problem;
   if (isSaid()) {
     Json gains = said_.shown;
-    state["task"] = gains.value("task", Json());
+    state["task"] = entry(gains, "task");
     gains.erase("task");
     gains.erase("done");
     state["now"] = gainsNow(news, gains.at("ordered"));

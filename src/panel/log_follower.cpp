@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "tactus/record/contact_json.h"
-#include "tactus/scene/scene_loader.h"
+#include "tactus/record/logged_scene.h"
 
 namespace tactus {
 namespace {
@@ -48,7 +48,7 @@ bool LogFollower::readFile(const std::stop_token& stop) {
   std::istream in(&*file_);
   UlogReader reader(in, path_);
   const LogDescription& description = reader.description();
-  const Scene scene = loadScene(description.sources, description.overrides, SceneUse::kSimulation);
+  const Scene scene = loggedScene(reader, path_);
   reader.assumeGains(scene.controller.gains);
   if (!watch_) watch_.emplace(scene.controller);
   {

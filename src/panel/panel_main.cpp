@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <thread>
 
@@ -30,12 +31,14 @@ sigset_t stopSignals() {
 
 /// Behind the #: a browser tells that nobody.
 void printAddress(const PanelPlace& place, int port, const std::string& token) {
-  if (place.socket.empty())
+  const std::string socket =  // `ssh -L` begins in another folder
+      place.socket.empty() ? "" : escaped(std::filesystem::absolute(place.socket).string());
+  if (socket.empty())
     fmt::print("http://127.0.0.1:{}/#token={}\n", port, token);
   else
     fmt::print(
         "{} listens; from elsewhere: ssh -L {}:{} HOST, then\nhttp://127.0.0.1:{}/#token={}\n",
-        escaped(place.socket), kUsualPort, escaped(place.socket), kUsualPort, token);
+        socket, kUsualPort, socket, kUsualPort, token);
   std::fflush(stdout);
 }
 

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -78,13 +80,32 @@ void setOptions(int socket) {
   ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
 }
 
-/// Left behind by a panel that was killed: nobody listens there.
-void removeDeadSocket(const std::string& path) {
-  httplib::Client client(path);
-  client.set_address_family(AF_UNIX);
+/// True: whoever bound this socket has gone. Of any type: only the system knows who listens, and
+/// one that takes a connection and says nothing, or speaks no HTTP, is in use.
+bool isDeadSocket(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof(address.sun_path)) return false;
+  path.copy(address.sun_path, path.size());
+  const int asking = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (asking < 0) return false;
+  const int result =
+      ::connect(asking, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
+  const bool is_dead = result != 0 && errno == ECONNREFUSED;
+  ::close(asking);
+  return is_dead;
+}
+
+/// What is a socket at this path.
+std::optional<struct stat> socketAt(const std::string& path) {
   struct stat state {};
-  const bool is_socket = ::lstat(path.c_str(), &state) == 0 && S_ISSOCK(state.st_mode);
-  if (is_socket && !client.Get("/")) ::unlink(path.c_str());
+  if (::lstat(path.c_str(), &state) != 0 || !S_ISSOCK(state.st_mode)) return std::nullopt;
+  return state;
+}
+
+/// Left behind by a panel that was killed.
+void removeDeadSocket(const std::string& path) {
+  if (socketAt(path) && isDeadSocket(path)) ::unlink(path.c_str());
 }
 
 bool sendEvent(const std::string& event, httplib::DataSink& sink) {
@@ -104,11 +125,13 @@ struct PanelServer::Server {
   std::atomic<int> streams{0};
   std::atomic<bool> has_served{false};
   int port = 0;
+  std::optional<struct stat> bound = std::nullopt;  ///< the socket as it was made
 
   void limit();
   void guard();
   void answer(const httplib::Request& request, httplib::Response& response);
   void bind(const PanelPlace& place);
+  void removeSocket() const;
   void stream(httplib::Response& response);
   bool sendNew(std::uint64_t& number, httplib::DataSink& sink);
 };
@@ -212,6 +235,15 @@ void PanelServer::Server::bind(const PanelPlace& place) {
         fmt::format("{}: cannot be listened at, expected the path of no file in a folder "
                     "that may be written",
                     escaped(std::exchange(socket, ""))));
+  bound = socketAt(socket);
+}
+
+/// Not another program's, which has taken the place meanwhile.
+void PanelServer::Server::removeSocket() const {
+  if (!bound) return;
+  const std::optional<struct stat> now = socketAt(socket);
+  const bool is_own = now && now->st_dev == bound->st_dev && now->st_ino == bound->st_ino;
+  if (is_own) ::unlink(socket.c_str());
 }
 
 PanelServer::PanelServer(const PanelPlace& place, std::string token, EventFeed& feed,
@@ -222,9 +254,7 @@ PanelServer::PanelServer(const PanelPlace& place, std::string token, EventFeed& 
   server_->bind(place);
 }
 
-PanelServer::~PanelServer() {
-  if (!server_->socket.empty()) ::unlink(server_->socket.c_str());
-}
+PanelServer::~PanelServer() { server_->removeSocket(); }
 
 int PanelServer::port() const noexcept { return server_->port; }
 

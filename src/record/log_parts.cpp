@@ -13,7 +13,7 @@ namespace {
 
 [[noreturn]] void failIn(const std::string& path, const char* key, const std::string& problem,
                          const std::string& expectation) {
-  failAt({std::make_shared<std::string>(path), 1, 1}, key, problem, expectation);
+  failAt(beginOf(path), key, problem, expectation);
 }
 
 std::string infoOf(const LogDescription& description, const char* name) {

@@ -2,19 +2,85 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "tactus/record/run_error.h"
 #include "tactus/scene/located_error.h"
 
 namespace tactus {
+namespace {
+
+/// A file of a name of its own beside `target`, which is gone at the end unless it took its place.
+class Successor {
+ public:
+  explicit Successor(std::string target)
+      : target_(std::move(target)),
+        path_(target_ + ".XXXXXX"),
+        descriptor_(::mkostemp(path_.data(), O_CLOEXEC)) {
+    if (descriptor_ < 0)
+      failAt(beginOf(target_), "-", fmt::format("cannot be replaced: {}", std::strerror(errno)),
+             "expected a file in a folder that can be written");
+  }
+
+  ~Successor() {
+    ::close(descriptor_);
+    if (!path_.empty()) ::unlink(path_.c_str());
+  }
+  Successor(const Successor&) = delete;
+  Successor& operator=(const Successor&) = delete;
+
+  const std::string& path() const noexcept { return path_; }
+
+  void write(const std::string& text) const {
+    OutputFile file(path_);
+    file.append(text);
+    file.close();
+  }
+
+  /// With owner and rights of who was there. On the disk before it has the name: a loss of power
+  /// leaves the one or the other.
+  void takePlace() {
+    struct stat before {};
+    expect(::stat(target_.c_str(), &before) == 0);
+    // Also of root's sudo; nobody else may give a file away.
+    expect(::fchown(descriptor_, before.st_uid, before.st_gid) == 0 || errno == EPERM);
+    expect(::fchmod(descriptor_, before.st_mode & 07777) == 0);
+    expect(::fsync(descriptor_) == 0);
+    expect(std::rename(path_.c_str(), target_.c_str()) == 0);
+    path_.clear();
+  }
+
+ private:
+  void expect(bool is_done) const {
+    if (!is_done)
+      throw RunError(
+          fmt::format("{}: cannot be replaced: {}", escaped(target_), std::strerror(errno)));
+  }
+
+  std::string target_, path_;
+  int descriptor_;
+};
+
+/// Another file, not what was there before: that may be another user's.
+void keepBeside(const std::string& path) {
+  std::error_code error;
+  std::filesystem::remove(path + "~", error);
+  if (!error) std::filesystem::copy_file(path, path + "~", error);
+  if (error)
+    throw RunError(fmt::format("{}~: cannot be written: {}", escaped(path), error.message()));
+}
+
+}  // namespace
 
 OutputFile::OutputFile(const std::string& path)
     : path_(path == "-" ? "standard output" : escaped(path)),
@@ -23,7 +89,7 @@ OutputFile::OutputFile(const std::string& path)
                       : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)),
       buffer_(new char[kBufferSize]) {
   if (descriptor_ < 0) {
-    failAt({std::make_shared<std::string>(path_), 1, 1}, "-",
+    failAt(beginOf(path_), "-",
            fmt::format("cannot be opened for writing: {}", std::strerror(errno)),
            "expected a path that can be written");
   }
@@ -78,27 +144,18 @@ void OutputFile::close() {
 
 void replaceFile(const std::string& path, const std::string& text,
                  const std::function<void(const std::string& next)>& check) {
-  namespace fs = std::filesystem;
-  const std::string next = path + ".next";
-  OutputFile file(next);
-  file.append(text);
-  file.close();
-  try {
-    if (check) check(next);
-  } catch (...) {
-    fs::remove(next);
-    throw;
-  }
-  fs::permissions(next, fs::status(path).permissions());
-  fs::copy_file(path, path + "~", fs::copy_options::overwrite_existing);
-  fs::rename(next, path);
+  const std::string target = std::filesystem::canonical(path).string();  // a link stays one
+  Successor next(target);
+  next.write(text);
+  if (check) check(next.path());
+  keepBeside(target);
+  next.takePlace();
 }
 
 void refuseOverwriting(const std::string& input, const std::string& output) {
   std::error_code ignored;  // of an output that does not exist yet
   if (std::filesystem::equivalent(input, output, ignored)) {
-    failAt({std::make_shared<std::string>(output), 1, 1}, "-o", "is the input itself",
-           "expected another file");
+    failAt(beginOf(output), "-o", "is the input itself", "expected another file");
   }
 }
 

@@ -18,7 +18,7 @@ constexpr const char* kSummaryName = "summary.json";
 
 [[noreturn]] void failAtOutput(const fs::path& path, const std::string& problem,
                                const std::string& expectation) {
-  failAt({std::make_shared<std::string>(path.string()), 1, 1}, "-o", problem, expectation);
+  failAt(beginOf(path.string()), "-o", problem, expectation);
 }
 
 void removeEarlier(const fs::path& path, const std::string& expectation) {
@@ -31,7 +31,7 @@ void removeEarlier(const fs::path& path, const std::string& expectation) {
 
 void checkRunName(const std::string& name) {
   if (!name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos) return;
-  failAt({std::make_shared<std::string>(name), 1, 1}, "--name", inQuotes(name) + " is no name",
+  failAt(beginOf(name), "--name", inQuotes(name) + " is no name",
          "expected that of one folder, without /");
 }
 

@@ -56,6 +56,7 @@ class TriggerReader {
     const char* const from = text_.data() + at_;
     const auto [end, error] = std::from_chars(from, text_.data() + text_.size(), number);
     if (error != std::errc()) return false;
+    if (!isFinite(number)) return false;
     at_ += static_cast<std::size_t>(end - from);
     return true;
   }
@@ -63,6 +64,9 @@ class TriggerReader {
   bool isAtEnd() const { return at_ >= text_.size(); }
 
  private:
+  static bool isFinite(double number) { return std::isfinite(number); }  // "nan" and "inf" are read
+  static bool isFinite(std::size_t) { return true; }
+
   const std::string& text_;
   std::size_t at_ = 0;
 };
@@ -156,8 +160,7 @@ TriggerCondition parseTrigger(const std::string& text, const RecordShape& shape)
   takeField(reader, shape, condition);
   condition.comparison = takeComparison(reader);
   const std::size_t at = reader.skipBlanks();
-  if (!reader.takeNumber(condition.level) || !std::isfinite(condition.level))
-    reader.fail(at, reader.found(), "expected a number");
+  if (!reader.takeNumber(condition.level)) reader.fail(at, reader.found(), "expected a number");
   const std::size_t end = reader.skipBlanks();
   if (!reader.isAtEnd()) reader.fail(end, reader.found(), "expected the end");
   return condition;

@@ -98,8 +98,7 @@ std::ifstream openLog(const std::string& path) {
     if (!in) throw FileProblem(std::string("cannot be opened: ") + std::strerror(errno));
     return in;
   } catch (const FileProblem& problem) {
-    failAt({std::make_shared<std::string>(path), 1, 1}, "-", problem.what(),
-           "expected a log of tactus");
+    failAt(beginOf(path), "-", problem.what(), "expected a log of tactus");
   }
 }
 
@@ -112,8 +111,7 @@ LogExtent readToEnd(UlogReader& reader) {
 }
 
 void refuseEmptyLog(const std::string& path) {
-  failAt({std::make_shared<std::string>(path), 1, 1}, kCycleTopic, "the log holds none",
-         "expected at least one");
+  failAt(beginOf(path), kCycleTopic, "the log holds none", "expected at least one");
 }
 
 LogExtent checkLog(const std::string& path) {

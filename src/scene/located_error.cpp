@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 namespace tactus {
 namespace {
@@ -104,12 +105,22 @@ void failAt(const SourcePosition& at, std::string_view key, std::string_view pro
                       escaped(problem), escaped(expectation)});
 }
 
+SourcePosition beginOf(std::string path) {
+  return {std::make_shared<std::string>(std::move(path)), 1, 1};
+}
+
 SourcePosition positionAt(std::shared_ptr<const std::string> file, std::string_view text,
                           std::size_t offset) {
   const std::string_view before = text.substr(0, std::min(offset, text.size()));
   const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
   return {std::move(file), 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
           1 + static_cast<int>(before.size() - line_start)};
+}
+
+std::size_t offsetAt(std::string_view text, const SourcePosition& at) {
+  std::size_t offset = 0;
+  for (int line = 1; line < at.line; ++line) offset = text.find('\n', offset) + 1;
+  return offset + static_cast<std::size_t>(at.column) - 1;
 }
 
 std::string nearestWord(std::string_view word, const std::vector<std::string>& candidates) {

@@ -54,8 +54,8 @@ YamlNode readScene(const SourceFile& file, SourceReader& reader, std::vector<std
 void applyOverrides(YamlNode& root, const std::vector<Override>& overrides) {
   for (const Override& setting : overrides) {
     if (setting.key == "extends") {
-      failAt({std::make_shared<std::string>("--set " + setting.key), 1, 1}, setting.key,
-             "cannot be set here", "expected in a file");
+      failAt(beginOf("--set " + setting.key), setting.key, "cannot be set here",
+             "expected in a file");
     }
     if (!setting.key.starts_with(kRobotPrefix)) applyOverride(root, setting, setting.key);
   }
@@ -180,8 +180,7 @@ std::optional<HardwareConfig> chooseHardware(const SceneConfig& config, const Lo
 std::string sceneName(const std::string& path) {
   std::string name = std::filesystem::path(path).stem().string();
   if (name.find_first_not_of('.') == std::string::npos) {
-    failAt({std::make_shared<std::string>(path), 1, 1}, "-", "the file has no name of its own",
-           "expected name.yaml");
+    failAt(beginOf(path), "-", "the file has no name of its own", "expected name.yaml");
   }
   return name;
 }
@@ -269,8 +268,7 @@ Scene loadScene(const std::vector<SourceFile>& files, const std::vector<Override
 Override parseOverride(std::string_view text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string_view::npos || equals == 0) {
-    failAt({std::make_shared<std::string>("--set"), 1, 1}, "-", inQuotes(text) + " sets nothing",
-           "expected section.key=value");
+    failAt(beginOf("--set"), "-", inQuotes(text) + " sets nothing", "expected section.key=value");
   }
   return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
 }

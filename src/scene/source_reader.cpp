@@ -65,7 +65,7 @@ FileProvider provideFrom(const std::vector<SourceFile>& files) {
 }
 
 SourceFile SourceReader::readFirst(const std::string& path) {
-  return read(path, "-", {std::make_shared<std::string>(path), 1, 1});
+  return read(path, "-", beginOf(path));
 }
 
 SourceFile SourceReader::read(const std::string& path, std::string_view key,

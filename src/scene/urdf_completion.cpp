@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "tactus/scene/urdf_node.h"
 #include "tactus/scene/urdf_tree.h"
 
 namespace tactus {
@@ -14,13 +15,15 @@ namespace {
 
 bool isMoving(const UrdfJoint& joint) { return joint.type != "fixed"; }
 
-/// Absent, or a zero: whatever else is written there, the loader judges.
-bool isUnsaid(const pugi::xml_attribute& attribute) {
-  if (!attribute) return true;
-  const std::string text = attribute.value();
-  return text.find_first_not_of(" 0.+-eE") == std::string::npos &&
-         text.find('0') != std::string::npos;
+/// Refuses what is there and no number with its place: a copy with another value would hide it.
+void refuseNoLimits(const UrdfNode& joint, const std::string& type) {
+  if (type != "continuous")
+    for (const char* name : {"lower", "upper"}) joint.number("limit", name, kMaxUrdfLimit, 0.0);
+  joint.number("limit", "velocity", kMaxUrdfLimit, 0.0);
 }
+
+/// Absent, or a zero.
+bool isUnsaid(const pugi::xml_attribute& attribute) { return attribute.as_double() == 0.0; }
 
 void setNumber(pugi::xml_node limit, const char* name, double value) {
   pugi::xml_attribute attribute = limit.attribute(name);
@@ -99,7 +102,7 @@ CompletedUrdf completeLimits(const SourceFile& urdf, const std::string& tip) {
     const bool is_known =
         joint.type == "prismatic" || joint.type == "revolute" || joint.type == "continuous";
     if (!is_known) continue;
-    onlyChild(tree, joint.node, "limit", "joint." + joint.name);
+    refuseNoLimits({tree, joint.node, "joint." + joint.name}, joint.type);
     const std::string what = completeJoint(jointNamed(document, joint.name), joint.type);
     if (!what.empty()) completed.assumed.push_back({joint.name, what});
   }

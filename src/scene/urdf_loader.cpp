@@ -10,7 +10,6 @@ namespace tactus {
 namespace {
 
 constexpr double kMaxAxis = 1e3;
-constexpr double kMaxLimit = 1e6;
 constexpr double kMaxEffort = 1e9;
 
 /// One joint of the chain while it is read.
@@ -42,15 +41,15 @@ MovingJoint readMovingJoint(const JointReader& reader) {
   result.joint.type = type == "prismatic" ? JointType::kPrismatic : JointType::kRevolute;
   result.joint.axis = readAxis(reader);
   if (type != "continuous") {
-    result.lower = reader.number("limit", "lower", kMaxLimit, kRequired);
-    result.upper = reader.number("limit", "upper", kMaxLimit, kRequired);
+    result.lower = reader.number("limit", "lower", kMaxUrdfLimit, kRequired);
+    result.upper = reader.number("limit", "upper", kMaxUrdfLimit, kRequired);
     if (result.lower >= result.upper) {
       reader.fail(reader.child("limit"), "limit",
                   fmt::format("lower {} is not below upper {}", result.lower, result.upper),
                   "lower < upper");
     }
   }
-  result.max_velocity = reader.number("limit", "velocity", kMaxLimit, kRequired);
+  result.max_velocity = reader.number("limit", "velocity", kMaxUrdfLimit, kRequired);
   if (result.max_velocity <= 0.0) {
     reader.fail(reader.child("limit"), "limit.velocity", "is not positive",
                 "a number > 0 in m/s or rad/s");

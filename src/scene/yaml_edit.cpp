@@ -31,12 +31,6 @@ const YamlNode* child(const YamlNode& node, const std::string& word) {
   return index < node.items.size() ? &node.items[index] : nullptr;
 }
 
-std::size_t byteAt(std::string_view text, const SourcePosition& at) {
-  std::size_t offset = 0;
-  for (int line = 1; line < at.line; ++line) offset = text.find('\n', offset) + 1;
-  return offset + static_cast<std::size_t>(at.column) - 1;
-}
-
 /// Of the scalar that begins there.
 std::size_t tokenLength(std::string_view text) {
   const char quote = text.empty() ? '\0' : text[0];
@@ -78,7 +72,7 @@ std::string withNew(const SourceFile& file, const YamlNode& section, const Words
     if (!text.empty() && text.back() != '\n') text += '\n';
     return text + blockText(words, 0, 0, value);
   }
-  const std::size_t begin = byteAt(text, section.at);
+  const std::size_t begin = offsetAt(text, section.at);
   if (text[begin] == '{') {
     const std::string rest = section.entries.empty() ? "" : ", ";
     return text.insert(begin + 1, flowText(words, first, value) + rest);
@@ -86,7 +80,7 @@ std::string withNew(const SourceFile& file, const YamlNode& section, const Words
   SourcePosition entry = section.entries.front().key_at;
   const auto indentation = static_cast<std::size_t>(entry.column) - 1;
   const bool follows_dash =
-      text.substr(byteAt(text, {entry.file, entry.line, 1}), indentation).find('-') !=
+      text.substr(offsetAt(text, {entry.file, entry.line, 1}), indentation).find('-') !=
       std::string::npos;
   const YamlNode::Kind kind = section.entries.front().value.kind;
   if (follows_dash && kind != YamlNode::Kind::kScalar)
@@ -94,7 +88,7 @@ std::string withNew(const SourceFile& file, const YamlNode& section, const Words
            "expected an entry that begins with a plain value");
   if (follows_dash) ++entry.line;
   if (follows_dash && text.back() != '\n') text += '\n';
-  return text.insert(byteAt(text, {entry.file, entry.line, 1}),
+  return text.insert(offsetAt(text, {entry.file, entry.line, 1}),
                      blockText(words, first, indentation, value));
 }
 
@@ -117,7 +111,7 @@ std::string withValue(const SourceFile& file, std::string_view key, const std::s
   if (depth < words.size() || !is_value)
     failAt(node->at, key, "cannot be written here", "expected a section, or a value");
   std::string text = file.text;
-  const std::size_t begin = byteAt(text, node->at);
+  const std::size_t begin = offsetAt(text, node->at);
   return text.replace(begin, tokenLength(std::string_view(text).substr(begin)), value);
 }
 

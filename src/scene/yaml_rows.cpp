@@ -9,12 +9,6 @@
 namespace tactus {
 namespace {
 
-std::size_t offsetAt(std::string_view text, const SourcePosition& at) {
-  std::size_t offset = 0;
-  for (int line = 1; line < at.line; ++line) offset = text.find('\n', offset) + 1;
-  return offset + static_cast<std::size_t>(at.column) - 1;
-}
-
 /// Behind the bracket that closes the one at `begin`. Of numbers and comments alone.
 std::size_t endOfList(std::string_view text, std::size_t begin) {
   int depth = 0;

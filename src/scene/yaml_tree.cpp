@@ -103,7 +103,7 @@ void mergeYaml(YamlNode& base, YamlNode overlay) {
 
 void applyOverride(YamlNode& root, const Override& setting, std::string_view path) {
   const SourceFile source{"--set " + setting.key, setting.value};
-  const SourcePosition at{std::make_shared<std::string>(source.path), 1, 1};
+  const SourcePosition at = beginOf(source.path);
   const std::vector<PathStep> steps = splitPath(path);
   if (steps.empty()) {
     failAt(at, setting.key, "is no path of keys", "expected section.key or section.list[0].key");

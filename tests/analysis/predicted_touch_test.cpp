@@ -84,7 +84,7 @@ std::vector<PredictedForce> predictedForces(const RailTouch& touch) {
 }
 
 /// The largest difference, as a share of the peak.
-double largestError(const RailTouch& touch) {
+double largestForceError(const RailTouch& touch) {
   const std::vector<double> simulated = simulatedForces(touch);
   const std::vector<PredictedForce> predicted = predictedForces(touch);
   EXPECT_NEAR(static_cast<double>(predicted.size()), static_cast<double>(simulated.size()), 1.0);
@@ -124,7 +124,7 @@ TEST_P(PredictedTouchOf, IsWhatARailDoes) {
   test::Random random(31);
   std::vector<double> errors;
   for (int i = 0; i < 60; ++i)
-    errors.push_back(largestError(randomTouch(random, GetParam().variant)));
+    errors.push_back(largestForceError(randomTouch(random, GetParam().variant)));
   std::ranges::sort(errors);
   EXPECT_LT(errors[30], GetParam().median);
   EXPECT_LT(errors.back(), GetParam().worst);

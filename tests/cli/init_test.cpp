@@ -169,6 +169,27 @@ TEST_F(InitTest, WhatNoArmCanBeMadeOfIsRefusedAndNothingWritten) {
   <joint name="j" type="revolute"><parent link="a"/><child link="b"/>
   <limit lower="2" upper="1" velocity="1"/></joint></robot>)"),
                 {}, "lower 2 is not below upper 1");
+  for (const std::string limit : {"lower", "upper", "velocity"})
+    expectRefusal(put("abc.urdf", R"(<robot name="r"><link name="a"/><link name="b"/>
+  <joint name="j" type="revolute"><parent link="a"/><child link="b"/>
+  <limit )" + limit + R"(="abc"/></joint></robot>)"),
+                  {}, ("abc.urdf:3:3: joint.j.limit." + limit + ": 'abc' is no number").c_str());
+}
+
+TEST_F(InitTest, FoldersThatWereMadeAreGoneAfterAFailure) {
+  const std::string urdf = TACTUS_SOURCE_DIR "/config/robots/planar2/planar2.urdf";
+  put("file", "mine");
+  std::filesystem::create_directory(folder_.path() + "/kept");
+  for (const std::string& folder :
+       {"/file/a/b" + std::string(), "/kept/a/" + std::string(300, 'b')}) {
+    std::string output;
+    EXPECT_THROW(
+        test::runCommand(addInitCommand, {"init", urdf, "-o", folder_.path() + folder}, output),
+        InputError)
+        << folder;
+  }
+  EXPECT_TRUE(folder_.has("kept"));
+  EXPECT_FALSE(folder_.has("kept/a"));
 }
 
 /// What is commented out has to be right, too, once it is filled in.

@@ -188,6 +188,23 @@ TEST(Scope, WritesAPageThatNeedsNothingElse) {
   EXPECT_EQ(std::count(html.begin(), html.end(), '<'), std::count(html.begin(), html.end(), '>'));
 }
 
+/// Where one more is no other number.
+TEST(ScopePage, OfLargeNumbersHasFewLines) {
+  for (const double spread : {0.0, 2.0, 8.0, 1e18}) {
+    ScopeTrace trace;
+    trace.force = {{0.0, 1.0}, {1.0, 2.0}};
+    trace.signal = {{0.0, 1.0}, {1e16, 1e16 + spread}};
+    const TriggerCondition condition = parseTrigger("u_n > 1e16", {.joints = 3, .task_size = 2});
+    const std::string html = scopePage({"run.ulg", condition, 0.3, 2.0, {trace}});
+    std::size_t lines = 0;
+    for (std::size_t at = 0; (at = html.find("class=\"grid\"", at)) != std::string::npos; ++at)
+      ++lines;
+    EXPECT_GT(lines, 8u) << spread;
+    EXPECT_LT(lines, 60u) << spread;
+    EXPECT_EQ(html.find("nan\""), std::string::npos) << spread;
+  }
+}
+
 TEST(Scope, RefusesToOverwriteItsLog) {
   const ScopedRun run("scenario3_tactus");
   std::string output;

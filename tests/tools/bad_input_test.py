@@ -52,6 +52,7 @@ class BadInput(unittest.TestCase):
         if not as_json:
             self.assertEqual(result.stdout, "")
             return
+        self.assertEqual(result.stdout.count("\n"), 1)
         error = json.loads(result.stdout)
         self.assertEqual((error["done"], error["error"] + "\n"), (False, result.stderr))
         line = "{file}:{line}:{column}: {key}: {problem}, {expected}\n".format(**error)

@@ -64,6 +64,8 @@ class Completion(unittest.TestCase):
         self.assertEqual(self.offered("simulate", "one.yaml", "-o", ""), ["runs"])
         self.assertEqual(self.offered("scope", "runs/mine/"), ["runs/mine/run.ulg"])
         self.assertEqual(self.offered("scope", "--trigger", ""), [""])
+        self.assertEqual(self.offered("panel", "--port", ""), [""])
+        self.assertEqual(self.offered("panel", "--socket", "o"), ["one.yaml", "other.txt"])
         self.assertEqual(self.offered("export", "x.ulg", "-o", ""), ["runs", "table.csv"])
 
     def test_keys_behind_set(self):

@@ -11,6 +11,7 @@ import socket
 import stat
 import subprocess
 import sys
+import time
 import unittest
 
 sys.dont_write_bytecode = True
@@ -134,7 +135,9 @@ class Places(unittest.TestCase):
             connection.close()
             self.rig.panel.kill()
             self.rig.panel.communicate()
-        self.rig.start_panel("--socket", path)
+        self.rig.start_panel("--socket", os.path.relpath(path))
+        self.assertTrue(os.path.samefile(self.rig.address.split()[0], path), self.rig.address)
+        self.assertTrue(self.rig.address.startswith("/"), "for another folder")
         self.rig.stop_panel()
         self.assertFalse(path.exists())
 
@@ -144,6 +147,52 @@ class Places(unittest.TestCase):
         done = subprocess.run([PANEL, "--socket", path], capture_output=True, text=True, timeout=PATIENCE_S,
                               env=self.rig.environment())  # fmt: skip
         self.assertEqual((done.returncode, path.read_text()), (3, "mine"), done.stderr)
+
+    def test_a_socket_that_is_in_use_stays(self):
+        for kind in (socket.SOCK_SEQPACKET, socket.SOCK_STREAM):
+            path = self.rig.folder / f"other{kind}"
+            with socket.socket(socket.AF_UNIX, kind) as other:
+                other.bind(str(path))
+                other.listen()  # and says nothing
+                before = os.stat(path).st_ino
+                done = subprocess.run([PANEL, "--socket", path], capture_output=True, text=True,
+                                      timeout=PATIENCE_S, env=self.rig.environment())  # fmt: skip
+                self.assertEqual((done.returncode, os.stat(path).st_ino), (3, before), done.stderr)
+
+    def test_a_socket_of_who_came_after_stays(self):
+        path = self.rig.folder / "panel.sock"
+        self.rig.start_panel("--socket", path)
+        path.rename(self.rig.folder / "moved")
+        path.write_text("another")
+        self.rig.stop_panel()
+        self.assertEqual(path.read_text(), "another")
+
+    def test_a_status_of_other_types_ends_nothing(self):
+        status = {"pid": "x", "mode": {}, "log": 3, "scene": None}
+        self.rig.start_panel()
+        events = self.rig.events()
+        for monotonic_s in (time.monotonic(), [], "now"):
+            (self.rig.runtime / "status.json").write_text(json.dumps(status | {"monotonic_s": monotonic_s}))
+            time.sleep(0.3)
+        (self.rig.runtime / "status.json").write_text(json.dumps(status | {"monotonic_s": time.monotonic()}))
+        wait_for("a state", lambda: (next(events).get("state") or {}).get("is_there"))
+        events.close()
+        self.assertIsNone(self.rig.panel.poll())
+
+    def test_a_daemon_of_another_version_is_named(self):
+        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as daemon:
+            daemon.bind(str(self.rig.runtime / "control"))
+            daemon.listen()
+            self.rig.start_panel()
+            events = self.rig.events()
+            connection, _ = daemon.accept()
+            connection.recv(65536)
+            connection.send(b'{"done": true, "task": 1}')
+            wait_for("its problem", lambda: "another version" in
+                     (next(events).get("state") or {}).get("control_problem", ""))  # fmt: skip
+            events.close()
+            self.assertIsNone(self.rig.panel.poll())
+            connection.close()
 
     def test_without_a_daemon_it_says_so(self):
         self.rig.start_panel()

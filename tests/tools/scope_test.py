@@ -108,12 +108,20 @@ class Scope(unittest.TestCase):
                 ([self.live / "none.ulg"], 1, "none.ulg"),
                 (["-o", self.log, self.log], 1, "is the input itself"),
                 (["-o", missing + "/x.html", self.log], 1, "x.html"),
+                (["-o", "-", self.log], 1, "standard output has the drawing"),
+                (["-o", self.live / "no.html", "--trigger", "force_N > 1e6", self.log], 1, "is not written"),
                 ([], 3, "no daemon is running")):
             done = subprocess.run([TACTUS, "scope", *arguments], capture_output=True, text=True,
                                   env=os.environ | {"RUNTIME_DIRECTORY": missing})  # fmt: skip
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
             self.assertIn(words, done.stderr)
+        self.assertFalse(list(self.live.glob("no.html*")))
+        done = subprocess.run([TACTUS, "contacts", "--json"], capture_output=True, text=True,
+                              env=os.environ | {"RUNTIME_DIRECTORY": "/" + 300 * "a"})  # fmt: skip
+        self.assertEqual((done.returncode, done.stderr.count("\n"), done.stdout.count("\n")), (3, 1, 1))
+        self.assertRegex(done.stderr, "^/a+/status.json: File name too long$")
+        self.assertEqual(json.loads(done.stdout)["error"] + "\n", done.stderr)
         for arguments in (["--single", "--auto"], ["--keep", "0"], ["--pre", "-1"], ["--post", "nan"],
                           ["--hysteresis", "-1"]):  # fmt: skip
             done = subprocess.run([TACTUS, "scope", *arguments, self.log], capture_output=True)

@@ -33,7 +33,7 @@ struct ScopeTrace {
   std::string why_not_predicted;
 };
 
-inline constexpr double kSettlingBand = 0.05;  ///< of rest_N, to each side
+inline constexpr double kDrawnBand = 0.05;  ///< of rest_N, to each side; settling_s is of another
 
 /// capture has cycles.
 ScopeTrace scopeTrace(const Scene& scene, const TriggerCondition& condition,

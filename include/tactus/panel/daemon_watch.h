@@ -37,6 +37,8 @@ class DaemonWatch {
   void ask(const std::stop_token& stop);
   void watch(const std::stop_token& stop);
   void look();
+  void tellProblem(const std::string& problem);
+  void publish(const Json& event);
   void followLog(const Json& status);
   Json state(const Json& status, double age_s, const LogNews& news) const;
   std::string problem(const Json& status, double age_s) const;

@@ -52,9 +52,11 @@ class OutputFile {
   std::uint64_t flushed_ = 0;  ///< bytes
 };
 
-/// Gives a file another content, as a whole or not at all; as it was it stays beside, with a tilde
-/// behind its name. check: of the new one by its path, before it takes the old one's place; what it
-/// throws leaves all as it was.
+/// Gives a file that is there another content, as a whole or not at all, also where the power goes;
+/// as it was it stays beside, with a tilde behind its name. Owner and rights stay, and a link stays
+/// a link: what it leads to is replaced, and the tilde is there. check: of the new one by its path,
+/// which is in the same folder, before it takes the old one's place; what it throws leaves all as
+/// it was. Throws RunError or InputError.
 void replaceFile(const std::string& path, const std::string& text,
                  const std::function<void(const std::string& next)>& check = {});
 

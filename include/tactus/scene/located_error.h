@@ -21,9 +21,14 @@ struct SourcePosition {
 [[noreturn]] void failAt(const SourcePosition& at, std::string_view key, std::string_view problem,
                          std::string_view expectation);
 
+/// Where what is wrong with a file, or an option, as a whole is shown: 1:1.
+SourcePosition beginOf(std::string path);
+
 /// The position of a byte of `text`.
 SourcePosition positionAt(std::shared_ptr<const std::string> file, std::string_view text,
                           std::size_t offset);
+/// The byte of `text` at a position that is in it.
+std::size_t offsetAt(std::string_view text, const SourcePosition& at);
 
 /// Text of a user as errors show it: in quotes, shortened, on one line.
 std::string inQuotes(std::string_view user_text);

@@ -11,6 +11,8 @@ namespace tactus {
 /// As the value of a number that is absent: it must not be.
 inline constexpr double kRequired = std::numeric_limits<double>::quiet_NaN();
 
+inline constexpr double kMaxUrdfLimit = 1e6;  ///< of a joint; m, rad, m/s or rad/s
+
 /// Reads the numbers of an element of a URDF and of its children. Throws InputError.
 struct UrdfNode {
   const UrdfTree& tree;

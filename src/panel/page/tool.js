@@ -25,7 +25,8 @@ function move(event) {
   const texts = ["x", "y", "z"].map((axis) => at(axis).value.trim());
   const to_m = texts.map((text) => (text === "" ? null : Number(text)));
   const speed = at("speed").value.trim();
-  if (to_m.some(Number.isNaN) || Number.isNaN(Number(speed)))
+  const isNumber = (value) => value === null || Number.isFinite(value);  // no other is left in JSON
+  if (!to_m.every(isNumber) || !isNumber(Number(speed)))
     return show("move-message", "expected numbers", "bad");
   if (to_m.every((value) => value === null))
     return show("move-message", "no target, expected one of x, y and z", "bad");

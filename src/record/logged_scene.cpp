@@ -1,4 +1,4 @@
-#include "tactus/cli/logged_scene.h"
+#include "tactus/record/logged_scene.h"
 
 #include <memory>
 
@@ -11,8 +11,8 @@ Scene loggedScene(const UlogReader& reader, const std::string& path) {
   const LogDescription& description = reader.description();
   Scene scene = loadScene(description.sources, description.overrides, SceneUse::kSimulation);
   if (static_cast<std::size_t>(description.shape.modules) < scene.module_links.size())
-    failAt({std::make_shared<std::string>(path), 1, 1}, "force_sensor_N",
-           "has fewer tactile modules than its scene", "expected one of each");
+    failAt(beginOf(path), "force_sensor_N", "has fewer tactile modules than its scene",
+           "expected one of each");
   return scene;
 }
 

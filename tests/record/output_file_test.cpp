@@ -1,0 +1,89 @@
+#include "tactus/record/output_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <stdexcept>
+
+#include "support/run_folder.h"
+#include "tactus/record/run_error.h"
+
+namespace tactus {
+namespace {
+
+namespace fs = std::filesystem;
+
+void put(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+std::string contentOf(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::set<std::string> namesIn(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+class ReplacedFile : public testing::Test {
+ protected:
+  ReplacedFile() { put(path_, "old"); }
+
+  const test::RunFolder run_;
+  const fs::path folder_ = run_.path();
+  const fs::path path_ = folder_ / "scene.yaml";
+};
+
+TEST_F(ReplacedFile, KeepsItsRightsAndWhatItWas) {
+  ASSERT_EQ(::chmod(path_.c_str(), 0640), 0);
+  put(path_.string() + "~", "older");
+  std::string seen;
+  replaceFile(path_.string(), "new", [&](const std::string& next) {
+    seen = contentOf(next);
+    EXPECT_EQ(fs::path(next).parent_path(), fs::canonical(folder_));
+    EXPECT_EQ(contentOf(path_), "old");
+  });
+  EXPECT_EQ(seen, "new");
+  EXPECT_EQ(contentOf(path_), "new");
+  EXPECT_EQ(contentOf(path_.string() + "~"), "old");
+  EXPECT_EQ(fs::status(path_).permissions(), fs::perms(0640));
+  EXPECT_EQ(namesIn(folder_), (std::set<std::string>{"scene.yaml", "scene.yaml~"}));
+}
+
+TEST_F(ReplacedFile, LinkStaysALink) {
+  const fs::path link = folder_ / "link.yaml";
+  fs::create_symlink("scene.yaml", link);
+  replaceFile(link.string(), "new");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(contentOf(path_), "new");
+  EXPECT_EQ(namesIn(folder_), (std::set<std::string>{"link.yaml", "scene.yaml", "scene.yaml~"}));
+}
+
+TEST_F(ReplacedFile, WhatTheCheckThrowsLeavesAllAsItWas) {
+  const auto refuse = [](const std::string&) { throw std::runtime_error("no"); };
+  EXPECT_THROW(replaceFile(path_.string(), "new", refuse), std::runtime_error);
+  EXPECT_EQ(contentOf(path_), "old");
+  EXPECT_EQ(namesIn(folder_), std::set<std::string>{"scene.yaml"});
+}
+
+TEST_F(ReplacedFile, FailureLeavesNothingBehind) {
+  fs::create_directories(path_.string() + "~/in the way");
+  EXPECT_THROW(replaceFile(path_.string(), "new"), RunError);
+  EXPECT_EQ(contentOf(path_), "old");
+  EXPECT_EQ(namesIn(folder_), (std::set<std::string>{"scene.yaml", "scene.yaml~"}));
+}
+
+TEST_F(ReplacedFile, TakesNobodyElsesName) {
+  put(path_.string() + ".next", "mine");
+  replaceFile(path_.string(), "new");
+  EXPECT_EQ(contentOf(path_.string() + ".next"), "mine");
+}
+
+}  // namespace
+}  // namespace tactus
