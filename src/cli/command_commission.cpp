@@ -11,6 +11,7 @@
 #include "tactus/cli/commands.h"
 #include "tactus/cli/commission_run.h"
 #include "tactus/cli/commission_terminal.h"
+#include "tactus/cli/number_within.h"
 #include "tactus/record/run_error.h"
 #include "tactus/rt/scheduling.h"
 #include "tactus/scene/command_scene.h"
@@ -66,7 +67,7 @@ int commissionScene(CommissionArguments arguments) {
 
 void addBound(CLI::App& command, const char* name, double& value, double least, double most,
               const char* text) {
-  command.add_option(name, value, text)->check(CLI::Range(least, most))->capture_default_str();
+  command.add_option(name, value, text)->check(numberWithin(least, most))->capture_default_str();
 }
 
 }  // namespace
