@@ -113,13 +113,15 @@ std::string questionText(const Scene& scene, const CommissionConfig& config,
           jointText(scene, joint), here, slides(scene, joint) ? "mm" : "deg");
     case Asked::kJog:
       return fmt::format(
-          "{}{}: + or - to move it by {}, upper or lower if it may go no further, "
+          "{}{}{}: + or - to move it by {}, upper or lower if it may go no further, "
           "done when both are told, or without.",
+          question.is_refused ? "An end that was told is there, or too near. " : "",
           jointText(scene, joint), here, lengthText(scene, joint, bounds.max_travel));
     case Asked::kEndPlace:
       return fmt::format(
-          "Where is {} at its {} end{}, in {}? Measured here, counts get more exact; "
+          "{}Where is {} at its {} end{}, in {}? Measured here, counts get more exact; "
           "none to go on without.",
+          question.is_refused ? "That does not fit the places measured before. " : "",
           jointText(scene, joint), question.is_upper ? "upper" : "lower", here,
           slides(scene, joint) ? "mm" : "deg");
   }
