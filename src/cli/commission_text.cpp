@@ -47,6 +47,7 @@ std::string trimmed(std::string_view line) {
 
 std::optional<Answer> number(const Scene& scene, int joint, const std::string& word) {
   double value = 0.0;
+  if (word.starts_with("+-")) return std::nullopt;
   const char* const begin = word.data() + (word[0] == '+' ? 1 : 0);
   const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))

@@ -61,7 +61,8 @@ TEST(CommissionText, WhatIsTypedIsUnderstoodOrNot) {
   question.joint = kLiftJoint;
   EXPECT_NEAR(parsed(Asked::kEndPlace, "12.5")->value, 0.0125, 1e-12);
   EXPECT_EQ(parsed(Asked::kDirection, "roll")->joint, kRollJoint);
-  for (const char* line : {"", " ", "1e999", "nan", "inf", "1,5", "1 2", "none", "++1", "0x10"})
+  for (const char* line : {"", " ", "1e999", "nan", "inf", "1,5", "1 2", "none", "++1", "+-5",
+                           "-+5", "--5", "+", "0x10"})
     EXPECT_FALSE(parsed(Asked::kPlace, line)) << line;
   for (const char* line : {"", "Y", "+", "yes yes", "1"})
     EXPECT_FALSE(parsed(Asked::kReady, line)) << line;
