@@ -54,7 +54,7 @@ int commissionScene(CommissionArguments arguments) {
   const CommissionConfig config = commissionConfig(scene, options);
   try {
     if (!options.is_scan_alone) printTimeLimits();
-    CommissionTerminal desk(config);
+    CommissionTerminal desk(config, !options.is_scan_alone);
     return runCommission(scene, options, desk);
   } catch (const std::logic_error&) {
     throw;

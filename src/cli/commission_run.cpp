@@ -77,29 +77,32 @@ class Commissioning {
   }
 
  private:
+  /// False: it was stopped, or did not hear all that a scan alone is for.
   bool scan() {
-    const auto goesOn = [this] { return options_.is_scan_alone || !desk_.isStopped(); };
-    while (desk_.cycle().phase() == Phase::kScanning && goesOn()) desk_.runCycle();
-    if (!goesOn()) return false;
+    while (desk_.cycle().phase() == Phase::kScanning && !desk_.isStopped()) desk_.runCycle();
+    if (desk_.isStopped()) return false;
     const auto& nodes = desk_.cycle().nodes();
     if (options_.json) {
       desk_.say(jsonText(nodesJson(scene_, nodes)));
     } else {
       desk_.say(nodesText(scene_, nodes));
     }
-    reportBusFault();
-    return true;
+    const bool has_fault = reportBusFault();
+    return !(has_fault && options_.is_scan_alone);
   }
 
-  void reportBusFault() {
-    if (const auto fault = desk_.takeBusFault())
+  bool reportBusFault() {
+    const auto fault = desk_.takeBusFault();
+    if (fault)
       fmt::print(stderr, "{}: {}: {}\n",
                  escaped(scene_.hardware->buses[static_cast<std::size_t>(fault->first)].interface),
                  faultName(fault->second), faultRow(fault->second).detection);
+    return fault.has_value();
   }
 
   /// Cycles go on meanwhile; nothing if it was stopped.
   std::optional<std::string> ask(const std::string& text) {
+    desk_.forgetTyped();
     desk_.say(text);
     while (!desk_.isStopped()) {
       if (auto line = desk_.takeLine()) return line;
@@ -111,7 +114,8 @@ class Commissioning {
   /// One of the words, or the last one if it was stopped.
   std::string choose(const std::string& question, const std::vector<std::string>& words) {
     while (const auto line = ask(fmt::format("{} {} > ", question, fmt::join(words, ", "))))
-      if (std::ranges::find(words, *line) != words.end()) return *line;
+      if (const auto word = std::ranges::find(words, trimmedLine(*line)); word != words.end())
+        return *word;
     return words.back();
   }
 
@@ -147,7 +151,10 @@ class Commissioning {
     while (cycle.phase() != Phase::kIdle) {
       desk_.runCycle();
       const Question* const question = cycle.question();
-      if (question && !asked) desk_.say(questionText(scene_, config_, *question) + "\n> ");
+      if (question && !asked) {
+        desk_.forgetTyped();
+        desk_.say(questionText(scene_, config_, *question) + "\n> ");
+      }
       asked = question;
       if (cycle.isWaitingForEnable() && !has_waited) desk_.say("switch the enable line on\n");
       has_waited = cycle.isWaitingForEnable();

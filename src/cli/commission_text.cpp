@@ -39,12 +39,6 @@ std::string numbersOf(Vector3 v) {
   return fmt::format("({:.3g}, {:.3g}, {:.3g})", v.x(), v.y(), v.z());
 }
 
-std::string trimmed(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return std::string(line.substr(first, line.find_last_not_of(" \t\r\n") + 1 - first));
-}
-
 std::optional<Answer> number(const Scene& scene, int joint, const std::string& word) {
   double value = 0.0;
   if (word.starts_with("+-")) return std::nullopt;
@@ -59,6 +53,12 @@ std::optional<Answer> number(const Scene& scene, int joint, const std::string& w
 
 std::string jointText(const Scene& scene, int joint) {
   return escaped(scene.joint_names[static_cast<std::size_t>(joint)]);
+}
+
+std::string trimmedLine(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return {};
+  return std::string(line.substr(first, line.find_last_not_of(" \t\r\n") + 1 - first));
 }
 
 std::string placeText(const Scene& scene, int bus, int node_id) {
@@ -131,7 +131,7 @@ std::string questionText(const Scene& scene, const CommissionConfig& config,
 
 std::optional<Answer> parseAnswer(const Scene& scene, const Question& question,
                                   std::string_view line) {
-  const std::string word = trimmed(line);
+  const std::string word = trimmedLine(line);
   if (word.empty()) return std::nullopt;
   const auto is = [&word](std::string_view one, std::string_view other) {
     return word == one || word == other;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "support/commission_folder.h"
 #include "support/commission_rig.h"
@@ -62,6 +63,10 @@ class VirtualDesk final : public CommissionDesk {
 
   test::CommissionRig rig;
   std::string said;
+  std::function<void()> on_write;
+  std::string typed_ahead;  ///< a line that nobody has asked for yet
+  bool is_gone = false;     ///< types nothing else, and then goes away
+  std::optional<std::pair<int, Fault>> bus_fault;
   bool stops_after_writing = false;
   int cycles_to_stop = 0;  ///< of motion, until a line is typed
 
@@ -74,6 +79,8 @@ class VirtualDesk final : public CommissionDesk {
     is_stopped_ = false;
   }
 
+  void end() { is_stopped_ = true; }
+
   void runCycle() override {
     rig.step();
     rig.input.stop_requested = false;
@@ -81,11 +88,17 @@ class VirtualDesk final : public CommissionDesk {
   }
   CommissionCycle& cycle() override { return *rig.cycle; }
   void stopMotion() override { rig.input.stop_requested = true; }
-  std::optional<std::pair<int, Fault>> takeBusFault() override { return std::nullopt; }
+  std::optional<std::pair<int, Fault>> takeBusFault() override { return bus_fault; }
   void say(const std::string& text) override { said += text; }
   bool isStopped() const override { return is_stopped_; }
+  void forgetTyped() override { typed_ahead.clear(); }
 
   std::optional<std::string> takeLine() override {
+    if (!typed_ahead.empty()) return std::exchange(typed_ahead, "");
+    if (is_gone) {
+      is_stopped_ = true;
+      return std::nullopt;
+    }
     if (const Question* const question = cycle().question()) {
       rig.noteQuestion();
       return typed(*question);
@@ -95,7 +108,7 @@ class VirtualDesk final : public CommissionDesk {
     const bool asks_on = said.ends_with("end > ");
     const bool is_writing = said.ends_with("Write this? yes, no > ");
     if (is_writing && stops_after_writing) is_stopped_ = true;
-    return asks_on ? "end" : "yes";
+    return asks_on ? "end" : " yes\r";
   }
 
  private:
@@ -228,6 +241,25 @@ TEST(Commission, ScanAloneMovesNothing) {
   EXPECT_EQ(json.at("nodes").at(2).at("joint"), "roll");
   EXPECT_EQ(json.at("nodes").at(2).at("node_id"), 9);
   EXPECT_EQ(json.at("missing").size(), 0u);
+  EXPECT_EQ(desk.rig.most_powered, 0);
+  desk.restart(folder.scene());
+  desk.bus_fault.emplace(1, Fault::kBusOff);
+  EXPECT_EQ(runCommission(folder.scene(), options, desk), kExitFault);
+  desk.restart(folder.scene());
+  desk.bus_fault.reset();
+  desk.end();
+  EXPECT_EQ(runCommission(folder.scene(), options, desk), kExitFault);
+  EXPECT_EQ(desk.said, "");
+}
+
+TEST(Commission, LineThatWasTypedTooEarlyAnswersNothing) {
+  const CommissionFolder folder;
+  VirtualDesk desk(folder.scene());
+  desk.typed_ahead = "yes";
+  desk.is_gone = true;
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitFault);
+  EXPECT_TRUE(desk.said.ends_with("yes, no > ")) << desk.said;
+  EXPECT_EQ(desk.said.find("May it?"), std::string::npos);
   EXPECT_EQ(desk.rig.most_powered, 0);
 }
 
