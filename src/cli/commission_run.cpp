@@ -64,6 +64,7 @@ class Commissioning {
   int run() {
     if (!scan()) return kExitFault;
     if (options_.is_scan_alone) return kExitDone;
+    refuseUnwritable(robotFile(scene_));
     const std::string protection = protectionText(*scene_.hardware);
     desk_.say(protection + "A line that is typed while a joint moves stops it.\n");
     if (!confirm("Is nobody within reach, and everything that may fall held?")) return kExitFault;
@@ -173,13 +174,13 @@ class Commissioning {
 
   /// False: refused, by the engineer or the file's loader.
   bool write(const JointFindings& found) {
-    SourceFile robot = robotFile(scene_);
-    const std::string before = robot.text;
-    robot.text = withFindings(scene_, robot, found);
-    Json state = state_;
-    state["joints"][scene_.joint_names[static_cast<std::size_t>(found.joint)]] =
-        stateOf(scene_, found);
     try {
+      SourceFile robot = robotFile(scene_);
+      const std::string before = robot.text;
+      robot.text = withFindings(scene_, robot, found);
+      Json state = state_;
+      state["joints"][scene_.joint_names[static_cast<std::size_t>(found.joint)]] =
+          stateOf(scene_, found);
       Scene next = withRobot(scene_, robot.text);
       if (const auto lag_s = slowestLag(next, state)) {
         robot.text = withLag(robot, *lag_s);
@@ -190,10 +191,10 @@ class Commissioning {
       const std::string difference = differenceText(before, robot.text);
       desk_.say(escaped(robot.path) + ":\n" +
                 (difference.empty() ? "nothing differs\n" : difference));
-      if (!confirm("Write this?")) return false;
-      refuseChanges(robot.path, before);
-      if (!difference.empty()) replaceFile(robot.path, robot.text);
-      writeState(state_path_, state);
+      do {
+        if (!confirm("Write this?")) return false;
+        refuseChanges(robot.path, before, robot.text);
+      } while (!save(robot, state));
       scene_ = std::move(next);
       state_ = std::move(state);
       return true;
@@ -203,8 +204,25 @@ class Commissioning {
     }
   }
 
-  static void refuseChanges(const std::string& path, const std::string& before) {
-    if (readFromDisk(path) == before) return;
+  /// False: it cannot be written now. What was found is still there, to be written later.
+  bool save(const SourceFile& robot, const Json& state) {
+    try {
+      if (readFromDisk(robot.path) != robot.text) {
+        writeRobot(robot, !is_copy_kept_);
+        is_copy_kept_ = true;
+      }
+      writeState(state_path_, state);
+      return true;
+    } catch (const std::runtime_error& error) {
+      desk_.say(std::string(error.what()) + "\n");
+      return false;
+    }
+  }
+
+  static void refuseChanges(const std::string& path, const std::string& before,
+                            const std::string& after) {
+    const std::string now = readFromDisk(path);
+    if (now == before || now == after) return;
     throw InputError(fmt::format("{}: was changed meanwhile, expected no change", escaped(path)));
   }
 
@@ -237,6 +255,7 @@ class Commissioning {
   std::string state_path_;
   Json state_;
   CommissionDesk& desk_;
+  bool is_copy_kept_ = false;  ///< of the robot's file as it was at the start
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
@@ -107,6 +108,7 @@ class VirtualDesk final : public CommissionDesk {
     if (cycle().phase() != CommissionCycle::Phase::kIdle) return std::nullopt;
     const bool asks_on = said.ends_with("end > ");
     const bool is_writing = said.ends_with("Write this? yes, no > ");
+    if (is_writing && on_write) on_write();
     if (is_writing && stops_after_writing) is_stopped_ = true;
     return asks_on ? "end" : " yes\r";
   }
@@ -173,7 +175,7 @@ TEST(Commission, WritesWhatItFindsAndKeepsTheRest) {
   // Counts that the marks confirm are left as somebody computed them.
   EXPECT_NE(after.find("counts_per_m: 1e7"), std::string::npos);
   EXPECT_NE(after.find("position_lag_s: 0.00"), std::string::npos);
-  EXPECT_NE(folder.content("robot.yaml~"), after);
+  EXPECT_EQ(folder.content("robot.yaml~"), before);  // of three that were written
   EXPECT_NE(desk.said.find("- "), std::string::npos);
   EXPECT_NE(before, after);
 }
@@ -228,6 +230,33 @@ TEST(Commission, RefusesAFileThatChangedMeanwhile) {
   EXPECT_NE(desk.said.find("was changed meanwhile"), std::string::npos);
   EXPECT_TRUE(folder.content("robot.yaml").ends_with("# edited\n"));
   EXPECT_FALSE(std::filesystem::exists(statePath(robotFile(scene))));
+}
+
+TEST(Commission, WhatCannotBeWrittenIsSaidBeforeAnythingMoves) {
+  for (const char* name : {"robot.yaml.next", "robot.yaml.commission.json.next", "robot.yaml~"}) {
+    const CommissionFolder folder;
+    VirtualDesk desk(folder.scene());
+    std::filesystem::create_directory(folder.path(name));
+    EXPECT_THROW(runCommission(folder.scene(), {}, desk), InputError) << name;
+    EXPECT_EQ(desk.rig.most_powered, 0);
+  }
+}
+
+/// A disk that is full for a while costs no measured joint.
+TEST(Commission, FindingsAreStillThereAfterAFailedWrite) {
+  const CommissionFolder folder;
+  VirtualDesk desk(folder.scene());
+  const std::string blocked = folder.path("robot.yaml.commission.json.next");
+  int writes = 0;
+  desk.on_write = [&] {
+    ++writes;
+    if (writes == 1) std::filesystem::create_directory(blocked);
+    if (writes == 2) std::filesystem::remove(blocked);
+  };
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
+  EXPECT_EQ(writes, 4);  // of three joints
+  EXPECT_NE(desk.said.find("cannot be opened for writing"), std::string::npos);
+  expectFileIsRight(folder);
 }
 
 TEST(Commission, ScanAloneMovesNothing) {
