@@ -11,6 +11,7 @@
 #include "tactus/cli/calibrate_fit.h"
 #include "tactus/cli/calibrate_record.h"
 #include "tactus/cli/commands.h"
+#include "tactus/cli/number_within.h"
 #include "tactus/cli/wrench_rows.h"
 #include "tactus/record/run_error.h"
 #include "tactus/scene/command_scene.h"
@@ -179,7 +180,7 @@ void addCalibrateCommand(CLI::App& app, int& exit_code) {
                       "record: file of the pushes; one that is there is continued");
   command->add_option("--module", options->module, "Which of several tactile modules, from 0");
   command->add_option("--duration", options->duration_s, "show: seconds; else until it is stopped")
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(numberWithin(1.0, 1e6));
   CLI::Option* const set =
       command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
   command->add_flag("--write", options->writes, "fit: write it into robot.yaml; keeps robot.yaml~")

@@ -11,6 +11,7 @@
 #include "tactus/cli/commands.h"
 #include "tactus/cli/commission_run.h"
 #include "tactus/cli/commission_terminal.h"
+#include "tactus/cli/number_within.h"
 #include "tactus/record/run_error.h"
 #include "tactus/rt/scheduling.h"
 #include "tactus/scene/command_scene.h"
@@ -53,7 +54,7 @@ int commissionScene(CommissionArguments arguments) {
   const CommissionConfig config = commissionConfig(scene, options);
   try {
     if (!options.is_scan_alone) printTimeLimits();
-    CommissionTerminal desk(config);
+    CommissionTerminal desk(config, !options.is_scan_alone);
     return runCommission(scene, options, desk);
   } catch (const std::logic_error&) {
     throw;
@@ -66,7 +67,7 @@ int commissionScene(CommissionArguments arguments) {
 
 void addBound(CLI::App& command, const char* name, double& value, double least, double most,
               const char* text) {
-  command.add_option(name, value, text)->check(CLI::Range(least, most))->capture_default_str();
+  command.add_option(name, value, text)->check(numberWithin(least, most))->capture_default_str();
 }
 
 }  // namespace
@@ -95,7 +96,7 @@ void addCommissionCommand(CLI::App& app, int& exit_code) {
   addBound(*command, "--file-factor", arguments->options.file_factor, 1.5, 1e4,
            "A joint has no fewer counts than the file says, divided by this");
   command->add_flag("--scan", arguments->options.is_scan_alone,
-                    "Name the nodes that answer, and move nothing");
+                    "Name the nodes that answer, and move nothing; all nodes become pre-operational");
   CLI::Option* scan = command->get_option("--scan");
   command->add_flag("--json", arguments->options.json, "Print the nodes as JSON")->needs(scan);
   command->callback([arguments, &exit_code] { exit_code = commissionScene(*arguments); });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -14,6 +15,7 @@
 #include "tactus/scene/source_reader.h"
 #include "tactus/scene/yaml_edit.h"
 #include "tactus/scene/yaml_tree.h"
+#include "tactus/scene/yaml_word.h"
 
 namespace tactus {
 namespace {
@@ -49,11 +51,12 @@ const DriveConfig& driveOf(const Scene& scene, int joint) {
   return scene.hardware->drives[static_cast<std::size_t>(joint)];
 }
 
-std::string inQuotesIfNeeded(const std::string& interface) {
-  const bool is_plain = std::ranges::all_of(
-      interface, [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
-  const bool is_number = std::ranges::all_of(interface, [](unsigned char c) { return c < 'A'; });
-  return is_plain && !is_number ? interface : '"' + interface + '"';
+/// The name under which a text was written, to be renamed.
+std::string writtenBeside(const std::string& path, const std::string& text) {
+  OutputFile file(path + ".next");
+  file.append(text);
+  file.close();
+  return path + ".next";
 }
 
 /// bus and node of one joint's entry, where they are others.
@@ -63,7 +66,7 @@ std::string withPlace(const Scene& scene, SourceFile file, int joint, int bus, i
   const auto& buses = scene.hardware->buses;
   if (given.bus != bus)
     file.text = withValue(file, entry + ".interface",
-                          inQuotesIfNeeded(buses[static_cast<std::size_t>(bus)].interface));
+                          yamlWord(buses[static_cast<std::size_t>(bus)].interface));
   if (given.node_id != node_id)
     file.text = withValue(file, entry + ".node_id", std::to_string(node_id));
   return file.text;
@@ -138,6 +141,22 @@ std::string differenceText(const std::string& before, const std::string& after) 
   return text;
 }
 
+/// Tried, as permissions do not tell of a file system that is read-only.
+void refuseUnwritable(const SourceFile& robot) {
+  for (const std::string& path : {robot.path, statePath(robot)})
+    fs::remove(writtenBeside(path, ""));
+  const std::string copy = robot.path + "~";
+  if (fs::exists(copy) && !std::ofstream(copy, std::ios::app))
+    throw InputError(fmt::format("{}: cannot be written, expected a file that can", escaped(copy)));
+}
+
+void writeRobot(const SourceFile& robot, bool keeps_copy) {
+  if (keeps_copy) return replaceFile(robot.path, robot.text);
+  const std::string next = writtenBeside(robot.path, robot.text);
+  fs::permissions(next, fs::status(robot.path).permissions());
+  fs::rename(next, robot.path);
+}
+
 std::string statePath(const SourceFile& robot) { return robot.path + ".commission.json"; }
 
 Json readState(const std::string& path) {
@@ -153,10 +172,7 @@ Json readState(const std::string& path) {
 }
 
 void writeState(const std::string& path, const Json& state) {
-  OutputFile file(path + ".next");
-  file.append(jsonText(state));
-  file.close();
-  fs::rename(path + ".next", path);
+  fs::rename(writtenBeside(path, jsonText(state)), path);
 }
 
 Json stateOf(const Scene& scene, const JointFindings& found) {

@@ -184,6 +184,18 @@ std::string troubleText(const Scene& scene, int joint, const JointTrouble& troub
       case JointTroubleKind::kMovedShort:
         return fmt::format("it went {:.0f} counts of {:.0f}, and {} says nothing of it",
                            trouble.value, trouble.limit, who);
+      case JointTroubleKind::kFewerCounts:
+        return fmt::format(
+            "the places that were measured allow at most {:.4g} counts/{}, but no fewer than "
+            "{:.4g} "
+            "were expected: it moved further than it should; if the places are right, set its "
+            "counts in robot.yaml right, or raise --file-factor",
+            trouble.value, unitOf(scene.controller.chain.type(joint)), trouble.limit);
+      case JointTroubleKind::kStillOpen:
+        return fmt::format(
+            "{:.0f} motions were not enough to tell its counts from the places that were measured: "
+            "are its counts in robot.yaml far too few?",
+            trouble.value);
       case JointTroubleKind::kSignsDisagree:
         return "the way it was seen to go, and the places that were measured, have opposite senses";
       case JointTroubleKind::kCannotTell:

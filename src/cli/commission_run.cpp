@@ -26,6 +26,22 @@ using Phase = CommissionCycle::Phase;
 /// Of the travel: what two measured places may be wrong by is then a seventh of it.
 constexpr double kLeastTravel_errors = 15.0;
 
+/// Whoever filled them in: a comparison with NaN would bound nothing.
+void checkBounds(const MotionBounds& bounds, double most_travel, double most_speed,
+                 const char* kind) {
+  const auto isWithin = [](double value, double most) { return value > 0.0 && value <= most; };
+  const bool is_good =
+      isWithin(bounds.max_travel, most_travel) && isWithin(bounds.max_speed, most_speed) &&
+      isWithin(bounds.max_acceleration, 1.0) && isWithin(bounds.max_following_error, 1.0) &&
+      isWithin(bounds.measuring_error, 1.0) && isWithin(bounds.unseen, most_travel) &&
+      bounds.margin >= 0.0 && bounds.margin <= 1.0;
+  if (!is_good)
+    throw InputError(
+        fmt::format("the bounds of {} joints are not finite, or out of range, "
+                    "expected those that the options take",
+                    kind));
+}
+
 void checkIsMeasurable(const MotionBounds& bounds, const char* kind) {
   if (bounds.max_travel >= kLeastTravel_errors * bounds.measuring_error) return;
   throw InputError(fmt::format(
@@ -48,6 +64,7 @@ class Commissioning {
   int run() {
     if (!scan()) return kExitFault;
     if (options_.is_scan_alone) return kExitDone;
+    refuseUnwritable(robotFile(scene_));
     const std::string protection = protectionText(*scene_.hardware);
     desk_.say(protection + "A line that is typed while a joint moves stops it.\n");
     if (!confirm("Is nobody within reach, and everything that may fall held?")) return kExitFault;
@@ -61,29 +78,32 @@ class Commissioning {
   }
 
  private:
+  /// False: it was stopped, or did not hear all that a scan alone is for.
   bool scan() {
-    const auto goesOn = [this] { return options_.is_scan_alone || !desk_.isStopped(); };
-    while (desk_.cycle().phase() == Phase::kScanning && goesOn()) desk_.runCycle();
-    if (!goesOn()) return false;
+    while (desk_.cycle().phase() == Phase::kScanning && !desk_.isStopped()) desk_.runCycle();
+    if (desk_.isStopped()) return false;
     const auto& nodes = desk_.cycle().nodes();
     if (options_.json) {
       desk_.say(jsonText(nodesJson(scene_, nodes)));
     } else {
       desk_.say(nodesText(scene_, nodes));
     }
-    reportBusFault();
-    return true;
+    const bool has_fault = reportBusFault();
+    return !(has_fault && options_.is_scan_alone);
   }
 
-  void reportBusFault() {
-    if (const auto fault = desk_.takeBusFault())
+  bool reportBusFault() {
+    const auto fault = desk_.takeBusFault();
+    if (fault)
       fmt::print(stderr, "{}: {}: {}\n",
                  escaped(scene_.hardware->buses[static_cast<std::size_t>(fault->first)].interface),
                  faultName(fault->second), faultRow(fault->second).detection);
+    return fault.has_value();
   }
 
   /// Cycles go on meanwhile; nothing if it was stopped.
   std::optional<std::string> ask(const std::string& text) {
+    desk_.forgetTyped();
     desk_.say(text);
     while (!desk_.isStopped()) {
       if (auto line = desk_.takeLine()) return line;
@@ -95,7 +115,8 @@ class Commissioning {
   /// One of the words, or the last one if it was stopped.
   std::string choose(const std::string& question, const std::vector<std::string>& words) {
     while (const auto line = ask(fmt::format("{} {} > ", question, fmt::join(words, ", "))))
-      if (std::ranges::find(words, *line) != words.end()) return *line;
+      if (const auto word = std::ranges::find(words, trimmedLine(*line)); word != words.end())
+        return *word;
     return words.back();
   }
 
@@ -131,7 +152,10 @@ class Commissioning {
     while (cycle.phase() != Phase::kIdle) {
       desk_.runCycle();
       const Question* const question = cycle.question();
-      if (question && !asked) desk_.say(questionText(scene_, config_, *question) + "\n> ");
+      if (question && !asked) {
+        desk_.forgetTyped();
+        desk_.say(questionText(scene_, config_, *question) + "\n> ");
+      }
       asked = question;
       if (cycle.isWaitingForEnable() && !has_waited) desk_.say("switch the enable line on\n");
       has_waited = cycle.isWaitingForEnable();
@@ -150,13 +174,13 @@ class Commissioning {
 
   /// False: refused, by the engineer or the file's loader.
   bool write(const JointFindings& found) {
-    SourceFile robot = robotFile(scene_);
-    const std::string before = robot.text;
-    robot.text = withFindings(scene_, robot, found);
-    Json state = state_;
-    state["joints"][scene_.joint_names[static_cast<std::size_t>(found.joint)]] =
-        stateOf(scene_, found);
     try {
+      SourceFile robot = robotFile(scene_);
+      const std::string before = robot.text;
+      robot.text = withFindings(scene_, robot, found);
+      Json state = state_;
+      state["joints"][scene_.joint_names[static_cast<std::size_t>(found.joint)]] =
+          stateOf(scene_, found);
       Scene next = withRobot(scene_, robot.text);
       if (const auto lag_s = slowestLag(next, state)) {
         robot.text = withLag(robot, *lag_s);
@@ -167,10 +191,10 @@ class Commissioning {
       const std::string difference = differenceText(before, robot.text);
       desk_.say(escaped(robot.path) + ":\n" +
                 (difference.empty() ? "nothing differs\n" : difference));
-      if (!confirm("Write this?")) return false;
-      refuseChanges(robot.path, before);
-      if (!difference.empty()) replaceFile(robot.path, robot.text);
-      writeState(state_path_, state);
+      do {
+        if (!confirm("Write this?")) return false;
+        refuseChanges(robot.path, before, robot.text);
+      } while (!save(robot, state));
       scene_ = std::move(next);
       state_ = std::move(state);
       return true;
@@ -180,8 +204,25 @@ class Commissioning {
     }
   }
 
-  static void refuseChanges(const std::string& path, const std::string& before) {
-    if (readFromDisk(path) == before) return;
+  /// False: it cannot be written now. What was found is still there, to be written later.
+  bool save(const SourceFile& robot, const Json& state) {
+    try {
+      if (readFromDisk(robot.path) != robot.text) {
+        writeRobot(robot, !is_copy_kept_);
+        is_copy_kept_ = true;
+      }
+      writeState(state_path_, state);
+      return true;
+    } catch (const std::runtime_error& error) {
+      desk_.say(std::string(error.what()) + "\n");
+      return false;
+    }
+  }
+
+  static void refuseChanges(const std::string& path, const std::string& before,
+                            const std::string& after) {
+    const std::string now = readFromDisk(path);
+    if (now == before || now == after) return;
     throw InputError(fmt::format("{}: was changed meanwhile, expected no change", escaped(path)));
   }
 
@@ -214,6 +255,7 @@ class Commissioning {
   std::string state_path_;
   Json state_;
   CommissionDesk& desk_;
+  bool is_copy_kept_ = false;  ///< of the robot's file as it was at the start
 };
 
 }  // namespace
@@ -227,6 +269,10 @@ CommissionConfig commissionConfig(const Scene& scene, const CommissionOptions& o
   config.file_factor = options.file_factor;
   for (int joint = 0; joint < scene.controller.chain.size(); ++joint)
     config.is_prismatic.push_back(scene.controller.chain.type(joint) == JointType::kPrismatic);
+  checkBounds(config.revolute, kMostTravel_rad, kMostSpeed_rad_per_s, "revolute");
+  checkBounds(config.prismatic, kMostTravel_m, kMostSpeed_m_per_s, "prismatic");
+  if (!(config.file_factor >= 1.0 && config.file_factor <= 1e4))
+    throw InputError("--file-factor: is no factor, expected one from 1 to 10000");
   checkIsMeasurable(config.revolute, "revolute");
   checkIsMeasurable(config.prismatic, "prismatic");
   return config;

@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <signal.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +18,8 @@ namespace {
 
 constexpr std::uint32_t kAnyNode = 0x780;  ///< mask of an id without its node
 constexpr std::size_t kMaxTyped = 4096;
+/// More than a terminal or a pipe holds: an input that never ends.
+constexpr int kMostReads = 1024;
 
 volatile sig_atomic_t was_interrupted = 0;
 
@@ -25,7 +28,9 @@ void noteInterrupt(int) { was_interrupted = 1; }
 void catchInterrupts() {
   struct sigaction action {};
   action.sa_handler = noteInterrupt;
-  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaction(signal, &action, nullptr);
+  action.sa_handler = SIG_IGN;  // say() hears of it, and the motion is ended
+  sigaction(SIGPIPE, &action, nullptr);
 }
 
 /// Frames of all nodes, whichever there are.
@@ -49,8 +54,8 @@ CommissionTerminal::Bus::Bus(const HardwareConfig& hardware, int index)
     : lock(hardware.buses[static_cast<std::size_t>(index)].interface),
       socket(openForAllNodes(hardware, index)) {}
 
-CommissionTerminal::CommissionTerminal(const CommissionConfig& config)
-    : cycle_(config), timer_(std::llround(1e9 * config.period_s)) {
+CommissionTerminal::CommissionTerminal(const CommissionConfig& config, bool reads_input)
+    : cycle_(config), reads_input_(reads_input), timer_(std::llround(1e9 * config.period_s)) {
   const HardwareConfig& hardware = config.hardware;
   for (std::size_t i = 0; i < hardware.buses.size(); ++i)
     buses_.push_back(std::make_unique<Bus>(hardware, static_cast<int>(i)));
@@ -58,7 +63,7 @@ CommissionTerminal::CommissionTerminal(const CommissionConfig& config)
   catchInterrupts();
 }
 
-bool CommissionTerminal::isStopped() const { return was_interrupted != 0 || is_input_closed_; }
+bool CommissionTerminal::isStopped() const { return was_interrupted != 0 || is_engineer_gone_; }
 
 void CommissionTerminal::runCycle() {
   const Wake wake = timer_.wait();
@@ -91,16 +96,28 @@ void CommissionTerminal::runCycle() {
 
 /// What is there, without waiting.
 void CommissionTerminal::readInput() {
-  if (is_input_closed_) return;
+  if (is_engineer_gone_ || !reads_input_) return;
   pollfd polled{STDIN_FILENO, POLLIN, 0};
   if (poll(&polled, 1, 0) <= 0) return;
   std::array<char, 512> bytes;
   const ssize_t count = read(STDIN_FILENO, bytes.data(), bytes.size());
   if (count <= 0) {
-    is_input_closed_ = true;
+    is_engineer_gone_ = true;
     return;
   }
-  if (typed_.size() < kMaxTyped) typed_.append(bytes.data(), static_cast<std::size_t>(count));
+  typed_.append(bytes.data(), static_cast<std::size_t>(count));
+  if (typed_.size() > kMaxTyped) typed_ = "\n";  // whatever that was, it stops a motion
+}
+
+void CommissionTerminal::forgetTyped() {
+  tcflush(STDIN_FILENO, TCIFLUSH);  // a line that is not yet ended, too; of a terminal alone
+  pollfd polled{STDIN_FILENO, POLLIN, 0};
+  int reads = 0;
+  while (!isStopped() && poll(&polled, 1, 0) > 0) {
+    readInput();
+    is_engineer_gone_ = is_engineer_gone_ || ++reads > kMostReads;
+  }
+  typed_.clear();
 }
 
 std::optional<std::string> CommissionTerminal::takeLine() {
@@ -112,8 +129,8 @@ std::optional<std::string> CommissionTerminal::takeLine() {
 }
 
 void CommissionTerminal::say(const std::string& text) {
-  std::fputs(text.c_str(), stdout);
-  std::fflush(stdout);
+  const bool is_said = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  is_engineer_gone_ = is_engineer_gone_ || !is_said;
 }
 
 std::optional<std::pair<int, Fault>> CommissionTerminal::takeBusFault() {

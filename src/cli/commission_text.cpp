@@ -39,14 +39,9 @@ std::string numbersOf(Vector3 v) {
   return fmt::format("({:.3g}, {:.3g}, {:.3g})", v.x(), v.y(), v.z());
 }
 
-std::string trimmed(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return std::string(line.substr(first, line.find_last_not_of(" \t\r\n") + 1 - first));
-}
-
 std::optional<Answer> number(const Scene& scene, int joint, const std::string& word) {
   double value = 0.0;
+  if (word.starts_with("+-")) return std::nullopt;
   const char* const begin = word.data() + (word[0] == '+' ? 1 : 0);
   const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
@@ -58,6 +53,12 @@ std::optional<Answer> number(const Scene& scene, int joint, const std::string& w
 
 std::string jointText(const Scene& scene, int joint) {
   return escaped(scene.joint_names[static_cast<std::size_t>(joint)]);
+}
+
+std::string trimmedLine(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return {};
+  return std::string(line.substr(first, line.find_last_not_of(" \t\r\n") + 1 - first));
 }
 
 std::string placeText(const Scene& scene, int bus, int node_id) {
@@ -113,13 +114,15 @@ std::string questionText(const Scene& scene, const CommissionConfig& config,
           jointText(scene, joint), here, slides(scene, joint) ? "mm" : "deg");
     case Asked::kJog:
       return fmt::format(
-          "{}{}: + or - to move it by {}, upper or lower if it may go no further, "
+          "{}{}{}: + or - to move it by {}, upper or lower if it may go no further, "
           "done when both are told, or without.",
+          question.is_refused ? "An end that was told is there, or too near. " : "",
           jointText(scene, joint), here, lengthText(scene, joint, bounds.max_travel));
     case Asked::kEndPlace:
       return fmt::format(
-          "Where is {} at its {} end{}, in {}? Measured here, counts get more exact; "
+          "{}Where is {} at its {} end{}, in {}? Measured here, counts get more exact; "
           "none to go on without.",
+          question.is_refused ? "That does not fit the places measured before. " : "",
           jointText(scene, joint), question.is_upper ? "upper" : "lower", here,
           slides(scene, joint) ? "mm" : "deg");
   }
@@ -128,7 +131,7 @@ std::string questionText(const Scene& scene, const CommissionConfig& config,
 
 std::optional<Answer> parseAnswer(const Scene& scene, const Question& question,
                                   std::string_view line) {
-  const std::string word = trimmed(line);
+  const std::string word = trimmedLine(line);
   if (word.empty()) return std::nullopt;
   const auto is = [&word](std::string_view one, std::string_view other) {
     return word == one || word == other;

@@ -8,14 +8,13 @@ namespace {
 
 using Kind = Answer::Kind;
 
-/// Of one motion to the next, whatever was measured: one number that was typed wrong is not enough
-/// to make a motion long.
-constexpr double kMostGrowth = 3.0;
 /// Of the travel that is allowed: so near to it a motion does not get by measuring.
 constexpr double kWideShare = 0.8;
 constexpr int kMostScaleStrokes = 10;
 /// Of the way that was commanded.
 constexpr double kLeastShare = 0.8;
+/// Of the travel: a shorter way to an end is none.
+constexpr double kLeastJog = 0.05;
 /// So many at different places show a wrong one among them; fewer are believed in nothing.
 constexpr std::size_t kTrustedMarks = 3;
 
@@ -48,10 +47,15 @@ void JointCommission::fail(const JointTrouble& trouble) {
 }
 
 void JointCommission::ask(Asked asked, double counts) {
-  Question question{asked, joint_, node_->bus, node_->node_id, allowed().max_travel};
+  Question question{asked, joint_, node_->bus, node_->node_id};
   if (const auto known = scale()) question.position = known->position(counts);
   question.is_upper = is_asked_upper_;
   question_ = question;
+}
+
+void JointCommission::askAgain(Asked asked, double counts) {
+  ask(asked, counts);
+  question_->is_refused = true;
 }
 
 bool JointCommission::isAnswer(const Answer& answer) const noexcept {
@@ -92,15 +96,24 @@ void JointCommission::take(const Answer& answer, double counts) {
     case Asked::kJog:
       return takeJog(answer, counts);
     case Asked::kEndPlace:
-      if (answer.kind == Kind::kNumber) marks_.push_back({counts, answer.value});
-      return ask(Asked::kJog, counts);
+      return takeEndPlace(answer, counts);
   }
 }
 
 /// distance: as a share of the travel that is allowed, by the sign of counts.
 void JointCommission::begin(Step step, double distance) noexcept {
+  beginShape(step, {StrokeShape::Kind::kStep, distance * allowed().max_travel});
+}
+
+void JointCommission::beginShape(Step step, const StrokeShape& shape) noexcept {
   step_ = step;
-  shape_ = {StrokeShape::Kind::kStep, distance * allowed().max_travel};
+  shape_ = shape;
+  stroke_bounds_ = bounds();
+  const double unit = stroke_bounds_.counts_per_unit;
+  const MotionLimits& limits = stroke_bounds_.limits;
+  uses_->noteBounds(*node_,
+                    {unit * stroke_bounds_.max_travel, unit * limits.max_speed,
+                     unit * limits.max_acceleration, unit * stroke_bounds_.max_following_error});
 }
 
 void JointCommission::takeDirection(const Answer& answer, double counts) {
@@ -128,11 +141,19 @@ void JointCommission::takeMark(double q, double counts) {
   marks_.push_back({counts, q});
   const double misfit = largestMisfit(marks_);
   const double most = kMostMisfit_errors * allowed().measuring_error;
-  if (misfit > most || scale_strokes_ >= kMostScaleStrokes)
+  if (misfit > most)
     return fail({.kind = JointTroubleKind::kCannotTell, .value = misfit, .limit = most});
+  const double told = mostCountsPerUnit(marks_, allowed().measuring_error);
+  const double assumed = assumedCounts(joint_);
+  if (told < assumed)
+    return fail({.kind = JointTroubleKind::kFewerCounts, .value = told, .limit = assumed});
+  if (scale_strokes_ >= kMostScaleStrokes)
+    return fail({.kind = JointTroubleKind::kStillOpen, .value = 1.0 * scale_strokes_});
   if (marks_.size() >= kTrustedMarks)
     fewest_ = std::clamp(fewestCountsPerUnit(marks_, allowed().measuring_error), before,
                          kMostGrowth * before);
+  if (isWide() && scale()->sign != seen_sign_)
+    return fail({.kind = JointTroubleKind::kSignsDisagree});
   if (isWide()) return ask(Asked::kJog, counts);
   begin(Step::kScale, scale_strokes_++ % 4 < 2 ? -1.0 : 1.0);  // two there, two back
 }
@@ -144,36 +165,71 @@ bool JointCommission::isWide() const noexcept {
          fewestCounts(joint_) >= kWideShare * known->counts_per_unit;
 }
 
+/// Far from all others, a wrong place would turn the line, so it is believed only if it fits them.
+void JointCommission::takeEndPlace(const Answer& answer, double counts) {
+  if (answer.kind != Kind::kNumber) return ask(Asked::kJog, counts);
+  marks_.push_back({counts, answer.value});
+  const auto known = scale();
+  const bool fits = known && known->sign == seen_sign_ &&
+                    largestMisfit(marks_) <= kMostMisfit_errors * allowed().measuring_error;
+  if (fits) return ask(Asked::kJog, counts);
+  marks_.pop_back();
+  askAgain(Asked::kEndPlace, counts);
+}
+
+/// + and - are ways of the joint as it was seen to go.
 void JointCommission::takeJog(const Answer& answer, double counts) {
-  const double sign = scale()->sign;
   switch (answer.kind) {
     case Kind::kPlus:
-      return begin(Step::kJog, sign);
+      return jog(1.0, counts);
     case Kind::kMinus:
-      return begin(Step::kJog, -sign);
+      return jog(-1.0, counts);
     case Kind::kUpper:
     case Kind::kLower:
-      is_asked_upper_ = answer.kind == Kind::kUpper;
-      (is_asked_upper_ ? upper_counts_ : lower_counts_) = counts;
-      return ask(Asked::kEndPlace, counts);
+      return takeEnd(answer.kind == Kind::kUpper, counts);
     default:
-      break;
+      return beginWave(counts);
   }
-  // The wave goes where there is room: to the middle, or away from the end that is known.
-  double away = 1.0;
-  const auto middle = [&] { return 0.5 * (*upper_counts_ + *lower_counts_); };
-  if (upper_counts_ && lower_counts_)
-    away = middle() > counts ? 1.0 : -1.0;
-  else if (upper_counts_)
-    away = -sign;
-  else if (lower_counts_)
-    away = sign;
-  step_ = Step::kWave;
-  shape_ = {StrokeShape::Kind::kWave, 0.5 * away * allowed().max_travel};
+}
+
+/// No further than to an end that was told.
+void JointCommission::jog(double way, double counts) {
+  const double sense = way * seen_sign_;  // of counts
+  const auto& end = way > 0.0 ? upper_counts_ : lower_counts_;
+  const double travel = bounds().counts_per_unit * allowed().max_travel;
+  const double share = end ? std::min(1.0, sense * (*end - counts) / travel) : 1.0;
+  if (share < kLeastJog) return askAgain(Asked::kJog, counts);
+  begin(Step::kJog, sense * share);
+}
+
+/// Between the ends there is room for their margins, and for the wave.
+void JointCommission::takeEnd(bool is_upper, double counts) {
+  const auto& other = is_upper ? lower_counts_ : upper_counts_;
+  const double room = std::max(2.0 * allowed().margin, 0.5 * allowed().max_travel);
+  const double way = other ? (is_upper ? seen_sign_ : -seen_sign_) * (counts - *other) : 0.0;
+  if (other && !(way > room * fewestCounts(joint_))) return askAgain(Asked::kJog, counts);
+  is_asked_upper_ = is_upper;
+  (is_upper ? upper_counts_ : lower_counts_) = counts;
+  ask(Asked::kEndPlace, counts);
+}
+
+/// Where there is room: away from the nearer end that is known, else back from where it came.
+void JointCommission::beginWave(double counts) noexcept {
+  double away = shape_.distance > 0.0 ? -1.0 : 1.0;
+  double amplitude = 0.5 * allowed().max_travel;
+  if (upper_counts_ && lower_counts_) {
+    away = 0.5 * (*upper_counts_ + *lower_counts_) > counts ? 1.0 : -1.0;
+    const double room =
+        std::max(std::abs(*upper_counts_ - counts), std::abs(*lower_counts_ - counts));
+    amplitude = std::min(amplitude, room / bounds().counts_per_unit);
+  } else if (upper_counts_ || lower_counts_) {
+    away = upper_counts_ ? -seen_sign_ : seen_sign_;
+  }
+  beginShape(Step::kWave, {StrokeShape::Kind::kWave, away * amplitude});
 }
 
 StrokePlan JointCommission::stroke() const noexcept {
-  return {node_->bus, node_->node_id, bounds(), shape_};
+  return {node_->bus, node_->node_id, stroke_bounds_, shape_};
 }
 
 void JointCommission::onStroke(const StrokeReport& report) {
@@ -183,7 +239,7 @@ void JointCommission::onStroke(const StrokeReport& report) {
   if (is_stopped) trouble.kind = JointTroubleKind::kStopped;
   const bool goes_on = is_stopped && report.is_seen_off;  // from where it stopped
   if (report.end != StrokeEnd::kDone && !goes_on) return fail(trouble);
-  const double unit = bounds().counts_per_unit;
+  const double unit = stroke_bounds_.counts_per_unit;
   const double gone = std::abs(report.end_counts - report.start_counts);
   const bool is_step = shape_.kind == StrokeShape::Kind::kStep;
   const double asked = is_step && !is_stopped ? std::abs(shape_.distance) * unit : 0.0;

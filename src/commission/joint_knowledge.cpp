@@ -19,36 +19,43 @@ double JointCommission::fileCounts(int joint) const noexcept {
   return fewest;
 }
 
-/// A unit of this joint has at least so many, if this drive moves it.
-double JointCommission::fewestCounts(int joint) const noexcept {
+/// A unit of this joint has at least so many, if this drive moves it; before anything was measured.
+double JointCommission::assumedCounts(int joint) const noexcept {
   const double assumed = fileCounts(joint) / config_->file_factor;
-  const double unseen = unseen_counts_ / config_->bounds(joint).unseen;
-  return std::max({assumed, unseen, joint == joint_ ? fewest_ : 0.0});
+  return std::max(assumed, unseen_counts_ / config_->bounds(joint).unseen);
 }
 
-/// In this joint's unit, but kept for each joint that this drive may turn out to move.
+double JointCommission::fewestCounts(int joint) const noexcept {
+  return std::max(assumedCounts(joint), joint == joint_ ? fewest_ : 0.0);
+}
+
+/// In this joint's unit, but kept for each joint that this drive may turn out to move, and against
+/// the last motion of the drive.
 StrokeBounds JointCommission::bounds() const noexcept {
   const MotionBounds& mine = allowed();
-  double travel = std::numeric_limits<double>::infinity();  // these in counts
-  double speed = travel, acceleration = travel, error = travel;
+  CountBounds most = uses_->lastBounds(*node_);
+  for (double* const value : {&most.travel, &most.speed, &most.acceleration, &most.error})
+    *value *= kMostGrowth;
   for (int joint = 0; joint < config_->joints(); ++joint) {
     const bool is_possible = joint == joint_ || (!is_identified_ && !uses_->isKnown(joint));
     if (!is_possible) continue;
     const MotionBounds& bounds = config_->bounds(joint);
     const double counts = fewestCounts(joint);
-    travel = std::min(travel, counts * bounds.max_travel);
-    speed = std::min(speed, counts * bounds.max_speed);
-    acceleration = std::min(acceleration, counts * bounds.max_acceleration);
-    error = std::min(error, counts * bounds.max_following_error);
+    most.travel = std::min(most.travel, counts * bounds.max_travel);
+    most.speed = std::min(most.speed, counts * bounds.max_speed);
+    most.acceleration = std::min(most.acceleration, counts * bounds.max_acceleration);
+    most.error = std::min(most.error, counts * bounds.max_following_error);
   }
   constexpr double kJerkTime_s = 0.1;  // to reach the acceleration
-  const double unit = travel / mine.max_travel;
-  const double a = acceleration / unit;
-  return {unit, mine.max_travel, {speed / unit, a, a / kJerkTime_s}, error / unit};
+  const double unit = most.travel / mine.max_travel;
+  const double a = most.acceleration / unit;
+  return {unit, mine.max_travel, {most.speed / unit, a, a / kJerkTime_s}, most.error / unit};
 }
 
 void JointCommission::finish() {
-  chooseScale();
+  const auto measured = this->scale();
+  if (!measured) return fail({.kind = JointTroubleKind::kStillOpen, .value = 1.0 * scale_strokes_});
+  chooseScale(*measured);
   const JointScale& scale = findings_.scale;
   if (scale.sign != seen_sign_) return fail({.kind = JointTroubleKind::kSignsDisagree});
   const double most = kMostMisfit_errors * allowed().measuring_error;
@@ -68,8 +75,7 @@ void JointCommission::finish() {
 
 /// A number that somebody computed from gears and encoder is better than one that was measured by
 /// hand, if the measured one confirms it.
-void JointCommission::chooseScale() {
-  const JointScale measured = *scale();
+void JointCommission::chooseScale(const JointScale& measured) {
   findings_.scale = measured;
   findings_.source = ScaleSource::kMeasured;
   const auto confirm = [&](double counts_per_unit, ScaleSource source) {

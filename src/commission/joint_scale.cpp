@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tactus {
 namespace {
@@ -70,6 +71,17 @@ double fewestCountsPerUnit(std::span<const Mark> marks, double q_error) noexcept
     }
   }
   return fewest;
+}
+
+double mostCountsPerUnit(std::span<const Mark> marks, double q_error) noexcept {
+  double most = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const double way = std::abs(marks[i].q - marks[k].q) - 2.0 * q_error;
+      if (way > 0.0) most = std::min(most, std::abs(marks[i].counts - marks[k].counts) / way);
+    }
+  }
+  return most;
 }
 
 double largestMisfit(std::span<const Mark> marks, const JointScale& scale) noexcept {

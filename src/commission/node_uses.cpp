@@ -15,6 +15,7 @@ NodeUses::NodeUses(const CommissionConfig& config, std::vector<FoundNode> nodes)
     : config_(&config),
       nodes_(std::move(nodes)),
       tried_(nodes_.size(), false),
+      last_bounds_(nodes_.size()),
       drive_of_(static_cast<std::size_t>(config.joints())) {}
 
 const FoundNode* NodeUses::find(int bus, int node_id) const noexcept {

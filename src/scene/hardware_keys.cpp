@@ -138,7 +138,8 @@ Row<RobotConfig> drivesSection() {
       "drives", "the position-controlled drives", &RobotConfig::drives,
       {
           number("position_lag_s", "s", within(0, 1),
-                 "first-order lag of the simulated drives; 0: ideal", &Config::position_lag_s),
+                 "first-order lag of the drives, bus and cycle included; 0: ideal",
+                 &Config::position_lag_s),
           onlyWith(canOfTheRobot(), number("start_tolerance", "m or rad", above(0, 10),
                                            "how far a joint may be from the scene's start",
                                            &Config::start_tolerance)),

@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "support/commission_folder.h"
 #include "support/commission_rig.h"
@@ -62,6 +64,10 @@ class VirtualDesk final : public CommissionDesk {
 
   test::CommissionRig rig;
   std::string said;
+  std::function<void()> on_write;
+  std::string typed_ahead;  ///< a line that nobody has asked for yet
+  bool is_gone = false;     ///< types nothing else, and then goes away
+  std::optional<std::pair<int, Fault>> bus_fault;
   bool stops_after_writing = false;
   int cycles_to_stop = 0;  ///< of motion, until a line is typed
 
@@ -74,6 +80,8 @@ class VirtualDesk final : public CommissionDesk {
     is_stopped_ = false;
   }
 
+  void end() { is_stopped_ = true; }
+
   void runCycle() override {
     rig.step();
     rig.input.stop_requested = false;
@@ -81,11 +89,17 @@ class VirtualDesk final : public CommissionDesk {
   }
   CommissionCycle& cycle() override { return *rig.cycle; }
   void stopMotion() override { rig.input.stop_requested = true; }
-  std::optional<std::pair<int, Fault>> takeBusFault() override { return std::nullopt; }
+  std::optional<std::pair<int, Fault>> takeBusFault() override { return bus_fault; }
   void say(const std::string& text) override { said += text; }
   bool isStopped() const override { return is_stopped_; }
+  void forgetTyped() override { typed_ahead.clear(); }
 
   std::optional<std::string> takeLine() override {
+    if (!typed_ahead.empty()) return std::exchange(typed_ahead, "");
+    if (is_gone) {
+      is_stopped_ = true;
+      return std::nullopt;
+    }
     if (const Question* const question = cycle().question()) {
       rig.noteQuestion();
       return typed(*question);
@@ -94,8 +108,9 @@ class VirtualDesk final : public CommissionDesk {
     if (cycle().phase() != CommissionCycle::Phase::kIdle) return std::nullopt;
     const bool asks_on = said.ends_with("end > ");
     const bool is_writing = said.ends_with("Write this? yes, no > ");
+    if (is_writing && on_write) on_write();
     if (is_writing && stops_after_writing) is_stopped_ = true;
-    return asks_on ? "end" : "yes";
+    return asks_on ? "end" : " yes\r";
   }
 
  private:
@@ -160,7 +175,7 @@ TEST(Commission, WritesWhatItFindsAndKeepsTheRest) {
   // Counts that the marks confirm are left as somebody computed them.
   EXPECT_NE(after.find("counts_per_m: 1e7"), std::string::npos);
   EXPECT_NE(after.find("position_lag_s: 0.00"), std::string::npos);
-  EXPECT_NE(folder.content("robot.yaml~"), after);
+  EXPECT_EQ(folder.content("robot.yaml~"), before);  // of three that were written
   EXPECT_NE(desk.said.find("- "), std::string::npos);
   EXPECT_NE(before, after);
 }
@@ -217,6 +232,33 @@ TEST(Commission, RefusesAFileThatChangedMeanwhile) {
   EXPECT_FALSE(std::filesystem::exists(statePath(robotFile(scene))));
 }
 
+TEST(Commission, WhatCannotBeWrittenIsSaidBeforeAnythingMoves) {
+  for (const char* name : {"robot.yaml.next", "robot.yaml.commission.json.next", "robot.yaml~"}) {
+    const CommissionFolder folder;
+    VirtualDesk desk(folder.scene());
+    std::filesystem::create_directory(folder.path(name));
+    EXPECT_THROW(runCommission(folder.scene(), {}, desk), InputError) << name;
+    EXPECT_EQ(desk.rig.most_powered, 0);
+  }
+}
+
+/// A disk that is full for a while costs no measured joint.
+TEST(Commission, FindingsAreStillThereAfterAFailedWrite) {
+  const CommissionFolder folder;
+  VirtualDesk desk(folder.scene());
+  const std::string blocked = folder.path("robot.yaml.commission.json.next");
+  int writes = 0;
+  desk.on_write = [&] {
+    ++writes;
+    if (writes == 1) std::filesystem::create_directory(blocked);
+    if (writes == 2) std::filesystem::remove(blocked);
+  };
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
+  EXPECT_EQ(writes, 4);  // of three joints
+  EXPECT_NE(desk.said.find("cannot be opened for writing"), std::string::npos);
+  expectFileIsRight(folder);
+}
+
 TEST(Commission, ScanAloneMovesNothing) {
   const CommissionFolder folder;
   VirtualDesk desk(folder.scene());
@@ -228,6 +270,25 @@ TEST(Commission, ScanAloneMovesNothing) {
   EXPECT_EQ(json.at("nodes").at(2).at("joint"), "roll");
   EXPECT_EQ(json.at("nodes").at(2).at("node_id"), 9);
   EXPECT_EQ(json.at("missing").size(), 0u);
+  EXPECT_EQ(desk.rig.most_powered, 0);
+  desk.restart(folder.scene());
+  desk.bus_fault.emplace(1, Fault::kBusOff);
+  EXPECT_EQ(runCommission(folder.scene(), options, desk), kExitFault);
+  desk.restart(folder.scene());
+  desk.bus_fault.reset();
+  desk.end();
+  EXPECT_EQ(runCommission(folder.scene(), options, desk), kExitFault);
+  EXPECT_EQ(desk.said, "");
+}
+
+TEST(Commission, LineThatWasTypedTooEarlyAnswersNothing) {
+  const CommissionFolder folder;
+  VirtualDesk desk(folder.scene());
+  desk.typed_ahead = "yes";
+  desk.is_gone = true;
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitFault);
+  EXPECT_TRUE(desk.said.ends_with("yes, no > ")) << desk.said;
+  EXPECT_EQ(desk.said.find("May it?"), std::string::npos);
   EXPECT_EQ(desk.rig.most_powered, 0);
 }
 

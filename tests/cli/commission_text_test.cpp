@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -9,6 +10,7 @@
 #include "tactus/cli/commission_file.h"
 #include "tactus/cli/commission_report.h"
 #include "tactus/cli/commission_run.h"
+#include "tactus/cli/number_within.h"
 
 /// What commissioning says, and makes of what is typed and of files.
 namespace tactus {
@@ -59,7 +61,8 @@ TEST(CommissionText, WhatIsTypedIsUnderstoodOrNot) {
   question.joint = kLiftJoint;
   EXPECT_NEAR(parsed(Asked::kEndPlace, "12.5")->value, 0.0125, 1e-12);
   EXPECT_EQ(parsed(Asked::kDirection, "roll")->joint, kRollJoint);
-  for (const char* line : {"", " ", "1e999", "nan", "inf", "1,5", "1 2", "none", "++1", "0x10"})
+  for (const char* line : {"", " ", "1e999", "nan", "inf", "1,5", "1 2", "none", "++1", "+-5",
+                           "-+5", "--5", "+", "0x10"})
     EXPECT_FALSE(parsed(Asked::kPlace, line)) << line;
   for (const char* line : {"", "Y", "+", "yes yes", "1"})
     EXPECT_FALSE(parsed(Asked::kReady, line)) << line;
@@ -81,6 +84,38 @@ TEST(CommissionText, TravelThatCannotBeMeasuredIsRefused) {
   CommissionOptions options;
   options.revolute.max_travel = 0.02;
   EXPECT_THROW(commissionConfig(folder.scene(), options), InputError);
+}
+
+TEST(CommissionText, BoundsThatAreNoNumbersAreRefused) {
+  const CommissionFolder folder;
+  const Scene scene = folder.scene();
+  const double no_number = std::numeric_limits<double>::quiet_NaN();
+  const double no_end = std::numeric_limits<double>::infinity();
+  for (const double wrong : {no_number, no_end, -no_end, -0.01, 2.0}) {
+    for (double MotionBounds::*const bound :
+         {&MotionBounds::max_travel, &MotionBounds::max_speed, &MotionBounds::max_acceleration,
+          &MotionBounds::max_following_error, &MotionBounds::measuring_error, &MotionBounds::margin,
+          &MotionBounds::unseen}) {
+      CommissionOptions options;
+      options.prismatic.*bound = wrong;
+      EXPECT_THROW(commissionConfig(scene, options), InputError) << wrong;
+      options = {};
+      options.revolute.*bound = wrong;
+      EXPECT_THROW(commissionConfig(scene, options), InputError) << wrong;
+    }
+  }
+  for (const double wrong : {no_number, no_end, 0.0, -1.0, 0.5}) {
+    CommissionOptions options;
+    options.file_factor = wrong;
+    EXPECT_THROW(commissionConfig(scene, options), InputError) << wrong;
+  }
+}
+
+TEST(CommissionText, OptionsTakeNumbersInRangeAlone) {
+  const CLI::Validator within = numberWithin(0.1, 2.0);
+  for (std::string good : {"0.1", "2", "1e0"}) EXPECT_EQ(within(good), "") << good;
+  for (std::string wrong : {"nan", "-nan", "NaN", "inf", "0.09", "2.01", "-1", "", "x"})
+    EXPECT_NE(within(wrong), "") << wrong;
 }
 
 TEST(CommissionText, DifferenceShowsLinesThatChanged) {

@@ -39,6 +39,8 @@ TEST(JointScale, TruthIsWithinTheUncertainty) {
     const DrawnMarks drawn = drawMarks(random);
     const double fewest = fewestCountsPerUnit(drawn.marks, drawn.q_error);
     EXPECT_LE(fewest, drawn.truth.counts_per_unit * (1.0 + 1e-9));
+    EXPECT_GE(mostCountsPerUnit(drawn.marks, drawn.q_error),
+              drawn.truth.counts_per_unit * (1.0 - 1e-9));
     EXPECT_LE(largestMisfit(drawn.marks), 2.0 * drawn.q_error);
     const auto scale = fitScale(drawn.marks, drawn.q_error);
     if (!scale) continue;

@@ -13,7 +13,8 @@ import shutil
 import subprocess
 
 # Programs of the system that a document may name: they need a robot's computer, or a whole machine.
-SYSTEM = {"apt", "apt-get", "cp", "git", "ip", "journalctl", "reboot", "systemctl"}
+SYSTEM = {"apt", "apt-get", "cp", "export", "git", "ip", "journalctl", "mkdir", "reboot",
+          "systemctl"}
 # Commands of tactus that are run as they stand; of all others --help must know the options.
 RUN = {"init", "check", "simulate", "export", "replay", "keys"}
 LANGUAGES = {"sh", "yaml", "text"}

@@ -25,6 +25,8 @@ class CommissionDesk {
   virtual void say(const std::string& text) = 0;
   /// A line that was typed, without its end.
   virtual std::optional<std::string> takeLine() = 0;
+  /// What was typed so far answers nothing that is asked from now on.
+  virtual void forgetTyped() = 0;
   /// For good: nothing is typed any more, or the program shall end.
   virtual bool isStopped() const = 0;
 };

@@ -28,6 +28,11 @@ Scene withRobot(const Scene& scene, const std::string& text);
 /// Lines that differ, with - and + before them.
 std::string differenceText(const std::string& before, const std::string& after);
 
+/// Throws InputError where the robot's file or what lies beside it could not be written.
+void refuseUnwritable(const SourceFile& robot);
+/// Writes robot.text to its path; keeps_copy: of the file as it was, with a tilde behind its name.
+void writeRobot(const SourceFile& robot, bool keeps_copy);
+
 /// Beside the robot's file: what was found of each joint that was finished.
 std::string statePath(const SourceFile& robot);
 /// An empty object if there is none. Throws InputError if it is none of ours.

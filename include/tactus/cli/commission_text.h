@@ -12,6 +12,8 @@
 namespace tactus {
 
 std::string jointText(const Scene& scene, int joint);
+/// Without blanks, tabs and line ends around it.
+std::string trimmedLine(std::string_view line);
 /// "node 3 on can0"
 std::string placeText(const Scene& scene, int bus, int node_id);
 /// "5.7 deg" or "20 mm", of m or rad.

@@ -23,10 +23,10 @@ struct Question {
   Asked asked = Asked::kReady;
   int joint = 0;
   int bus = 0, node_id = 0;  ///< of the drive
-  double next_travel = 0.0;  ///< of the next motion, at most, m or rad
   /// Where the joint is by what is known so far, m or rad.
   std::optional<double> position{};
-  bool is_upper = false;  ///< of kEndPlace
+  bool is_upper = false;    ///< of kEndPlace
+  bool is_refused = false;  ///< asked again: what was answered does not fit what is known
 };
 
 struct Answer {
@@ -78,18 +78,29 @@ class JointCommission {
   /// Marks that are right to the measuring error lie no further off their line.
   static constexpr double kMostMisfit_errors = 2.0;
 
+  /// Of one motion of a drive to its next, whatever was measured or told: one wrong answer is not
+  /// enough to make a motion long.
+  static constexpr double kMostGrowth = 3.0;
+
   enum class Step : std::uint8_t { kReady, kProbe, kScale, kJog, kWave, kFinished };
 
   void tryNext();
   void ask(Asked asked, double counts);
+  void askAgain(Asked asked, double counts);
   void takeDirection(const Answer& answer, double counts);
   void takeMark(double q, double counts);
+  void takeEndPlace(const Answer& answer, double counts);
   void takeJog(const Answer& answer, double counts);
+  void jog(double way, double counts);
+  void takeEnd(bool is_upper, double counts);
+  void beginWave(double counts) noexcept;
   void begin(Step step, double distance) noexcept;
+  void beginShape(Step step, const StrokeShape& shape) noexcept;
   void finish();
-  void chooseScale();
+  void chooseScale(const JointScale& measured);
   bool isWide() const noexcept;
   StrokeBounds bounds() const noexcept;
+  double assumedCounts(int joint) const noexcept;
   double fewestCounts(int joint) const noexcept;
   double fileCounts(int joint) const noexcept;
   std::optional<JointScale> scale() const;
@@ -103,7 +114,8 @@ class JointCommission {
   std::optional<Question> question_;
   JointFindings findings_;
   JointTrouble trouble_;
-  StrokeShape shape_;           ///< of the stroke that is due
+  StrokeShape shape_;           ///< of the stroke that is due, or of the last one
+  StrokeBounds stroke_bounds_;  ///< likewise
   StrokeReport last_stroke_;    ///< of the last one
   bool is_identified_ = false;  ///< it is known that this drive moves this joint
   int seen_sign_ = 0;           ///< by the engineer's eyes

@@ -40,15 +40,18 @@ enum class JointTroubleKind : std::uint8_t {
   kStroke,         ///< a motion ended otherwise than it should: see the stroke's report
   kMovedBetween,   ///< it moved, or its counts jumped, while it had no power
   kMovedShort,     ///< it did not go as far as it was told, though its drive said nothing
+  kFewerCounts,    ///< by the measured places it has fewer than all motions rely on
+  kStillOpen,      ///< after many motions the measured places still do not tell
   kSignsDisagree,  ///< what was seen and what was measured go opposite ways
-  kCannotTell,     ///< the measured places are too close together, or contradict each other
+  kCannotTell,     ///< the measured places contradict each other
 };
 
 struct JointTrouble {
   JointTroubleKind kind = JointTroubleKind::kNone;
-  StrokeReport stroke{};            ///< of the last motion
-  int bus = 0, node_id = 0;         ///< of whom it speaks
-  double value = 0.0, limit = 0.0;  ///< counts, or m or rad for kCannotTell
+  StrokeReport stroke{};     ///< of the last motion
+  int bus = 0, node_id = 0;  ///< of whom it speaks
+  /// Counts; a unit for kFewerCounts; m or rad for kCannotTell; motions for kStillOpen.
+  double value = 0.0, limit = 0.0;
 };
 
 }  // namespace tactus

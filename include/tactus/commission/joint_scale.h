@@ -35,6 +35,9 @@ JointScale fitOffset(std::span<const Mark> marks, int sign, double counts_per_un
 /// nothing.
 double fewestCountsPerUnit(std::span<const Mark> marks, double q_error) noexcept;
 
+/// The most, likewise; infinity: they tell nothing.
+double mostCountsPerUnit(std::span<const Mark> marks, double q_error) noexcept;
+
 /// The largest distance of a mark from a line, m or rad: from this one, or from that through all of
 /// them by least squares, wherever they lie.
 double largestMisfit(std::span<const Mark> marks, const JointScale& scale) noexcept;

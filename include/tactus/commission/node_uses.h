@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -7,6 +8,13 @@
 #include "tactus/commission/node_scan.h"
 
 namespace tactus {
+
+/// Bounds of a motion in counts, of which no unit is known: whatever joint the drive moves.
+struct CountBounds {
+  double travel = kUnbounded, speed = kUnbounded, acceleration = kUnbounded, error = kUnbounded;
+
+  static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+};
 
 /// Which drive moves which joint, as far as it is known.
 class NodeUses {
@@ -21,6 +29,14 @@ class NodeUses {
   void forgetTrials() noexcept { tried_.assign(nodes_.size(), false); }
   /// That the drive moves nothing that anybody sees.
   void dismiss(const FoundNode& node) noexcept { tried_[indexOf(node)] = true; }
+
+  /// Of the drive's last motion, whichever joint it was for; unbounded before the first.
+  const CountBounds& lastBounds(const FoundNode& node) const noexcept {
+    return last_bounds_[indexOf(node)];
+  }
+  void noteBounds(const FoundNode& node, const CountBounds& bounds) noexcept {
+    last_bounds_[indexOf(node)] = bounds;
+  }
 
   bool isKnown(int joint) const noexcept { return drive_of_[joint].has_value(); }
   /// Which drive to try for a joint: the one that is known to move it; the file's; the one that the
@@ -38,6 +54,7 @@ class NodeUses {
   const CommissionConfig* config_;
   std::vector<FoundNode> nodes_;
   std::vector<bool> tried_;                           ///< one a node
+  std::vector<CountBounds> last_bounds_;              ///< one a node
   std::vector<std::optional<std::size_t>> drive_of_;  ///< one a joint
 };
 
