@@ -95,8 +95,9 @@ void addCommissionCommand(CLI::App& app, int& exit_code) {
   addBound(*command, "--slide-margin", sliding.margin, 0.0, 1.0, "m, likewise");
   addBound(*command, "--file-factor", arguments->options.file_factor, 1.5, 1e4,
            "A joint has no fewer counts than the file says, divided by this");
-  command->add_flag("--scan", arguments->options.is_scan_alone,
-                    "Name the nodes that answer, and move nothing; all nodes become pre-operational");
+  command->add_flag(
+      "--scan", arguments->options.is_scan_alone,
+      "Name the nodes that answer, and move nothing; all nodes become pre-operational");
   CLI::Option* scan = command->get_option("--scan");
   command->add_flag("--json", arguments->options.json, "Print the nodes as JSON")->needs(scan);
   command->callback([arguments, &exit_code] { exit_code = commissionScene(*arguments); });

@@ -47,7 +47,7 @@ PURE_LAYERS = {"math", "control", "sim", "analysis", "canopen", "supervisor", "c
                "plant"}
 
 POSIX = re.compile(r"(sys|linux|net|netinet|arpa)/.+|"
-                   r"(unistd|fcntl|poll|pthread|sched|semaphore|signal|stdlib|time|errno)\.h")
+                   r"(unistd|fcntl|poll|pthread|sched|semaphore|signal|stdlib|termios|time|errno)\.h")
 SOCKETS = re.compile(r"(sys/(socket|un)|linux/can.*|net/.+|netinet/.+|arpa/.+|netdb)(\.h)?")
 POSIX_LAYERS = {"io", "rt", "record", "daemon", "cli", "panel", "bench"}
 SOCKET_LAYERS = {"io"}
