@@ -197,7 +197,7 @@ Scope makeScope(const ScopeOptions& options) {
     failAt(beginOf(options.log), field, "is not in this log, which is of an older version",
            "expected another field");
   }
-  return {options, std::move(scene), std::move(trigger)};
+  return {options, std::move(scene), trigger};
 }
 
 /// True: no more is wanted.
