@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -39,12 +38,8 @@ std::vector<std::string> wordsOf(const std::string& line) {
 }
 
 std::optional<double> numberOf(const std::string& word) {
-  const std::string_view text = withoutPlus(word);
-  const char* const end = text.data() + text.size();
-  double value = 0.0;
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  const bool is_number = !text.empty() && error == std::errc() && stop == end;
-  return is_number && std::abs(value) <= kLargestSaid_N ? std::optional(value) : std::nullopt;
+  const std::optional<double> value = finiteNumber(word);
+  return value && std::abs(*value) <= kLargestSaid_N ? value : std::nullopt;
 }
 
 /// "5 +y" as (0, 5, 0); empty: the words begin otherwise.

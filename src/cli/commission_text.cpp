@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "tactus/scene/located_error.h"
+#include "tactus/scene/number_text.h"
 
 namespace tactus {
 namespace {
@@ -40,13 +40,9 @@ std::string numbersOf(Vector3 v) {
 }
 
 std::optional<Answer> number(const Scene& scene, int joint, const std::string& word) {
-  double value = 0.0;
-  if (word.starts_with("+-")) return std::nullopt;
-  const char* const begin = word.data() + (word[0] == '+' ? 1 : 0);
-  const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-    return std::nullopt;
-  return Answer{Kind::kNumber, value * unitSaid(scene, joint)};
+  const std::optional<double> value = finiteNumber(word);
+  if (!value) return std::nullopt;
+  return Answer{Kind::kNumber, *value * unitSaid(scene, joint)};
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <memory>
 #include <thread>
 
+#include "tactus/daemon/run_status.h"
 #include "tactus/io/can_socket.h"
 #include "tactus/record/run_error.h"
 #include "tactus/scene/located_error.h"
@@ -24,10 +25,6 @@ std::array<IdFilter, 4> idsOf(std::uint32_t first_id) {
   std::array<IdFilter, 4> ids;
   for (std::uint32_t k = 0; k < ids.size(); ++k) ids[k].id = first_id + k;
   return ids;
-}
-
-double steadyTime_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 /// A socket without an interface is always ready, and has nothing.
@@ -64,7 +61,7 @@ FrameSource framesOf(const std::string& interface, std::uint32_t first_id) {
   const auto next = [socket](FrameBatch& frames) {
     waitForFrames(*socket);
     socket->receive(frames);
-    return steadyTime_s();
+    return monotonicTime_s();
   };
   return {forget, next};
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <memory>
 
@@ -51,16 +50,12 @@ class PushSection {
   }
 
   double number(const YamlNode& node, const std::string& path, double lower, double upper) const {
-    double value = 0.0;
-    const std::string_view text = withoutPlus(node.text);
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    const bool is_number = node.kind == YamlNode::Kind::kScalar && !node.quoted &&
-                           error == std::errc() && stop == end && std::isfinite(value);
-    if (!is_number || value < lower || value > upper)
-      failAt(node.at, path, describe(node) + (is_number ? " is out of range" : " is no number"),
+    const bool is_plain = node.kind == YamlNode::Kind::kScalar && !node.quoted;
+    const std::optional<double> value = is_plain ? finiteNumber(node.text) : std::nullopt;
+    if (!value || *value < lower || *value > upper)
+      failAt(node.at, path, describe(node) + (value ? " is out of range" : " is no number"),
              fmt::format("expected a number from {:g} to {:g}", lower, upper));
-    return value;
+    return *value;
   }
 
   double number(std::string_view key, double lower, double upper) const {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <charconv>
+#include <cmath>
+#include <optional>
 #include <string_view>
 
 namespace tactus {
@@ -9,6 +12,15 @@ inline std::string_view withoutPlus(std::string_view number) noexcept {
   const bool has_one_sign =
       number.size() > 1 && number[0] == '+' && number[1] != '+' && number[1] != '-';
   return number.substr(has_one_sign ? 1 : 0);
+}
+
+/// A finite number that is all of the text, with a plus sign or without.
+inline std::optional<double> finiteNumber(std::string_view text) noexcept {
+  text = withoutPlus(text);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  return is_number && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace tactus
