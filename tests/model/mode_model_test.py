@@ -136,14 +136,10 @@ class ModeModelTest(unittest.TestCase):
         done = agree(steps)
         print(done.stdout, end="")
         self.assertEqual(done.returncode, 0, done.stdout)
-        first = steps.splitlines()[0].split()
-        wrong = steps.replace("\n", " \n", 1).splitlines()
-        wrong[0] = " ".join(first[:-9] + ["8"] + first[-8:])  # to another mode
-        self.assertIn("the code to", agree("\n".join(wrong)).stdout)
-        last = steps.splitlines()[-1].split()
-        edge = re.compile(r"^%s +\d+ +\d+ +%s$" % (" +".join(last[:10]), " +".join(last[12:])))
-        left = "".join(line + "\n" for line in steps.splitlines() if not edge.match(line))
-        self.assertIn("the model never", agree(left).stdout)
+        first = steps[:steps.index("\n")].split()
+        wrong = " ".join(first[:-9] + ["8"] + first[-8:])  # to another mode
+        self.assertIn("the code to", agree(wrong).stdout)
+        self.assertIn("the model never", agree(steps[:steps.rindex("\n", 0, 100000) + 1]).stdout)
 
     def test_spin_finds_nothing_against_the_claims(self):
         pan = verifier(self.folder / "claims", self.text)

@@ -33,6 +33,7 @@
 #define DEADLINE_CYCLES 2
 #define LONGEST_CYCLES 7
 #define RAMP_CYCLES 2
+#define MISSED_CYCLES 2
 
 /* The state: of modes, of the brakes, and whether the enable line was off since the fault. */
 byte mode = BOOT, fault, reaction, cycles, enabled_cycles, rest_cycles;
@@ -42,7 +43,7 @@ bool has_line; /* an enable line; for good */
 /* What a cycle is told. Zero between cycles. */
 byte seen, seen_reaction; /* a fault */
 bool enable, stop, configured, following, drives_off, at_rest, resting, any_holds, moving_on;
-bool retreat_over;
+bool retreat_over, missed; /* cycles, which a stop's deadline counts */
 
 /* What was asked for in the last cycle, and whether the arm rested, as told or as it must. */
 bool is_asked_to_rest, is_asked_to_end, rested;
@@ -311,13 +312,13 @@ active proctype supervisor() {
     :: mode == HOLDING ->
       skip; choose(stop); choose_at_rest(); choose(resting); choose_any_holds(); choose(moving_on)
     :: mode == STOPPING ->
-      skip; choose(stop); choose(drives_off); choose_at_rest(); choose(resting); choose_any_holds(); choose(moving_on)
+      skip; choose(stop); choose(drives_off); choose_at_rest(); choose(resting); choose_any_holds(); choose(moving_on); choose(missed)
     :: mode == FAULT ->
-      skip; choose(stop); choose(drives_off); choose_any_holds(); choose(moving_on)
+      skip; choose(stop); choose(drives_off); choose_any_holds(); choose(moving_on); choose(missed)
     :: mode == OFF ->
       skip
     :: mode == RETREATING ->
-      skip; choose(stop); choose(resting); choose_any_holds(); choose(moving_on); choose(retreat_over)
+      skip; choose(stop); choose(resting); choose_any_holds(); choose(moving_on); choose(retreat_over); choose(missed)
     fi;
     d_step {
       mode_before = mode; fault_before = fault; reaction_before = reaction;
@@ -325,7 +326,7 @@ active proctype supervisor() {
       printf("%d %d %d %d %d %d %d %d %d %d  ", has_line, mode, fault, reaction, may_clear,
         cycles, enabled_cycles, is_open, rest_cycles, was_off);
       note(seen, seen_reaction);
-      cycles++;
+      cycles = cycles + 1 + (missed -> MISSED_CYCLES : 0);
       update_mode();
       if
       :: cycles > LONGEST_CYCLES -> cycles = LONGEST_CYCLES
@@ -336,12 +337,13 @@ active proctype supervisor() {
       check();
       printf("%d %d  ", seen, enable + 2 * stop + 4 * configured + 8 * following +
         16 * drives_off + 32 * at_rest + 64 * resting + 128 * any_holds + 256 * moving_on +
-        512 * retreat_over);
+        512 * retreat_over + 1024 * missed);
       printf("%d %d %d %d %d %d %d %d %d\n", mode, fault, reaction, may_clear, cycles,
         enabled_cycles, is_open, rest_cycles, was_off);
       seen = NO_FAULT; seen_reaction = NO_REACTION; enable = false; stop = false;
       configured = false; following = false; drives_off = false; at_rest = false;
-      resting = false; any_holds = false; moving_on = false; retreat_over = false
+      resting = false; any_holds = false; moving_on = false; retreat_over = false;
+      missed = false
     }
   }
   od

@@ -15,7 +15,7 @@ namespace {
 /// In the order of test::walkInput().
 constexpr const char* kInputs[] = {"enable",     "stop",         "configured", "following",
                                    "drives_off", "at_rest",      "resting",    "any_holds",
-                                   "moving_on",  "retreat_over", "seen"};
+                                   "moving_on",  "retreat_over", "missed"};
 
 /// Of a condition, with the input that it looks at, if any.
 struct Expression {
@@ -100,6 +100,7 @@ std::string definitions() {
   text += define("DEADLINE_CYCLES", test::kWalkBrakes.deadline_cycles);
   text += define("LONGEST_CYCLES", test::kWalkLongest_cycles);
   text += define("RAMP_CYCLES", test::kWalkRamp_cycles);
+  text += define("MISSED_CYCLES", test::kWalkMissed_cycles);
   return text;
 }
 
@@ -145,6 +146,7 @@ std::string modeInputs(Mode mode) {
   for (const BrakeRow& row : brakeRows())
     if (row.mode == mode || isLegal(mode, row.mode))
       addInputs(row.conditions, kBrakeExpressions, inputs);
+  if (test::countsMissedCycles(mode)) inputs.emplace_back("missed");
   std::string text = fmt::format("    :: mode == {} ->\n      skip", name(mode));
   for (const char* input : kInputs) {
     if (std::count(inputs.begin(), inputs.end(), input) == 0) continue;

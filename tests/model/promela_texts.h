@@ -13,7 +13,7 @@ bool has_line; /* an enable line; for good */
 /* What a cycle is told. Zero between cycles. */
 byte seen, seen_reaction; /* a fault */
 bool enable, stop, configured, following, drives_off, at_rest, resting, any_holds, moving_on;
-bool retreat_over;
+bool retreat_over, missed; /* cycles, which a stop's deadline counts */
 
 /* What was asked for in the last cycle, and whether the arm rested, as told or as it must. */
 bool is_asked_to_rest, is_asked_to_end, rested;
@@ -138,7 +138,7 @@ active proctype supervisor() {
       printf("%d %d %d %d %d %d %d %d %d %d  ", has_line, mode, fault, reaction, may_clear,
         cycles, enabled_cycles, is_open, rest_cycles, was_off);
       note(seen, seen_reaction);
-      cycles++;
+      cycles = cycles + 1 + (missed -> MISSED_CYCLES : 0);
       update_mode();
       if
       :: cycles > LONGEST_CYCLES -> cycles = LONGEST_CYCLES
@@ -149,12 +149,13 @@ active proctype supervisor() {
       check();
       printf("%d %d  ", seen, enable + 2 * stop + 4 * configured + 8 * following +
         16 * drives_off + 32 * at_rest + 64 * resting + 128 * any_holds + 256 * moving_on +
-        512 * retreat_over);
+        512 * retreat_over + 1024 * missed);
       printf("%d %d %d %d %d %d %d %d %d\n", mode, fault, reaction, may_clear, cycles,
         enabled_cycles, is_open, rest_cycles, was_off);
       seen = NO_FAULT; seen_reaction = NO_REACTION; enable = false; stop = false;
       configured = false; following = false; drives_off = false; at_rest = false;
-      resting = false; any_holds = false; moving_on = false; retreat_over = false
+      resting = false; any_holds = false; moving_on = false; retreat_over = false;
+      missed = false
     }
   }
   od

@@ -44,7 +44,8 @@ struct WalkInput {
 };
 
 /// What a cycle may be told, each bit of one thing.
-inline constexpr unsigned kWalkInputBits = 10;
+inline constexpr unsigned kWalkInputBits = 11;
+inline constexpr int kWalkMissed_cycles = 2;  ///< where some were missed
 
 inline WalkInput walkInput(Fault fault, unsigned bits, bool has_enable_line) {
   const auto bit = [bits](int i) { return (bits >> i & 1U) != 0; };
@@ -61,6 +62,7 @@ inline WalkInput walkInput(Fault fault, unsigned bits, bool has_enable_line) {
   input.brake.is_any_holding = bit(7);
   input.brake.is_any_moving_on = bit(8);
   input.mode.is_retreat_over = bit(9);
+  input.mode.missed_cycles = bit(10) ? kWalkMissed_cycles : 0;
   return input;
 }
 
@@ -78,14 +80,20 @@ inline std::vector<WalkInput> walkInputs(bool has_enable_line) {
   return inputs;
 }
 
-/// The arm rests before it may move, and after its ramp.
+/// Where a stop has a deadline of time.
+inline bool countsMissedCycles(Mode mode) {
+  return mode == Mode::kRetreating || mode == Mode::kStopping || mode == Mode::kFault;
+}
+
+/// The arm rests before it may move, and after its ramp. Cycles may be missed anywhere; where that
+/// counts for nothing, it need not be walked.
 inline bool canHappen(const WalkState& state, const WalkInput& input) {
-  const bool is_ramping =
-      (state.mode.mode == Mode::kHolding || state.mode.mode == Mode::kStopping) &&
-      state.mode.cycles_in_mode < kWalkRamp_cycles;
-  const bool may_move =
-      state.mode.mode == Mode::kRunning || state.mode.mode == Mode::kRetreating || is_ramping;
-  return may_move || input.mode.is_at_rest;
+  const ModeState& mode = state.mode;
+  const bool is_ramping = (mode.mode == Mode::kHolding || mode.mode == Mode::kStopping) &&
+                          mode.cycles_in_mode < kWalkRamp_cycles;
+  const bool may_move = mode.mode == Mode::kRunning || mode.mode == Mode::kRetreating || is_ramping;
+  return (may_move || input.mode.is_at_rest) &&
+         (input.mode.missed_cycles == 0 || countsMissedCycles(mode.mode));
 }
 
 inline WalkState walkOn(const WalkState& before, const WalkInput& input) {
