@@ -180,6 +180,9 @@ void parse(CLI::App& app, Options& options, int argc, char** argv) {
       "--clutter", [&options] { options.names.push_back("clutter"); },
       "Reaching among many posts: --study clutter; SCENE: the arm and its gains");
   app.add_flag_callback(
+      "--body", [&options] { options.names.push_back("body"); },
+      "null_limit on regions of the body: --study body; SCENE: as for --law");
+  app.add_flag_callback(
       "--physics", [&options] { options.names.push_back("physics"); },
       "The simulated arm beside MuJoCo: --study physics; some ten minutes");
   app.add_flag("--quick", options.is_quick, "A look: few repetitions, short sweeps");

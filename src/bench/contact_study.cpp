@@ -2,11 +2,11 @@
 #include <cmath>
 #include <string>
 
+#include "tactus/bench/arm_bases.h"
 #include "tactus/bench/law_grid.h"
 #include "tactus/bench/parallel.h"
 #include "tactus/bench/random.h"
 #include "tactus/bench/study.h"
-#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {
@@ -23,7 +23,6 @@ constexpr std::array kBesideMomentX = {0.0, 0.5};  // mu_max
 /// Of the row of M_x where the base's module has none, m: with cells that are canted. Noise of
 /// 0.05 N is of 2.1 mNm then.
 constexpr double kMomentX_m = 0.03;
-constexpr std::array kArms = {"quasi_static", "rigid_gears", "flexible_gears"};
 constexpr int kDrawn = 48;
 constexpr std::uint64_t kDrawnSeed = 20'261'123;
 
@@ -34,9 +33,6 @@ struct ContactTrial {
   double bearable = 0.0;
   bool has_moment_x = false;  ///< the module tells M_x
 };
-
-/// One scene, whose arm has no mass, rigid gears or flexible ones; only as many as its robot knows.
-using ArmBases = std::vector<RunSetup>;
 
 /// Also where y is NaN.
 double larger(double x, double y) { return y <= x ? x : y; }
@@ -248,22 +244,11 @@ void addMomentGoals(const Table& table, const ArmBases& bases, std::vector<Goal>
   }
 }
 
-ArmBases contactBases(const std::string& path) {
-  ArmBases bases;
-  for (const char* arm : kArms) {
-    const Scene scene = loadScene(path, {{"simulation.arm", arm}}, SceneUse::kSimulation);
-    bases.push_back({scene.controller, scene.plant, scene.period_s, scene.duration_s});
-    const bool has_more = scene.arm && (bases.size() < 2 || scene.arm->has_gears);
-    if (!has_more) break;
-  }
-  return bases;
-}
-
 }  // namespace
 
 StudyResult studyContact(const BenchOptions& options) {
-  const ArmBases bases = contactBases(options.scenes.empty() ? options.scenes_folder + kContactBase
-                                                             : options.scenes.front());
+  const ArmBases bases = armBases(options.scenes.empty() ? options.scenes_folder + kContactBase
+                                                         : options.scenes.front());
   const double robot_N_per_m = bases.front().plant.robot_stiffness_N_per_m;
   std::vector<LawGridPoint> grid = contactPoints(robot_N_per_m);
   std::vector<LawGridPoint> drawn = drawnPoints(robot_N_per_m);

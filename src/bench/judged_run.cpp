@@ -51,7 +51,7 @@ class ProfileProbe {
   TactileModuleConfig module_;
   double radius_m_;
   Obstacle obstacle_;  ///< of 1 N/m
-  ChainPose pose_;
+  ChainPose pose_{};
 };
 
 }  // namespace

@@ -91,7 +91,7 @@ class TouchWatch {
 
   RunSetup setup_;
   std::vector<FirstTouch> touches_;
-  ChainPose pose_;
+  ChainPose pose_{};
 };
 
 double restLimit_N(const RunSetup& setup) {

@@ -16,6 +16,7 @@ const std::vector<Study>& studies() {
       {"several", "null_limit on contacts of several modules", false, false, studySeveral},
       {"clutter", "reaching among many posts, with modules on all links", false, false,
        studyClutter},
+      {"body", "null_limit on the body model of ISO/TS 15066", false, false, studyBody},
       {"physics", "the simulated arm beside MuJoCo", false, false, studyPhysics},
   };
   return list;

@@ -2,27 +2,27 @@
 
 #include <algorithm>
 
+#include "tactus/supervisor/mode_table.h"
+
 namespace tactus {
 namespace {
+
+std::uint32_t brakeConditions(const BrakeConfig& config, const ModeState& mode,
+                              const BrakeInput& input, const BrakeState& state) noexcept {
+  const auto only = [](bool is, std::uint32_t yes) { return is ? yes : 0; };
+  return only(state.is_open, kIfBrakeWasOpen) | only(input.are_enabled, kIfAllFollow) |
+         only(state.rest_cycles == 0, kIfNotResting) | only(input.is_any_holding, kIfAnyHolds) |
+         only(!input.is_any_moving_on, kIfNoneMovesOn) |
+         only(mode.cycles_in_mode < config.deadline_cycles, kIfBeforeDeadline);
+}
 
 bool mayBeOpen(const BrakeConfig& config, const ModeState& mode, const BrakeInput& input,
                const BrakeState& state) noexcept {
   if (mode.reaction == Reaction::kBrake) return false;
-  switch (mode.mode) {
-    case Mode::kEnabling:
-      return input.are_enabled;
-    case Mode::kRunning:
-    case Mode::kRetreating:
-    case Mode::kHolding:
-      return true;
-    case Mode::kStopping:
-      return state.is_open && state.rest_cycles == 0;
-    case Mode::kFault:
-      return state.is_open && input.is_any_holding && !input.is_any_moving_on &&
-             mode.cycles_in_mode < config.deadline_cycles;
-    default:
-      return false;
-  }
+  const std::uint32_t held = brakeConditions(config, mode, input, state);
+  return std::any_of(brakeRows().begin(), brakeRows().end(), [&](const BrakeRow& row) {
+    return row.mode == mode.mode && (row.conditions & held) == row.conditions;
+  });
 }
 
 }  // namespace

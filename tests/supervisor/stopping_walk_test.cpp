@@ -8,46 +8,15 @@
 #include <set>
 #include <vector>
 
-#include "tactus/supervisor/brake.h"
-#include "tactus/supervisor/mode.h"
+#include "support/mode_walk.h"
 
 /// Every state that modes and brakes can come to, over every input of every cycle, with time limits
 /// of a few cycles: what holds there holds for ever.
 namespace tactus {
 namespace {
 
-constexpr ModeConfig kModeConfig{.boot_cycles = 3,
-                                 .enabling_cycles = 4,
-                                 .retreating_cycles = 3,
-                                 .stopping_cycles = 5,
-                                 .brake_cycles = 1};
-constexpr BrakeConfig kBrakeConfig{.rest_cycles = 1, .deadline_cycles = 2};
-constexpr int kLongest = 7;  ///< cycles in a mode; more make no difference
-/// While a hold or a stop ramps: set by the acceleration limits.
-constexpr int kRampCycles = 2;
-
-struct WalkState {
-  ModeState mode;
-  BrakeState brake;
-  bool was_off = false;  ///< the enable line, since the last fault or hold: what may_clear means
-
-  auto key() const {
-    return std::array{static_cast<int>(mode.mode),
-                      static_cast<int>(mode.fault),
-                      static_cast<int>(mode.reaction),
-                      static_cast<int>(mode.may_clear),
-                      mode.cycles_in_mode,
-                      mode.enabled_cycles,
-                      static_cast<int>(brake.is_open),
-                      brake.rest_cycles,
-                      static_cast<int>(was_off)};
-  }
-};
-
-struct WalkInput {
-  ModeInput mode;
-  BrakeInput brake;
-};
+using test::canHappen, test::kWalkBrakes, test::kWalkModes, test::walkInputs, test::walkOn,
+    test::WalkInput, test::WalkState;
 
 /// What somebody or something asks for in every cycle, and where that has to lead to.
 struct Demand {
@@ -66,66 +35,17 @@ constexpr Demand kDemands[] = {
     {"a stop request leads to the end",
      [](const WalkInput& input) { return input.mode.stop_requested; },
      [](const WalkState& state) { return state.mode.mode == Mode::kOff; },
-     2 * (kModeConfig.stopping_cycles + 1) + 1},
+     2 * (kWalkModes.stopping_cycles + 1) + 1},
     {"silence of a drive leads to no setpoint but zero at once, and to closed brakes",
      [](const WalkInput& input) { return input.mode.fault == Fault::kDriveSilent; }, isStopped,
-     kBrakeConfig.deadline_cycles + 1},
+     kWalkBrakes.deadline_cycles + 1},
     {"a fault that ramps leads to rest and closed brakes",
      [](const WalkInput& input) { return input.mode.fault == Fault::kOverrun; }, isStopped,
-     kModeConfig.stopping_cycles + kBrakeConfig.deadline_cycles + 2},
+     kWalkModes.stopping_cycles + kWalkBrakes.deadline_cycles + 2},
     {"a retreat ends, whatever else comes", [](const WalkInput&) { return true; },
      [](const WalkState& state) { return state.mode.mode != Mode::kRetreating; },
-     kModeConfig.retreating_cycles + 1},
+     kWalkModes.retreating_cycles + 1},
 };
-
-/// All that drives, lines and buses may say at once; a drive that holds is not off.
-std::vector<WalkInput> allInputs(bool has_enable_line) {
-  std::vector<WalkInput> inputs;
-  for (const FaultRow& row : faultTable()) {
-    for (unsigned bits = 0; bits < 1U << 10; ++bits) {
-      const auto bit = [bits](int i) { return (bits >> i & 1U) != 0; };
-      WalkInput input;
-      input.mode.fault = row.fault;
-      input.mode.has_enable_line = has_enable_line;
-      input.mode.enable = bit(0) || !has_enable_line;
-      input.mode.stop_requested = bit(1);
-      input.mode.are_configured = bit(2);
-      input.mode.are_enabled = input.brake.are_enabled = bit(3);
-      input.mode.are_disabled = bit(4);
-      input.mode.is_at_rest = bit(5);
-      input.brake.is_at_rest = bit(6);
-      input.brake.is_any_holding = bit(7);
-      input.brake.is_any_moving_on = bit(8);
-      input.mode.is_retreat_over = bit(9);
-      const bool is_idle_bit = !has_enable_line && bit(0);
-      if (is_idle_bit || (bit(4) && bit(7))) continue;
-      inputs.push_back(input);
-    }
-  }
-  return inputs;
-}
-
-/// The arm rests before it may move, and after its ramp.
-bool canBe(const WalkState& state, const WalkInput& input) {
-  const bool is_ramping =
-      (state.mode.mode == Mode::kHolding || state.mode.mode == Mode::kStopping) &&
-      state.mode.cycles_in_mode < kRampCycles;
-  const bool may_move =
-      state.mode.mode == Mode::kRunning || state.mode.mode == Mode::kRetreating || is_ramping;
-  return may_move || input.mode.is_at_rest;
-}
-
-WalkState next(const WalkState& before, const WalkInput& input) {
-  WalkState state = before;
-  updateMode(kModeConfig, input.mode, state.mode);
-  state.mode.cycles_in_mode = std::min(state.mode.cycles_in_mode, kLongest);
-  updateBrake(kBrakeConfig, state.mode, input.brake, state.brake);
-  const bool is_new_fault = input.mode.fault != Fault::kNone ||
-                            (before.mode.fault == Fault::kNone && state.mode.fault != Fault::kNone);
-  if (is_new_fault || state.mode.mode == Mode::kRunning) state.was_off = false;
-  if (!input.mode.enable && input.mode.fault == Fault::kNone) state.was_off = true;
-  return state;
-}
 
 class StoppingWalk : public testing::TestWithParam<bool> {
  protected:
@@ -144,8 +64,8 @@ class StoppingWalk : public testing::TestWithParam<bool> {
       std::array<std::set<int>, std::size(kDemands)> asked_for;
       for (const WalkInput& input : inputs_) {
         const WalkState before = states_[i];
-        if (!canBe(before, input)) continue;
-        const WalkState after = next(before, input);
+        if (!canHappen(before, input)) continue;
+        const WalkState after = walkOn(before, input);
         if (first_problem_ == nullptr) first_problem_ = problem(before, input, after);
         const int number = add(after);
         for (std::size_t k = 0; k < std::size(kDemands); ++k)
@@ -199,7 +119,7 @@ class StoppingWalk : public testing::TestWithParam<bool> {
     if (mode.mode != Mode::kFault && mode.mode != Mode::kStopping && is_open != holds)
       return "a brake in the wrong state";
     if (mode.mode != Mode::kFault) return nullptr;
-    if (is_open && mode.cycles_in_mode >= kBrakeConfig.deadline_cycles)
+    if (is_open && mode.cycles_in_mode >= kWalkBrakes.deadline_cycles)
       return "a brake open beyond its deadline";
     if (is_open && input.brake.is_any_moving_on) return "a brake open while a drive moves on";
     if (is_open && !input.brake.is_any_holding) return "a brake open that nobody waits for";
@@ -233,7 +153,7 @@ class StoppingWalk : public testing::TestWithParam<bool> {
     return *std::max_element(most.begin(), most.end());
   }
 
-  std::vector<WalkInput> inputs_ = allInputs(GetParam());
+  std::vector<WalkInput> inputs_ = walkInputs(GetParam());
   std::deque<WalkState> states_;
   std::map<decltype(WalkState{}.key()), int> numbers_;
   std::array<std::vector<std::vector<int>>, std::size(kDemands)> next_;  ///< while it is made

@@ -105,6 +105,25 @@ class Bench(unittest.TestCase):
         self.assertEqual(sum(row["rows"] for row in tables["extremes_summary"]), len(rows))
         self.assertTrue((self.folder / "out/report.html").exists())
 
+    def test_tells_up_to_which_speed_a_body_is_pressed_within_its_limit(self):
+        base = ROOT / "config/scenes/scenario2_estimated.yaml"
+        result = self.bench("--quick", "--body", "--json", base)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        tables = json.loads(result.stdout)
+        runs = {}
+        for row in tables["body_runs"]:
+            runs.setdefault((row["law"], row["region"]), []).append(row)
+        self.assertEqual(len(tables["body_speeds"]), len(runs))
+        self.assertEqual(len(runs), 2 * 12)
+        for row in tables["body_speeds"]:
+            up_to = 0
+            for run in runs[row["law"], row["region"]]:
+                if run["peak_force_N"] > row["max_force_N"]:
+                    break
+                up_to = run["speed_m_per_s"]
+            self.assertEqual(row["up_to_m_per_s"], up_to, row)
+        self.assertEqual({row["up_to_m_per_s"] for row in tables["body_speeds"]}, {0, 0.1, 0.5})
+
     def test_knows_its_studies(self):
         self.assertEqual(self.bench("--study", "nothing").returncode, 2)
         result = self.bench("--help")

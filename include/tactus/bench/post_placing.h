@@ -47,7 +47,7 @@ class EndWatch {
   std::vector<TactileModuleConfig> modules_;
   std::vector<double> radii_m_;
   std::vector<Post> posts_;
-  ChainPose pose_;
+  ChainPose pose_{};
 };
 
 }  // namespace tactus

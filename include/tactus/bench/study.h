@@ -55,5 +55,6 @@ StudyResult studyContact(const BenchOptions& options);
 StudyResult studyPhysics(const BenchOptions& options);
 StudyResult studySeveral(const BenchOptions& options);
 StudyResult studyClutter(const BenchOptions& options);
+StudyResult studyBody(const BenchOptions& options);
 
 }  // namespace tactus

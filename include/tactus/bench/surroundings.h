@@ -33,7 +33,7 @@ class ClearanceWatch {
   SerialChain chain_;
   std::optional<BodyDistances> distances_;
   double safe_m_ = 0.0;
-  ChainPose pose_;
+  ChainPose pose_{};
 };
 
 }  // namespace tactus

@@ -34,15 +34,15 @@ Row<S> value(ValueType type, const std::string& key, const std::string& unit,
 }
 
 template <class S, class T>
-Row<S> number(const std::string& key, const std::string& unit, Range range, const std::string& doc,
-              T S::*member) {
+Row<S> number(const std::string& key, const std::string& unit, const Range& range,
+              const std::string& doc, T S::*member) {
   Row<S> row = value(ValueType::kNumber, key, unit, doc, member);
   row.spec.range = range;
   return row;
 }
 
 template <class S, class T>
-Row<S> integer(const std::string& key, Range range, const std::string& doc, T S::*member) {
+Row<S> integer(const std::string& key, const Range& range, const std::string& doc, T S::*member) {
   Row<S> row = value(ValueType::kInteger, key, "", doc, member);
   row.spec.range = range;
   return row;
@@ -81,8 +81,8 @@ Row<S> choice(const std::string& key, const std::string& doc, E S::*member,
 }
 
 template <class S>
-Row<S> vector3(const std::string& key, const std::string& unit, Range range, const std::string& doc,
-               Vector3 S::*member) {
+Row<S> vector3(const std::string& key, const std::string& unit, const Range& range,
+               const std::string& doc, Vector3 S::*member) {
   Row<S> row = value(ValueType::kNumberList, key, unit, doc, member);
   row.spec.range = range;
   row.spec.count = {3, 3};
@@ -91,7 +91,7 @@ Row<S> vector3(const std::string& key, const std::string& unit, Range range, con
 
 /// Required, unless it is a std::optional.
 template <class S, class T>
-Row<S> oneAJoint(const std::string& key, const std::string& unit, Range range,
+Row<S> oneAJoint(const std::string& key, const std::string& unit, const Range& range,
                  const std::string& doc, T S::*member) {
   Row<S> row = value(ValueType::kNumberList, key, unit, doc, member);
   row.spec.range = range;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "tactus/control/fault.h"
@@ -26,13 +25,7 @@ const char* modeName(Mode mode) noexcept;
 /// The controller's command moves the arm, or keeps it where it is.
 bool isCommanding(Mode mode) noexcept;
 
-/// One legal change of mode. Whatever is not in the table does not happen.
-struct ModeTransition {
-  Mode from, to;
-  const char* when;
-};
-inline constexpr int kModeTransitionCount = 24;
-const std::array<ModeTransition, kModeTransitionCount>& modeTransitions() noexcept;
+/// Whether the mode table (mode_table.h) has such a change.
 bool isLegal(Mode from, Mode to) noexcept;
 
 /// What a cycle knows when it decides on the mode.
@@ -70,10 +63,10 @@ struct ModeConfig {
   int brake_cycles = 0;          ///< between switched on and moving, for the brakes to open
 };
 
-/// The supervisor: one step of the mode table. A fault is answered by its row of the fault table; a
-/// second fault can only make the reaction harsher. A fault is cleared, and movement after a hold
-/// resumed, by switching the enable line off and on again while the cause is gone; a robot without
-/// that line ends.
+/// The supervisor: one step of the mode table (mode_table.h). A fault is answered by its row of the
+/// fault table; a second fault can only make the reaction harsher. A fault is cleared, and movement
+/// after a hold resumed, by switching the enable line off and on again while the cause is gone; a
+/// robot without that line ends.
 void updateMode(const ModeConfig& config, const ModeInput& input, ModeState& state) noexcept;
 
 }  // namespace tactus
