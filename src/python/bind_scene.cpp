@@ -42,6 +42,12 @@ py::dict gains(const Scene& scene) {
   return gains;
 }
 
+py::dict numbers(const Scene& scene) {
+  py::dict numbers;
+  for (const auto& [path, number] : scene.numbers) numbers[textOf(path)] = number;
+  return numbers;
+}
+
 std::vector<std::string> files(const Scene& scene) {
   std::vector<std::string> paths;
   for (const SourceFile& file : scene.sources) paths.push_back(file.path);
@@ -55,6 +61,7 @@ void bindScene(py::module_& module) {
   classOf<Scene>(module, "Scene", "A scene with everything it names.")
       .def("check", &check, WithoutLock())
       .def("gains", &gains)
+      .def("numbers", &numbers)
       .def("files", [](const Scene& scene) { return texts(files(scene)); })
       .def_property_readonly("name", [](const Scene& scene) { return textOf(scene.name); })
       .def_property_readonly("robot", [](const Scene& scene) { return textOf(scene.robot_name); })

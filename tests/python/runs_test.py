@@ -6,7 +6,9 @@ usage: runs_test.py FOLDER TACTUS"""
 import gc
 import json
 import struct
+import sys
 import unittest
+import unittest.mock
 
 import numpy as np
 from common import SCENES, Scratch, program, tactus
@@ -128,17 +130,18 @@ class Arrays(unittest.TestCase):
         self.assertTrue((bits(array) == bits(self.run_["q"])).all(), len(junk))
 
     def test_are_those_of_pandas(self):
-        try:
-            import pandas  # noqa: F401
-        except ModuleNotFoundError:
-            with self.assertRaises(ModuleNotFoundError):
-                self.run_.to_pandas()
-            return
         frame = self.run_.to_pandas()
         self.assertEqual(frame.index.name, "t_s")
         self.assertTrue((frame["q_3"].to_numpy() == self.run_["q"][:, 2]).all())
         self.assertEqual(set(frame["fault_name"]), {"none"})
         self.assertEqual(set(frame["mode_name"]), {"running"})
+        self.assertEqual([*frame.reset_index()],
+                         [*self.run_.columns(), "fault_name", "mode_name"])
+
+    def test_need_pandas_only_there(self):
+        with unittest.mock.patch.dict(sys.modules, {"pandas": None}):
+            with self.assertRaisesRegex(ModuleNotFoundError, "pandas"):
+                self.run_.to_pandas()
 
 
 class Checks(unittest.TestCase):

@@ -115,6 +115,19 @@ class LogFile(Log):
     infos: dict[str, str]  #: what the log says of the run
     parameters: dict[str, float]  #: numbers of scene and robot, as plots show them: rounded to float32
 
+    @property
+    def joints(self) -> list[str]:
+        """Names, from the base to the tool."""
+        return self._named("joint")
+
+    @property
+    def modules(self) -> list[str]:
+        """The link of each tactile module, in the order of the fields' columns."""
+        return self._named("tactile_module")
+
+    def _named(self, what: str) -> list[str]:
+        return [name for key, name in self.infos.items() if key.startswith(what + "/")]
+
     def contacts(self) -> list[dict[str, Any]]:
         """Figures of each contact, in the order of their start: `tactus contacts --json`."""
         return json.loads(_core.contacts(path_bytes(self.path)))  # type: ignore[no-any-return]

@@ -85,5 +85,11 @@ class Scene:
         """All that may be tuned while an arm runs, by key; inf: no limit."""
         return self._core.gains()
 
+    @property
+    def numbers(self) -> dict[str, float]:
+        """Every number of the scene and, without the `robot.` of `set`, of robot.yaml, by key; defaults
+        included."""
+        return self._core.numbers()
+
     def __repr__(self) -> str:
         return f"<tactus.Scene {self.name!r}, {len(self.joints)} joints, variant {self.variant}>"
