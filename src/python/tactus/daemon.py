@@ -97,7 +97,8 @@ class Daemon:
         """Changes gains, all of these or none. for_s: they go back after so long.
 
         Returns the last answer, with `changes`: when the gains are there, or wait for a moment without
-        contact; with `wait` when they are kept or went back, of which `trouble` says why.
+        contact; with `wait` when they are kept, for which the arm has to have been in contact for a while,
+        or went back, of which `trouble` says why.
         """
         return self._change(_without_none({"do": "set", "values": dict(values), "for_s": for_s}), wait)
 
