@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "tactus/bench/closed_loop_study.h"
-#include "tactus/cli/simulation.h"
+#include "tactus/run/simulation.h"
 #include "tactus/scene/scene_loader.h"
 
 namespace tactus {

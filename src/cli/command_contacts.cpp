@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <istream>
 #include <memory>
@@ -17,46 +16,16 @@
 #include "tactus/record/growing_file.h"
 #include "tactus/record/logged_scene.h"
 #include "tactus/record/ulog_reader.h"
+#include "tactus/run/logged_contacts.h"
 #include "tactus/scene/located_error.h"
 
 /// The contacts of a run, a row each.
 namespace tactus {
 namespace {
 
-struct LoggedContacts {
-  Scene scene;
-  std::vector<ContactFigures> contacts;
-  bool is_cut_off = false;
-};
-
-/// Reads all cycles of a log; true if it was cut off.
-template <class Sink>
-bool readCycles(const std::string& path, const Gains& gains, const Sink& sink) {
-  std::ifstream in = openLog(path);
-  UlogReader reader(in, path);
-  reader.assumeGains(gains);
-  CycleRecord record;
-  while (reader.next(record)) sink(record);
-  return reader.cutOff();
-}
-
 Scene loadLogged(const std::string& path) {
   std::ifstream in = openLog(path);
   return loggedScene(UlogReader(in, path), path);
-}
-
-LoggedContacts readContacts(const std::string& path) {
-  checkLog(path);
-  LoggedContacts logged{.scene = loadLogged(path), .contacts = {}};
-  ContactWatch watch(logged.scene.controller);
-  const auto keep = [&](const std::vector<ContactFigures>& contacts) {
-    logged.contacts.insert(logged.contacts.end(), contacts.begin(), contacts.end());
-  };
-  logged.is_cut_off = readCycles(path, logged.scene.controller.gains,
-                                 [&](const CycleRecord& record) { keep(watch.add(record)); });
-  keep(watch.present());
-  std::ranges::stable_sort(logged.contacts, {}, &ContactFigures::start_s);
-  return logged;
 }
 
 std::string swingText(const ContactFigures& contact) {
@@ -97,13 +66,6 @@ std::string contactsText(const LoggedContacts& logged) {
   std::string text = headerText();
   for (const ContactFigures& contact : logged.contacts) text += contactText(logged.scene, contact);
   return text;
-}
-
-Json contactsJson(const LoggedContacts& logged) {
-  Json json = Json::array();
-  for (const ContactFigures& contact : logged.contacts)
-    json.push_back(contactJson(contact, logged.scene.module_links));
-  return json;
 }
 
 void printContacts(const Scene& scene, const std::vector<ContactFigures>& contacts, bool as_json) {

@@ -10,10 +10,10 @@
 
 #include "tactus/analysis/cover_fit.h"
 #include "tactus/cli/commands.h"
-#include "tactus/cli/simulation.h"
 #include "tactus/record/fault_text.h"
 #include "tactus/record/log_continuity.h"
 #include "tactus/record/ulog_reader.h"
+#include "tactus/run/simulation.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/json.h"
 #include "tactus/scene/located_error.h"

@@ -14,11 +14,11 @@
 
 #include "tactus/cli/commands.h"
 #include "tactus/cli/progress_line.h"
-#include "tactus/cli/simulation.h"
 #include "tactus/record/fault_text.h"
 #include "tactus/record/run_folder.h"
 #include "tactus/record/run_summary.h"
 #include "tactus/record/unsensed_text.h"
+#include "tactus/run/simulation.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/located_error.h"
 

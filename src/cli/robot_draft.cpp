@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "tactus/cli/clearance_check.h"
+#include "tactus/run/clearance_check.h"
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/path_check.h"
 #include "tactus/scene/scene_loader.h"

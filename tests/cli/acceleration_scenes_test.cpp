@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "support/shipped_scene.h"
-#include "tactus/cli/simulation.h"
+#include "tactus/run/simulation.h"
 
 /// The shipped scenes at both levels.
 namespace tactus {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "support/shipped_scene.h"
-#include "tactus/cli/simulation.h"
 #include "tactus/control/nearest_body.h"
+#include "tactus/run/simulation.h"
 
 /// The scenes of config/scenes/whole_arm: what they keep clear of they would touch without.
 namespace tactus {

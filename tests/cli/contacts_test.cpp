@@ -14,7 +14,7 @@
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/cli/commands.h"
-#include "tactus/cli/simulation.h"
+#include "tactus/run/simulation.h"
 #include "tactus/scene/json.h"
 
 namespace tactus {

@@ -5,8 +5,8 @@
 
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
-#include "tactus/cli/simulation.h"
 #include "tactus/record/replay.h"
+#include "tactus/run/simulation.h"
 #include "tactus/scene/scene_loader.h"
 
 /// The scenes as they are shipped, against the independent reference (within 1 % where the law is

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "support/shipped_scene.h"
-#include "tactus/cli/simulation.h"
 #include "tactus/math/rotation.h"
+#include "tactus/run/simulation.h"
 
 /// A tool whose orientation belongs to the task, too, held by a band that vanishes.
 namespace tactus {

@@ -17,7 +17,7 @@
 #include "tactus/cli/braille_canvas.h"
 #include "tactus/cli/commands.h"
 #include "tactus/cli/scope_page.h"
-#include "tactus/cli/simulation.h"
+#include "tactus/run/simulation.h"
 #include "tactus/scene/json.h"
 
 namespace tactus {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "support/shipped_scene.h"
-#include "tactus/cli/contact_report.h"
-#include "tactus/cli/touch_check.h"
+#include "tactus/run/contact_report.h"
+#include "tactus/run/touch_check.h"
 #include "tactus/scene/stability_check.h"
 
 /// What `tactus check` says of an arm with several modules: of each, or of the worst by its name.

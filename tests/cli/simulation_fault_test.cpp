@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "support/shipped_scene.h"
-#include "tactus/cli/simulation.h"
 #include "tactus/record/replay.h"
+#include "tactus/run/simulation.h"
 #include "tactus/supervisor/mode.h"
 
 namespace tactus {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "support/telemetry.h"
-#include "tactus/cli/simulation.h"
+#include "tactus/run/simulation.h"
 #include "tactus/scene/scene_loader.h"
 
 /// The scenes with the approach-speed limit: the three scenarios without a blow.

@@ -1,4 +1,4 @@
-#include "tactus/cli/touch_check.h"
+#include "tactus/run/touch_check.h"
 
 #include <gtest/gtest.h>
 

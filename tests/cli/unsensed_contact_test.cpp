@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "support/shipped_scene.h"
-#include "tactus/cli/simulation.h"
-#include "tactus/cli/touch_check.h"
 #include "tactus/record/run_summary.h"
+#include "tactus/run/simulation.h"
+#include "tactus/run/touch_check.h"
 
 /// An obstacle in the way of a link that has no module: seen by check and by simulate.
 namespace tactus {

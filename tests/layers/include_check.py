@@ -4,7 +4,8 @@
     math -> control -> {sim, canopen}        sim -> analysis        {sim, canopen} -> plant
     canopen -> supervisor -> {io, commission}    {io, rt} -> doctor
     {analysis, plant} -> scene               {scene, supervisor} -> record
-    {record, io, rt} -> daemon -> panel      {daemon, doctor, commission} -> cli -> bench
+    record -> run -> python                  {record, io, rt} -> daemon -> panel
+    {run, daemon, doctor, commission} -> cli -> bench
 
 usage: include_check.py ROOT     checks ROOT/include/tactus/** and ROOT/src/**"""
 
@@ -28,14 +29,17 @@ LAYERS = {
               {"Eigen", "yaml-cpp", "pugixml.hpp", "fmt", "nlohmann"}),
     "record": ({"supervisor", "scene", "plant", "canopen", "sim", "control", "math"},
                {"Eigen", "fmt", "nlohmann"}),
+    "run": ({"record", "supervisor", "scene", "analysis", "canopen", "sim", "control", "math"},
+            {"Eigen", "fmt", "nlohmann"}),
     "doctor": ({"io", "rt", "canopen", "math"}, {"fmt"}),
     "daemon": ({"record", "supervisor", "scene", "io", "rt", "canopen", "control", "math"},
                {"Eigen", "CLI", "fmt", "nlohmann", "systemd"}),
-    "cli": ({"commission", "daemon", "doctor", "record", "supervisor", "scene", "io", "rt", "analysis", "plant",
+    "cli": ({"commission", "run", "daemon", "doctor", "record", "supervisor", "scene", "io", "rt", "analysis", "plant",
              "canopen", "sim", "control", "math"}, {"Eigen", "CLI", "fmt", "nlohmann"}),
     "panel": ({"daemon", "record", "supervisor", "scene", "control", "math"},
               {"Eigen", "CLI", "fmt", "nlohmann"}),
-    "bench": ({"cli", "record", "supervisor", "scene", "analysis", "sim", "control", "math"},
+    "python": ({"run", "record", "scene", "control", "math"}, {"Eigen", "fmt", "nlohmann", "pybind11"}),
+    "bench": ({"cli", "run", "record", "supervisor", "scene", "analysis", "sim", "control", "math"},
               {"Eigen", "CLI", "fmt", "kdl", "mujoco", "nlohmann", "valgrind"}),
 }
 

@@ -3,12 +3,13 @@
 
 - A pure layer calls nothing but memory, mathematics, exceptions and other pure layers. So no system
   call, clock, file or thread can be reached from it, also not through a header that allows it.
-- tactusd holds nothing that the commands, commissioning, the plant, the panel or the benchmarks define,
-  and finds no hosts: it has no network.
+- tactusd holds nothing that simulated runs, the commands, commissioning, the plant, the panel, Python's
+  module or the benchmarks define, and finds no hosts: it has no network.
 - No layer but the panel uses the HTTP library.
 
-usage: link_check.py TACTUSD ARCHIVE...     ARCHIVE: libtactus_<layer>.a of all pure layers, of cli and
-                                            plant, and of panel and bench where they are built"""
+usage: link_check.py TACTUSD ARCHIVE...     ARCHIVE: libtactus_<layer>.a of all pure layers, of run, cli
+                                            and plant, and of panel, python and bench where they
+                                            are built"""
 
 import pathlib
 import re
@@ -19,8 +20,8 @@ sys.dont_write_bytecode = True
 
 from include_check import PURE_LAYERS  # noqa: E402
 
-NOT_IN_DAEMON = ("cli", "commission", "plant", "panel", "bench")
-REQUIRED = PURE_LAYERS | {"cli", "plant"}
+NOT_IN_DAEMON = ("run", "cli", "commission", "plant", "panel", "python", "bench")
+REQUIRED = PURE_LAYERS | {"run", "cli", "plant"}
 
 # What a pure layer may take from outside, as nm -C prints it.
 MATHEMATICS = (r"a?(sin|cos|tan)h?|atan2|sincos|exp(2|m1)?|log(2|10|1p|b)?|pow|sqrt|cbrt|hypot|fmod|"

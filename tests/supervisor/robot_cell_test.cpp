@@ -6,9 +6,9 @@
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "support/virtual_robot_cell.h"
-#include "tactus/cli/simulation.h"
 #include "tactus/record/run_summary.h"
 #include "tactus/record/tool_error.h"
+#include "tactus/run/simulation.h"
 
 /// The daemon's cycle against the plant on buses of bit time.
 namespace tactus {

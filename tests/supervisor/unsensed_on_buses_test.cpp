@@ -2,7 +2,7 @@
 
 #include "support/shipped_scene.h"
 #include "support/virtual_robot_cell.h"
-#include "tactus/cli/simulation.h"
+#include "tactus/run/simulation.h"
 
 /// Obstacles of all shapes and capsules, in simulation and on buses.
 namespace tactus {

@@ -17,10 +17,10 @@ SYSTEM = {"apt", "apt-get", "cp", "export", "git", "ip", "journalctl", "mkdir", 
           "systemctl"}
 # Commands of tactus that are run as they stand; of all others --help must know the options.
 RUN = {"init", "check", "simulate", "export", "replay", "keys"}
-LANGUAGES = {"sh", "yaml", "text"}
+LANGUAGES = {"sh", "yaml", "text", "python"}  # python: tests/python/docs_test.py runs it
 PROGRAMS = {"build/release/tactus": "tactus", "build/dev/tactus": "tactus", "tactus": "tactus",
             "build/release/tactusd": "tactusd", "tactusd": "tactusd"}
-FOLDERS = ("config", "debian", "docs", "include", "src", "tests", "tools", ".ci")
+FOLDERS = ("config", "debian", "docs", "examples", "include", "src", "tests", "tools", ".ci")
 LOOP_WORDS = {"do", "done", "for", "then", "fi", "if"}
 
 

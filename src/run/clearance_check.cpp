@@ -1,4 +1,4 @@
-#include "tactus/cli/clearance_check.h"
+#include "tactus/run/clearance_check.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "tactus/cli/contact_report.h"
 #include "tactus/control/nearest_body.h"
+#include "tactus/run/contact_report.h"
 #include "tactus/scene/clearance_loader.h"
 #include "tactus/scene/scene_loader.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tactus/cli/arm_check.h"
-#include "tactus/cli/touch_check.h"
+#include "tactus/run/arm_check.h"
+#include "tactus/run/touch_check.h"
 #include "tactus/scene/json.h"
 
 namespace tactus {

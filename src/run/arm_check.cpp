@@ -1,4 +1,4 @@
-#include "tactus/cli/arm_check.h"
+#include "tactus/run/arm_check.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "tactus/cli/contact_report.h"
+#include "tactus/run/contact_report.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,112 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tactus/python/bindings.h"
+#include "tactus/python/columns.h"
+#include "tactus/record/ulog_reader.h"
+#include "tactus/run/log_replay.h"
+#include "tactus/run/logged_contacts.h"
+#include "tactus/run/simulation.h"
+
+namespace py = pybind11;
+
+namespace tactus {
+namespace {
+
+constexpr long long kCyclesBetweenLooks = 8192;
+/// Longer runs pay for their memory as they go.
+constexpr double kMaxReservedCycles = 1e6;
+
+/// Adds cycles; Ctrl-C ends it.
+class Collector {
+ public:
+  explicit Collector(Columns& columns) : columns_(columns) {}
+
+  void operator()(const CycleRecord& record) {
+    columns_.add(record);
+    if (++cycles_ % kCyclesBetweenLooks == 0) lookForSignals();
+  }
+
+ private:
+  Columns& columns_;
+  long long cycles_ = 0;
+};
+
+/// (columns, summary as JSON)
+py::tuple simulateScene(const Scene& scene) {
+  auto columns =
+      std::make_unique<Columns>(describeLog(scene).shape, [](std::string_view) { return true; });
+  std::string summary;
+  {
+    const py::gil_scoped_release release;
+    columns->reserve(static_cast<std::size_t>(
+        std::min(std::round(scene.duration_s / scene.period_s), kMaxReservedCycles)));
+    const SimulationResult result = simulate(scene, Collector(*columns));
+    summary = jsonText(summaryJson(scene, result.figures, result.real_time_factor));
+  }
+  return py::make_tuple(std::move(columns), textOf(summary));
+}
+
+template <typename Value>
+py::dict dictOf(const std::vector<std::pair<std::string, Value>>& pairs) {
+  py::dict dict;
+  for (const auto& [name, value] : pairs) {
+    if constexpr (std::is_same_v<Value, double>)
+      dict[textOf(name)] = value;
+    else
+      dict[textOf(name)] = textOf(value);
+  }
+  return dict;
+}
+
+/// (columns, whether it was cut off, infos, parameters)
+py::tuple readLog(const std::string& path) {
+  std::unique_ptr<Columns> columns;
+  LogDescription description;
+  bool is_cut_off = false;
+  {
+    const py::gil_scoped_release release;
+    std::ifstream in = openLog(path);
+    UlogReader reader(in, path);
+    description = reader.description();
+    columns = std::make_unique<Columns>(description.shape,
+                                        [&](std::string_view field) { return reader.has(field); });
+    Collector collect(*columns);
+    CycleRecord record;
+    while (reader.next(record)) collect(record);
+    is_cut_off = reader.cutOff();
+  }
+  return py::make_tuple(std::move(columns), is_cut_off, dictOf(description.infos),
+                        dictOf(description.parameters));
+}
+
+std::string replay(const std::vector<std::string>& logs, const std::vector<std::string>& settings) {
+  if (logs.empty()) throw py::value_error("no log, expected at least one");
+  const ReplayRequest request{logs, settings, ""};
+  return jsonText(replayJson(request, replayLogs(request, [](double) { lookForSignals(); })));
+}
+
+std::string contacts(const std::string& path) { return jsonText(contactsJson(readContacts(path))); }
+
+template <typename Enum>
+py::tuple names(std::size_t count, const char* (*name)(Enum)) {
+  py::tuple names(count);
+  for (std::size_t i = 0; i < count; ++i) names[i] = name(static_cast<Enum>(i));
+  return names;
+}
+
+}  // namespace
+
+void bindRuns(py::module_& module) {
+  module.def("simulate", &simulateScene, py::arg("scene"));
+  module.def("read_log", &readLog, py::arg("path"));
+  module.def("replay", &replay, py::arg("logs"), py::arg("settings"), WithoutLock());
+  module.def("contacts", &contacts, py::arg("path"), WithoutLock());
+  module.attr("FAULTS") = names<Fault>(faultTable().size(), faultName);
+  module.attr("MODES") = names<Mode>(kModeCount, modeName);
+}
+
+}  // namespace tactus

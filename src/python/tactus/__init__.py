@@ -1,0 +1,20 @@
+"""Tactile feedback control of redundant, position-controlled robot arms: the very controller of tactusd
+and `tactus simulate`, with the same numbers to the bit.
+
+    scene = tactus.Scene("scene.yaml", set={"controller.time_constant_s": 0.08})
+    run = tactus.simulate(scene)
+    run["force_sensor_N"].max()
+
+SI units, radians, base frame unless said otherwise.
+"""
+
+from ._core import VERSION as __version__
+from .controller import Controller
+from .daemon import Daemon
+from .errors import ConfigError, DaemonError, Error, RunError
+from .runs import FAULTS, MODES, Difference, Log, LogFile, Replay, Run, read_log, replay, simulate
+from .scene import Scene
+
+__all__ = ["FAULTS", "MODES", "ConfigError", "Controller", "Daemon", "DaemonError", "Difference",
+           "Error", "Log", "LogFile", "Replay", "Run", "RunError", "Scene", "__version__", "read_log",
+           "replay", "simulate"]

@@ -1,0 +1,189 @@
+"""A client of the running daemon: docs/control.md says what becomes of what is asked."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import socket
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from types import TracebackType
+from typing import Any
+
+from .errors import DaemonError, RunError
+from .scene import Scene
+
+_MAX_ANSWER = 1 << 18
+_MAX_STATUS_AGE_S = 2.0
+_UNDER_WAY = ("moving", "blocked")
+_Point = Sequence[float | None]
+
+
+class Daemon:
+    """A connection to the control socket of tactusd, AF_UNIX; close it, or use it in a `with`.
+
+    path: of the socket; None: /run/tactus/control, or in the folder that RUNTIME_DIRECTORY names, as of
+    the commands. timeout_s: how long an answer may take. RunError: no daemon runs, it may not
+    be asked, or does not answer; then a new connection is needed. DaemonError: it refuses.
+    """
+
+    def __init__(self, path: str | os.PathLike[str] | None = None,
+                 timeout_s: float = 10.0) -> None:
+        folder = os.environ.get("RUNTIME_DIRECTORY") or "/run/tactus"
+        self.path = os.path.join(folder, "control") if path is None else os.fspath(path)
+        self._socket: socket.socket | None = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._socket.settimeout(timeout_s)
+        try:
+            self._socket.connect(self.path)
+        except (FileNotFoundError, ConnectionRefusedError) as error:
+            self.close()
+            raise RunError(f"{self.path}: no daemon is running; `journalctl -u tactusd` says how it "
+                           "ended") from error
+        except OSError as error:
+            self.close()
+            raise RunError(f"{self.path}: {error.strerror or error}") from error
+
+    def close(self) -> None:
+        """Ends the connection; the daemon goes on."""
+        if self._socket is not None:
+            self._socket.close()
+        self._socket = None
+
+    def __enter__(self) -> Daemon:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
+                 trace: TracebackType | None) -> None:
+        self.close()
+
+    def ask(self, request: Mapping[str, object]) -> dict[str, Any]:
+        """One request of docs/control.md as it stands there, and its answer."""
+        if self._socket is None:
+            raise ValueError("the connection is closed, expected a new tactus.Daemon")
+        try:
+            self._socket.send(json.dumps(request, allow_nan=False).encode())
+            answer = json.loads(self._socket.recv(_MAX_ANSWER) or b"null")
+        except (OSError, json.JSONDecodeError, UnicodeDecodeError) as error:
+            self.close()  # an answer that comes late would be taken for the next one
+            raise RunError(f"{self.path}: the daemon does not answer: {error}") from error
+        if not isinstance(answer, dict) or "done" not in answer:
+            self.close()
+            raise RunError(f"{self.path}: not the answer of a daemon")
+        if answer["done"] is not True:
+            raise DaemonError(answer.get("error", "refused"))
+        return answer
+
+    def status(self) -> dict[str, Any]:
+        """What `tactus status --json` prints: mode, fault, force, times of the loop."""
+        path = pathlib.Path(self.path).parent / "status.json"
+        try:
+            status = json.loads(path.read_text())
+            age_s = time.monotonic() - status["monotonic_s"]
+        except OSError as error:
+            raise RunError(f"{path}: {error.strerror}") from error
+        except (ValueError, KeyError, TypeError) as error:
+            raise RunError(f"{path}: not the status of a daemon") from error
+        if not 0.0 <= age_s <= _MAX_STATUS_AGE_S:
+            raise RunError(f"{path}: no word from the daemon for {abs(age_s):.0f} s")
+        return status  # type: ignore[no-any-return]
+
+    def show(self) -> dict[str, Any]:
+        """Gains, the state of the last change, and of the task."""
+        return self.ask({"do": "show"})
+
+    def set(self, values: Mapping[str, float | str | None], for_s: float | None = None,
+            wait: bool = False) -> dict[str, Any]:
+        """Changes gains, all of these or none. for_s: they go back after so long.
+
+        Returns the last answer, with `changes`: when the gains are there, or wait for a moment without
+        contact; with `wait` when they are kept, for which the arm has to have been in contact for a while,
+        or went back, of which `trouble` says why.
+        """
+        return self._change(_without_none({"do": "set", "values": dict(values), "for_s": for_s}), wait)
+
+    def reload(self, for_s: float | None = None, wait: bool = False) -> dict[str, Any]:
+        """Takes the gains of the daemon's scene file anew; else as set()."""
+        return self._change(_without_none({"do": "reload", "for_s": for_s}), wait)
+
+    def undo(self, wait: bool = False) -> dict[str, Any]:
+        """What ran before the last change; up to 16 times. Else as set()."""
+        return self._change({"do": "undo"}, wait)
+
+    def diff(self) -> dict[str, dict[str, float | None]]:
+        """Gains that run and that the scene file does not have, by key: `file`, `running`.
+
+        None: no limit. Reads the daemon's scene file, which has to be on this machine.
+        """
+        answer = self.show()
+        ordered = answer["ordered"]
+        file = {key: value if abs(value) != float("inf") else None
+                for key, value in Scene(answer["scene"]).gains.items()}
+        return {key: {"file": file[key], "running": ordered[key]} for key in ordered
+                if key in file and file[key] != ordered[key]}
+
+    def move(self, to_m: _Point | None = None, rotate_rad: _Point | None = None, *,
+             relative: bool = False, speed_m_per_s: float | None = None,
+             speed_rad_per_s: float | None = None, wait: bool = False) -> dict[str, Any]:
+        """Tells the tool where to go: to_m, base frame, None for one that stays; rotate_rad, axis times
+        angle, base frame; at least one of them. relative: both from where the tool is.
+
+        Returns the task; with `wait` when the tool has arrived, was given up, or stopped.
+        """
+        return self._tell({"do": "move", **_target(to_m, rotate_rad, relative, speed_m_per_s,
+                                                   speed_rad_per_s)}, wait)
+
+    def follow(self, waypoints: Iterable[Mapping[str, object]], wait: bool = False) -> dict[str, Any]:
+        """Waypoints as of docs/control.md, such as {"to_m": [0.9, 0.4, 0.25], "pause_s": 1}."""
+        return self._tell({"do": "follow", "waypoints": [dict(point) for point in waypoints]}, wait)
+
+    def stream(self, to_m: _Point | None = None, rotate_rad: _Point | None = None, *,
+               relative: bool = False, speed_m_per_s: float | None = None,
+               speed_rad_per_s: float | None = None) -> dict[str, Any]:
+        """As move(), 25 to 500 times a second; if the next does not come in time, the tool stops."""
+        return self._tell({"do": "stream", **_target(to_m, rotate_rad, relative, speed_m_per_s,
+                                                     speed_rad_per_s)}, False)
+
+    def hold(self) -> dict[str, Any]:
+        """The tool comes to rest where it is."""
+        return self._tell({"do": "hold"}, False)
+
+    def task(self) -> dict[str, Any] | None:
+        """Where the tool is and goes; None of a scene whose task is a trajectory."""
+        return self.show()["task"]  # type: ignore[no-any-return]
+
+    def _change(self, request: Mapping[str, object], until_kept: bool) -> dict[str, Any]:
+        answer = self.ask(request)
+        number, changes = answer["number"], answer["changes"]
+        on_its_way = {"ramping", "going_back"} | ({"waiting", "on_trial"} if until_kept else set())
+        while changes:
+            time.sleep(0.1)  # the loop takes an order within some cycles
+            answer = self.show()
+            if answer["number"] != number or answer["state"] not in on_its_way:
+                break
+        return answer | {"changes": changes}
+
+    def _tell(self, request: Mapping[str, object], wait: bool) -> dict[str, Any]:
+        task: dict[str, Any] = self.ask(request)["task"]
+        number = task["number"]
+        while wait and (task["state"] in _UNDER_WAY or task["waiting"] > 0):
+            time.sleep(0.05)
+            task = self.show()["task"]
+            if task["number"] != number:
+                raise DaemonError("another order has taken the place of this one")
+        return task
+
+
+def _without_none(request: Mapping[str, object]) -> dict[str, object]:
+    return {key: value for key, value in request.items() if value is not None}
+
+
+def _target(to_m: _Point | None, rotate_rad: _Point | None, relative: bool,
+            speed_m_per_s: float | None, speed_rad_per_s: float | None) -> dict[str, object]:
+    def numbers(point: _Point | None) -> list[float | None] | None:
+        return None if point is None else [None if x is None else float(x) for x in point]
+
+    target = {"to_m": numbers(to_m), "rotate_rad": numbers(rotate_rad),
+              "relative": True if relative else None, "speed_m_per_s": speed_m_per_s,
+              "speed_rad_per_s": speed_rad_per_s}
+    return _without_none(target)

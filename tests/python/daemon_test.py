@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+"""The client of the daemon, against one in virtual time: gains, orders, status, refusals; and against
+sockets that are no daemon.
+
+usage: daemon_test.py FOLDER TACTUS VIRTUAL_DAEMON"""
+
+import json
+import os
+import pathlib
+import socket
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+from common import ROOT, program, tactus
+
+sys.path.insert(0, str(ROOT / "tests/support"))
+from panel_rig import Rig  # noqa: E402
+
+DAEMON = pathlib.Path(sys.argv.pop(1)).resolve()
+
+
+class Running(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.rig = Rig(None, DAEMON)
+        cls.addClassCleanup(cls.rig.close)
+        cls.rig.start_daemon("simulation.obstacles=[]", pace=20)
+
+    def setUp(self):
+        self.daemon = tactus.Daemon(self.rig.runtime / "control")
+        self.addCleanup(self.daemon.close)
+
+    def test_changes_gains_and_takes_them_back(self):
+        before = self.daemon.show()["ordered"]["controller.damping"]
+        answer = self.daemon.set({"controller.damping": before + 0.05})
+        self.assertEqual(answer["changes"]["controller.damping"], {"from": before, "to": before + 0.05})
+        self.assertNotEqual(answer["state"], "ramping")
+        self.assertEqual(answer["ordered"]["controller.damping"], before + 0.05)
+        self.assertEqual(self.daemon.diff(),
+                         {"controller.damping": {"file": before, "running": before + 0.05}})
+        os.environ["RUNTIME_DIRECTORY"] = str(self.rig.runtime)
+        self.addCleanup(os.environ.pop, "RUNTIME_DIRECTORY")
+        self.assertEqual(json.loads(program("diff", "--json").stdout), self.daemon.diff())
+        self.daemon.undo()
+        self.assertEqual(self.daemon.diff(), {})
+        self.daemon.set({"controller.damping": before + 0.02}, for_s=600)
+        self.assertEqual(self.daemon.reload()["ordered"]["controller.damping"], before)
+
+    def test_refuses_as_the_daemon_does(self):
+        for call in (lambda: self.daemon.set({"controller.damping": -1}),
+                     lambda: self.daemon.set({"controller.dampng": 1}),
+                     lambda: self.daemon.set({"controller.variant": "null_space"}),
+                     lambda: self.daemon.set({"controller.damping": 0.6}, for_s=-1),
+                     lambda: self.daemon.move([9, 9, 9]), lambda: self.daemon.move(),
+                     lambda: self.daemon.move([1, 2]), lambda: self.daemon.follow([]),
+                     lambda: self.daemon.follow([{"nonsense": 1}]),
+                     lambda: self.daemon.ask({"do": "dance"}),
+                     lambda: self.daemon.ask({})):
+            with self.assertRaises(tactus.DaemonError) as refused:
+                call()
+            self.assertRegex(str(refused.exception), r"^[^\n]{10,}$")
+        for call in (lambda: self.daemon.set({"controller.damping": float("nan")}),
+                     lambda: self.daemon.set({"controller.damping": object()}),
+                     lambda: self.daemon.move(["a", 1, 2]), lambda: self.daemon.move(3)):
+            with self.assertRaises((TypeError, ValueError)):
+                call()
+        self.assertTrue(self.daemon.show()["done"])  # the connection still works
+
+    def test_moves_the_tool(self):
+        start = self.daemon.task()["p_BaseTool_m"]
+        task = self.daemon.move([0, 0.03, None], relative=True, wait=True)
+        self.assertEqual(task["state"], "arrived")
+        there = self.daemon.task()["p_BaseTool_m"]
+        for axis, moved in enumerate((0, 0.03, 0)):
+            self.assertAlmostEqual(there[axis] - start[axis], moved, places=3)
+        task = self.daemon.follow([{"to_m": start}, {"to_m": there}, {"to_m": start}], wait=True)
+        self.assertEqual((task["state"], task["waiting"]), ("arrived", 0))
+        self.daemon.move([0, 0.2, 0], relative=True, speed_m_per_s=0.01)
+        self.assertEqual(self.daemon.task()["state"], "moving")
+        self.daemon.hold()
+        self.assertNotIn(self.daemon.task()["state"], ("arrived", "blocked"))
+        self.assertIn(self.daemon.stream(start)["state"], ("moving", "holding", "arrived", "late"))
+
+    def test_says_what_it_does(self):
+        status = self.daemon.status()
+        self.assertEqual([status[name] for name in ("mode", "fault", "scene")],
+                         ["running", "none", "commands"])
+
+    def test_ends_with_its_connection(self):
+        with tactus.Daemon(self.rig.runtime / "control") as daemon:
+            daemon.show()
+        with self.assertRaisesRegex(ValueError, "closed, expected a new"):
+            daemon.show()
+        daemon.close()
+
+
+class NoDaemon(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.path = pathlib.Path(scratch.name) / "control"
+
+    def serve(self, answer):
+        """One that takes a request, and sends that, or nothing."""
+        server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.addCleanup(server.close)
+        server.bind(str(self.path))
+        server.listen()
+        release = threading.Event()
+
+        def work():
+            connection, _ = server.accept()
+            connection.recv(1 << 16)
+            if answer is not None:
+                connection.send(answer)
+            release.wait(60)
+            connection.close()
+
+        thread = threading.Thread(target=work)
+        thread.start()
+        self.addCleanup(thread.join)
+        self.addCleanup(release.set)
+
+    def test_is_said(self):
+        with self.assertRaisesRegex(tactus.RunError, "no daemon is running"):
+            tactus.Daemon(self.path)
+        self.path.write_text("no socket")
+        with self.assertRaises(tactus.RunError):
+            tactus.Daemon(self.path)
+        with self.assertRaises(tactus.RunError):
+            tactus.Daemon("a" * 500)
+
+    def test_is_seen_by_its_answers(self):
+        for answer in (b"", b"{", b"[]", b"3", b"\xff", b'{"do": 1}', b"null"):
+            with self.subTest(answer=answer):
+                self.serve(answer)
+                daemon = tactus.Daemon(self.path)
+                with self.assertRaises(tactus.RunError):
+                    daemon.show()
+                with self.assertRaisesRegex(ValueError, "closed"):
+                    daemon.show()
+                self.doCleanups()
+                self.setUp()
+
+    def test_that_is_silent_is_not_waited_for(self):
+        self.serve(None)
+        daemon = tactus.Daemon(self.path, timeout_s=0.05)
+        with self.assertRaisesRegex(tactus.RunError, "does not answer"):
+            daemon.show()
+
+    def test_has_no_status(self):
+        self.serve(b"{}")
+        daemon = tactus.Daemon(self.path)
+        status = self.path.parent / "status.json"
+        for text, said in ((None, "No such file"), ("{", "not the status"), ("[]", "not the status"),
+                           ("{}", "not the status"), ('{"monotonic_s": "a"}', "not the status"),
+                           (json.dumps({"monotonic_s": time.monotonic() - 100}), "no word from"),
+                           (json.dumps({"monotonic_s": time.monotonic() + 100}), "no word from")):
+            if text is not None:
+                status.write_text(text)
+            with self.subTest(text), self.assertRaisesRegex(tactus.RunError, said):
+                daemon.status()
+        with self.assertRaises(tactus.RunError):
+            daemon.show()
+
+
+if __name__ == "__main__":
+    unittest.main()

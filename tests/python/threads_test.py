@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Whoever simulates lets other threads of Python go on. No times: a thread that keeps the interpreter's
+lock is given no other chance.
+
+usage: threads_test.py FOLDER TACTUS"""
+
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import threading
+import unittest
+
+from common import SCENES, program, tactus
+
+NEVER_S = 1e4  # nobody is made to hand the lock over
+
+
+class Threads(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scene = tactus.Scene(SCENES / "scenario2_estimated.yaml")
+        cls.scratch = tempfile.TemporaryDirectory()
+        program("simulate", SCENES / "scenario2_estimated.yaml", "-o", cls.scratch.name)
+        cls.log = pathlib.Path(cls.scratch.name) / "scenario2_estimated/run.ulg"
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def goes_on_during(self, work):
+        """Whether this thread runs while another one is between beginning and end of its work."""
+        begun, over, errors = [], [], []
+
+        def other():
+            begun.append(True)
+            try:
+                work()
+            except Exception as error:  # noqa: BLE001
+                errors.append(error)
+            over.append(True)
+
+        before = sys.getswitchinterval()
+        sys.setswitchinterval(NEVER_S)
+        try:
+            thread = threading.Thread(target=other)
+            thread.start()  # waits for it to have begun, and then until it gives the lock away
+            count = 0
+            while not over:
+                if begun:
+                    count += 1
+                if count > 1000:
+                    break
+            was_within = bool(begun) and not over
+            thread.join()
+        finally:
+            sys.setswitchinterval(before)
+        self.assertEqual(errors, [])
+        return was_within and count > 1000
+
+    def test_go_on_while_another_one_works(self):
+        for name, work in (("simulate", lambda: tactus.simulate(self.scene)),
+                           ("check", self.scene.check),
+                           ("load", lambda: tactus.Scene(SCENES / "scenario2_estimated.yaml")),
+                           ("read", lambda: tactus.read_log(self.log)),
+                           ("replay", lambda: tactus.replay(self.log))):
+            with self.subTest(name):
+                self.assertTrue(self.goes_on_during(work))
+
+    def test_do_not_go_on_while_another_one_keeps_the_lock(self):
+        """The test can fail."""
+        self.assertFalse(self.goes_on_during(lambda: sum(range(3_000_000))))
+
+    def test_simulate_the_same_beside_each_other(self):
+        alone = tactus.simulate(self.scene)["dq"].tobytes()
+        results = []
+        threads = [threading.Thread(target=lambda: results.append(tactus.simulate(self.scene)))
+                   for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual([run["dq"].tobytes() for run in results], [alone] * 4)
+
+    def test_are_ended_by_a_signal(self):
+        endless = tactus.Scene(SCENES / "free_motion.yaml", set={"simulation.duration_s": 3600})
+        timer = threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            tactus.simulate(endless)
+        timer.join()
+
+
+if __name__ == "__main__":
+    unittest.main()
