@@ -178,6 +178,9 @@ class Replays(Scratch):
         self.assertTrue(replay.is_equal)
         self.assertEqual((replay.cycles, replay.compared_cycles), (4000, 4000))
         self.assertEqual((replay.first_difference, replay.largest_differences), (None, []))
+        self.assertEqual((replay.is_cut_off, replay.not_replayed), (False, []))
+        self.log.write_bytes(self.log.read_bytes()[:-1000])
+        self.assertTrue(tactus.replay(self.log).is_cut_off)
 
     def test_name_the_first_difference(self):
         """One bit of one logged command is turned over."""
