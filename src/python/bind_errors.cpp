@@ -1,4 +1,6 @@
+#include <exception>
 #include <string>
+#include <utility>
 
 #include "tactus/python/bindings.h"
 #include "tactus/record/run_error.h"
@@ -17,7 +19,7 @@ void raise(const char* type, Arguments... arguments) {
 
 void translate(std::exception_ptr thrown) {
   try {
-    if (thrown) std::rethrow_exception(thrown);
+    if (thrown) std::rethrow_exception(std::move(thrown));
   } catch (const LocatedError& error) {
     const ErrorPlace& at = error.place;
     raise("ConfigError", textOf(error.what()), textOf(at.file), at.line, at.column, textOf(at.key));

@@ -50,7 +50,7 @@ class Simulations(Scratch):
         for figures in (summary, run.summary):
             del figures["step_time_ns"], figures["real_time_factor"]
         self.assertEqual(run.summary, summary)
-        self.assertEqual(log.contacts(), json.loads(program("contacts", log.path, "--json").stdout))
+        self.assertEqual(log.contacts, json.loads(program("contacts", log.path, "--json").stdout))
 
     def test_have_the_columns_of_the_csv(self):
         for name in ("scenario2_estimated", "whole_arm/crops9_skin_two_links"):

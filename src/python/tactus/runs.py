@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -128,8 +129,11 @@ class LogFile(Log):
     def _named(self, what: str) -> list[str]:
         return [name for key, name in self.infos.items() if key.startswith(what + "/")]
 
+    @functools.cached_property
     def contacts(self) -> list[dict[str, Any]]:
-        """Figures of each contact, in the order of their start: `tactus contacts --json`."""
+        """Figures of each contact, in the order of their start: `tactus contacts --json`.
+
+        Read from the file when they are first asked for."""
         return json.loads(_core.contacts(path_bytes(self.path)))  # type: ignore[no-any-return]
 
     def __repr__(self) -> str:
