@@ -52,7 +52,7 @@ def main():
     arguments = parser.parse_args()
     try:
         log = tactus.read_log(arguments.log)
-        contacts = log.contacts()
+        contacts = log.contacts
         draw(log, contacts, arguments.output)
     except (tactus.ConfigError, OSError) as error:
         print(error, file=sys.stderr)

@@ -1,4 +1,6 @@
+#include <exception>
 #include <string>
+#include <utility>
 
 #include "tactus/python/bindings.h"
 #include "tactus/record/run_error.h"
@@ -17,7 +19,7 @@ void raise(const char* type, Arguments... arguments) {
 
 void translate(std::exception_ptr thrown) {
   try {
-    if (thrown) std::rethrow_exception(thrown);
+    if (thrown) std::rethrow_exception(std::move(thrown));
   } catch (const LocatedError& error) {
     const ErrorPlace& at = error.place;
     raise("ConfigError", textOf(error.what()), textOf(at.file), at.line, at.column, textOf(at.key));
@@ -33,8 +35,10 @@ void translate(std::exception_ptr thrown) {
 void bindErrors() { py::register_exception_translator(&translate); }
 
 py::str textOf(const std::string& text) {
-  return py::reinterpret_steal<py::str>(
-      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "surrogateescape"));
+  PyObject* const decoded =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "surrogateescape");
+  if (!decoded) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
 }
 
 void lookForSignals() {

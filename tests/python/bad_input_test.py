@@ -7,10 +7,12 @@ import copy
 import inspect
 import itertools
 import pickle
+import subprocess
+import sys
 import unittest
 
 import numpy as np
-from common import SCENES, Scratch, program, tactus
+from common import FOLDER, SCENES, Scratch, program, tactus
 
 SCENE = SCENES / "scenario1_null_space.yaml"
 ODD = [None, 0, -1, 3.5, "", "nonsense", b"\xff", [], {}, object(), float("nan"), np.zeros((2, 2)),
@@ -69,6 +71,16 @@ class Messages(Scratch):
     def test_are_of_one_kind(self):
         for error in (tactus.ConfigError, tactus.RunError, tactus.DaemonError):
             self.assertTrue(issubclass(error, tactus.Error))
+
+
+class OtherPythons(unittest.TestCase):
+    def test_are_told_which_one_is_expected(self):
+        text = "import sys; sys.modules['tactus._core'] = None; import tactus"
+        done = subprocess.run([sys.executable, "-c", text], env={"PYTHONPATH": str(FOLDER)}, text=True,
+                              capture_output=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"ImportError: tactus is not built for .*, expected Debian's own, "
+                                      r"/usr/bin/python3\n$")
 
 
 class Objects(unittest.TestCase):

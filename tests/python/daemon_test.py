@@ -145,6 +145,11 @@ class NoDaemon(unittest.TestCase):
                 self.doCleanups()
                 self.setUp()
 
+    def test_that_hangs_up_is_told_of(self):
+        self.serve(b"")  # as seen by who is cut off
+        with self.assertRaisesRegex(tactus.RunError, "ended the connection"):
+            tactus.Daemon(self.path).show()
+
     def test_that_is_silent_is_not_waited_for(self):
         self.serve(None)
         daemon = tactus.Daemon(self.path, timeout_s=0.05)

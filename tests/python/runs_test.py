@@ -50,7 +50,7 @@ class Simulations(Scratch):
         for figures in (summary, run.summary):
             del figures["step_time_ns"], figures["real_time_factor"]
         self.assertEqual(run.summary, summary)
-        self.assertEqual(log.contacts(), json.loads(program("contacts", log.path, "--json").stdout))
+        self.assertEqual(log.contacts, json.loads(program("contacts", log.path, "--json").stdout))
 
     def test_have_the_columns_of_the_csv(self):
         for name in ("scenario2_estimated", "whole_arm/crops9_skin_two_links"):
@@ -178,6 +178,9 @@ class Replays(Scratch):
         self.assertTrue(replay.is_equal)
         self.assertEqual((replay.cycles, replay.compared_cycles), (4000, 4000))
         self.assertEqual((replay.first_difference, replay.largest_differences), (None, []))
+        self.assertEqual((replay.is_cut_off, replay.not_replayed), (False, []))
+        self.log.write_bytes(self.log.read_bytes()[:-1000])
+        self.assertTrue(tactus.replay(self.log).is_cut_off)
 
     def test_name_the_first_difference(self):
         """One bit of one logged command is turned over."""

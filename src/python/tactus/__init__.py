@@ -8,7 +8,13 @@ and `tactus simulate`, with the same numbers to the bit.
 SI units, radians, base frame unless said otherwise.
 """
 
-from ._core import VERSION as __version__
+import sys as _sys
+
+try:
+    from ._core import VERSION as __version__
+except ModuleNotFoundError as error:
+    raise ImportError(f"tactus is not built for {_sys.executable}, Python {_sys.version.split()[0]}, "
+                      "expected Debian's own, /usr/bin/python3") from error
 from .controller import Controller
 from .daemon import Daemon
 from .errors import ConfigError, DaemonError, Error, RunError

@@ -62,14 +62,19 @@ class Daemon:
         if self._socket is None:
             raise ValueError("the connection is closed, expected a new tactus.Daemon")
         try:
-            self._socket.send(json.dumps(request, allow_nan=False).encode())
-            answer = json.loads(self._socket.recv(_MAX_ANSWER) or b"null")
-        except (OSError, json.JSONDecodeError, UnicodeDecodeError) as error:
+            self._socket.send(json.dumps(dict(request), allow_nan=False).encode())
+            packet = self._socket.recv(_MAX_ANSWER)
+        except OSError as error:
             self.close()  # an answer that comes late would be taken for the next one
             raise RunError(f"{self.path}: the daemon does not answer: {error}") from error
+        try:
+            answer = json.loads(packet)
+        except ValueError:
+            answer = None
         if not isinstance(answer, dict) or "done" not in answer:
             self.close()
-            raise RunError(f"{self.path}: not the answer of a daemon")
+            raise RunError(f"{self.path}: " + ("not the answer of a daemon" if packet else
+                                               "the daemon has ended the connection"))
         if answer["done"] is not True:
             raise DaemonError(answer.get("error", "refused"))
         return answer

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -75,8 +76,8 @@ class Log(Mapping[str, NDArray[Any]]):
 
         columns: dict[str, Any] = self.columns()
         for name, names in (("fault", FAULTS), ("mode", MODES)):
-            columns[name + "_name"] = pandas.Categorical.from_codes(
-                columns[name].astype(np.int64), categories=list(names))
+            codes = np.minimum(columns[name], len(names)).astype(np.int64)
+            columns[name + "_name"] = pandas.Categorical.from_codes(codes, [*names, "unknown"])
         return pandas.DataFrame(columns).set_index("t_s")
 
 
@@ -128,8 +129,11 @@ class LogFile(Log):
     def _named(self, what: str) -> list[str]:
         return [name for key, name in self.infos.items() if key.startswith(what + "/")]
 
+    @functools.cached_property
     def contacts(self) -> list[dict[str, Any]]:
-        """Figures of each contact, in the order of their start: `tactus contacts --json`."""
+        """Figures of each contact, in the order of their start: `tactus contacts --json`.
+
+        Read from the file when they are first asked for."""
         return json.loads(_core.contacts(path_bytes(self.path)))  # type: ignore[no-any-return]
 
     def __repr__(self) -> str:
@@ -169,6 +173,8 @@ class Replay:
 
     cycles: int
     compared_cycles: int  #: the others cannot be: what the controller knew then is not in the log
+    not_replayed: list[dict[str, Any]]  #: stretches of these: `from_s`, `to_s`, `reason`
+    is_cut_off: bool  #: any of the logs
     differing_cycles: int
     first_difference: Difference | None
     largest_differences: list[Difference]  #: of dq, u_n, u_j, u_t; only those that differ
@@ -180,7 +186,11 @@ class Replay:
 
 
 def _difference(json_difference: dict[str, Any] | None) -> Difference | None:
-    return Difference(**json_difference) if json_difference else None
+    if json_difference is None:
+        return None
+    nan = float("nan")  # which JSON has not
+    return Difference(**{name: nan if value is None else value
+                         for name, value in json_difference.items()})
 
 
 def replay(path: Path | list[Path], set: Mapping[str, object] | None = None) -> Replay:
@@ -191,6 +201,7 @@ def replay(path: Path | list[Path], set: Mapping[str, object] | None = None) -> 
     """
     paths = path if isinstance(path, list) else [path]
     answer = json.loads(_core.replay([path_bytes(one) for one in paths], settings(set)))
-    return Replay(answer["cycles"], answer["compared_cycles"], answer["differing_cycles"],
-                  _difference(answer["first_difference"]),
-                  [Difference(**one) for one in answer["largest_differences"]])
+    largest = [_difference(one) for one in answer["largest_differences"]]
+    return Replay(answer["cycles"], answer["compared_cycles"], answer["not_replayed"],
+                  answer["cut_off"], answer["differing_cycles"],
+                  _difference(answer["first_difference"]), [one for one in largest if one])

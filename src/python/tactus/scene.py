@@ -29,7 +29,8 @@ class Scene:
         self._core = _core.load_scene(path_bytes(path), settings(set))
 
     def check(self) -> dict[str, Any]:
-        """What `tactus check --json` prints: stages, joints, margins, expected forces, bus loads.
+        """What `tactus check --json` prints: stages, joints, margins, expected forces, bus loads. What
+        is infinite is None.
 
         ConfigError as of the command: it also looks at buses, drives and stability.
         """

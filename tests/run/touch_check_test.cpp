@@ -15,11 +15,11 @@
 namespace tactus {
 namespace {
 
-using Warnings = std::vector<std::string>;
+using WarningList = std::vector<std::string>;
 
 constexpr double kStiffest_N_per_m = 7000.0;
 
-bool has(const Warnings& warnings, const std::string& part) {
+bool hasWarning(const WarningList& warnings, const std::string& part) {
   return std::ranges::any_of(warnings, [&](const std::string& warning) {
     return warning.find(part) != std::string::npos;
   });
@@ -63,7 +63,7 @@ TEST(TouchCheck, HasNothingAgainstTheScenesThatComeAlong) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.path().extension() != ".yaml") continue;
     const Scene scene = loadScene(entry.path().string(), {});
-    EXPECT_EQ(checkContacts(scene, kStiffest_N_per_m).warnings, Warnings{}) << entry.path();
+    EXPECT_EQ(checkContacts(scene, kStiffest_N_per_m).warnings, WarningList{}) << entry.path();
     ++scenes;
   }
   EXPECT_GT(scenes, 20);
@@ -164,7 +164,7 @@ TEST(TouchCheck, SaysHowFastAnObstacleMayMove) {
 
 TEST(TouchCheck, WarnsOfObstaclesThatNothingTouches) {
   EXPECT_EQ(expectedOf("scenario1_null_space", {obstacle("-2", "-2")}).warnings,
-            Warnings{"obstacle 0 is never touched: no cover comes to it on the scene's path"});
+            WarningList{"obstacle 0 is never touched: no cover comes to it on the scene's path"});
 }
 
 /// Where an arm is that has given way, its path does not say.
@@ -178,8 +178,8 @@ TEST(TouchCheck, SaysNothingOfWhatAppearsWhenTheArmHasGivenWay) {
                             appears_s + "}]"}})
         .warnings;
   };
-  const Warnings never{"obstacle 1 is never touched: no cover comes to it on the scene's path"};
-  EXPECT_EQ(warnings("12", "null_space"), Warnings{});
+  const WarningList never{"obstacle 1 is never touched: no cover comes to it on the scene's path"};
+  EXPECT_EQ(warnings("12", "null_space"), WarningList{});
   EXPECT_EQ(warnings("0.1", "null_space"), never) << "before anything is touched";
   EXPECT_EQ(warnings("12", "none"), never) << "nothing gives way";
 }
@@ -190,7 +190,7 @@ TEST(TouchCheck, WarnsOfObstaclesInTheArmAtItsStart) {
   scene.controller.chain.computePose(scene.controller.q_start, pose);
   const Pose X = framePose(pose, scene.controller.tactile_modules[0].link);
   const Vector3 inside = X.p_AB + 0.2 * X.R_AB.col(0);
-  const Warnings warnings =
+  const WarningList warnings =
       expectedOf("scenario1_null_space",
                  {obstacle(std::to_string(inside.x()), std::to_string(inside.y()))})
           .warnings;
@@ -202,9 +202,9 @@ TEST(TouchCheck, WarnsOfObstaclesInTheArmAtItsStart) {
 }
 
 TEST(TouchCheck, WarnsOfAPeakThatTheSensorCannotShow) {
-  EXPECT_TRUE(
-      has(expectedOf("scenario1_null_space", {{"robot.tactile_module.max_force_N", "3"}}).warnings,
-          "the sensor's max_force_N is 3"));
+  EXPECT_TRUE(hasWarning(
+      expectedOf("scenario1_null_space", {{"robot.tactile_module.max_force_N", "3"}}).warnings,
+      "the sensor's max_force_N is 3"));
 }
 
 /// Speeds of zero, and paths that never end, are no numbers to divide by.
