@@ -131,7 +131,7 @@ Json stabilityJson(const Scene& scene, const StabilityReport& stability) {
           {"loops", loops}};
 }
 
-/// The scene first, then what it extends, the robot, the URDF.
+/// The scene first, then what it extends, the robot, what its drives name, the URDF.
 std::vector<std::string> filesOf(const Scene& scene) {
   std::vector<std::string> paths;
   for (const SourceFile& file : scene.sources) paths.push_back(escaped(file.path));

@@ -26,7 +26,7 @@ constexpr std::int64_t kMillisecond_ns = 1'000'000;
 SlaveDrive::SlaveDrive(const DriveConfig& config, double period_s)
     : config_(config),
       max_setpoint_age_ns_(std::llround(2e9 * period_s)),
-      objects_(config.node_id),
+      objects_(config.node_id, config),
       axis_(config) {}
 
 void SlaveDrive::setPowered(bool is_on, std::int64_t t_ns) noexcept {

@@ -80,6 +80,7 @@ DriveConfig makeDrive(const LoadingRobot& l, std::size_t i) {
   drive.max_following_error = units.max_following_error.value_or(drive.max_following_error);
   drive.max_velocity = l.chain.limits.max_velocity[drive.joint];
   checkCounts(l, drive, path);
+  applySheet(l.sheets[i], drive);
   return drive;
 }
 

@@ -80,9 +80,14 @@ Table<DriveSection> driveKeys() {
       text("joint", "its name in the URDF", &Config::joint),
       text("interface", "its bus, one of can.buses", &Config::interface),
   };
+  const Table<Config> files = {
+      text("eds", "its electronic data sheet; absent: that of all drives", &Config::eds),
+      text("profile", "what it does otherwise than CiA 402 says; absent: that of all drives",
+           &Config::profile),
+  };
   return join(place, inside(&Config::config, driveConfigKeys()),
               inside(&Config::metres, driveUnitKeys("m", "prismatic")),
-              inside(&Config::radians, driveUnitKeys("rad", "revolute")));
+              inside(&Config::radians, driveUnitKeys("rad", "revolute")), files);
 }
 
 Table<CanTactileConfig> tareKeys() {
@@ -143,6 +148,12 @@ Row<RobotConfig> drivesSection() {
           onlyWith(canOfTheRobot(), number("start_tolerance", "m or rad", above(0, 10),
                                            "how far a joint may be from the scene's start",
                                            &Config::start_tolerance)),
+          onlyWith(canOfTheRobot(),
+                   text("eds", "electronic data sheet of all drives that have none of their own",
+                        &Config::eds)),
+          onlyWith(canOfTheRobot(),
+                   text("profile", "likewise: what they do otherwise than CiA 402 says",
+                        &Config::profile)),
           onlyWith(canOfTheRobot(),
                    sectionList("joints", {1, kMaxJoints}, "one CiA 402 drive a moving joint",
                                &Config::joints, driveKeys())),

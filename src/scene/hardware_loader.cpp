@@ -155,9 +155,10 @@ bool isUsed(const HardwareConfig& hardware, int bus) {
 }  // namespace
 
 std::optional<HardwareConfig> loadHardware(const YamlNode& root, const RobotConfig& config,
-                                           const UrdfChain& chain) {
+                                           const UrdfChain& chain,
+                                           const std::vector<DriveSheet>& sheets) {
   if (!config.can) return std::nullopt;
-  const LoadingRobot l{root, config, *config.can, chain};
+  const LoadingRobot l{root, config, *config.can, chain, sheets};
   checkBuses(l);
   checkHeartbeat(l);
   HardwareConfig hardware{.buses = l.can.buses,

@@ -177,6 +177,10 @@ class Case(unittest.TestCase):
         robot = load((crops9 / "robot_with_lines.yaml").read_text())
         robot["urdf"] = str(crops9 / robot["urdf"])
         robot["can"]["buses"][0]["bit_rate_per_s"] = 1e6
+        sheets = {"eds": str(CONFIG.parent / "tests/fuzz/sheets/drive.eds"),
+                  "profile": str(CONFIG / "profiles/zeroerr_edriver.yaml")}  # fmt: skip
+        robot["drives"] |= sheets
+        robot["drives"]["joints"][0] |= sheets
         robot["dynamics"] = load((crops9 / "robot.yaml").read_text())["dynamics"] | {
             "servo_bandwidth_hz": 40, "servo_integral_hz": 8}  # fmt: skip
         robot["gravity_m_per_s2"] = [0, 0, -9.81]

@@ -33,6 +33,10 @@ struct DriveConfig {
   double max_velocity =
       std::numeric_limits<double>::infinity();  ///< m/s or rad/s, tracking included
   double tracking_gain_per_s = 0.0;  ///< pulls the drive to the commanded position; 0: none
+  /// Entries 1018:1 and :2, which the node has to have; absent: any.
+  std::optional<std::uint32_t> vendor_id{}, product_code{};
+  int transmit_pdos = 4;              ///< all but the first are switched off, those that are there
+  bool has_quick_stop_option = true;  ///< entry 605A; else its quick stop is its own affair
 };
 
 /// CANopen settings common to all drives.

@@ -26,11 +26,13 @@ struct DriveSection {
   std::string interface;  ///< of its bus
   DriveConfig config;     ///< without joint, bus and what depends on the unit
   DriveUnits metres, radians;
+  std::optional<std::string> eds, profile;  ///< paths as written; absent: those of all drives
 };
 
 struct DrivesSection {
   double position_lag_s = PlantConfig{}.drive_lag_s;
   double start_tolerance = HardwareConfig{}.start_tolerance;
+  std::optional<std::string> eds, profile;  ///< of drives that have none of their own
   std::vector<DriveSection> joints;
 };
 
