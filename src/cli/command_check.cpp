@@ -93,10 +93,11 @@ Json jointJson(const Scene& scene, int i) {
 Json busLoadJson(const std::string& interface, const BusLoad& load) {
   Json terms = Json::array();
   for (const BusLoadTerm& term : load.terms) {
-    terms.push_back({{"name", term.name},
-                     {"frames", term.frames},
-                     {"bits_a_frame", worstCaseBits(term.data_bytes)},
-                     {"period_s", term.period_s}});
+    terms.push_back(
+        {{"name", term.name},
+         {"frames", term.frames},
+         {"bits_a_frame", term.fd ? Json(term.bitsAFrame()) : Json(worstCaseBits(term.data_bytes))},
+         {"period_s", term.period_s}});
   }
   return {{"interface", interface}, {"bit_rate_per_s", load.bit_rate_per_s},
           {"terms", terms},         {"bits_per_s", load.bitsPerSecond()},

@@ -50,8 +50,10 @@ Plant::Plant(const ControllerConfig& robot, const PlantConfig& plant,
   for (const CanTactileConfig& config : hardware_.tactile_modules)
     modules_.push_back({config.bus, config.first_id, nodes[config.bus]++});
   for (int bus = 0; bus < static_cast<int>(nodes.size()); ++bus)
-    links_.push_back(
-        {PlantBus(hardware_.buses[bus].bit_rate_per_s, nodes[bus]), FrameTroubles(bus), {}});
+    links_.push_back({PlantBus(hardware_.buses[bus].bit_rate_per_s, nodes[bus],
+                               hardware_.buses[bus].data_bit_rate_per_s),
+                      FrameTroubles(bus),
+                      {}});
   world_.read(seen_);
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     drives_[i].drive.setPosition(seen_.q_measured[hardware_.drives[i].joint]);
@@ -60,7 +62,8 @@ Plant::Plant(const ControllerConfig& robot, const PlantConfig& plant,
 }
 
 void Plant::send(int bus, const CanFrame& frame, std::int64_t t_ns) noexcept {
-  if (bus < 0 || bus >= buses() || frame.kind == FrameKind::kError || frame.size > 8) return;
+  const std::uint8_t most = frame.is_fd ? kMaxFdBytes : kMaxClassicBytes;
+  if (bus < 0 || bus >= buses() || frame.kind == FrameKind::kError || frame.size > most) return;
   if (t_ns > now_ns_) advance(t_ns);
   links_[bus].bus.send(PlantBus::kOtherSide, frame, now_ns_);
 }
@@ -74,7 +77,8 @@ void Plant::advance(std::int64_t t_ns) noexcept {
 }
 
 void Plant::take(int bus, FrameBatch& frames) noexcept {
-  frames = links_[bus].inbox;
+  frames.clear();
+  for (const CanFrame& frame : links_[bus].inbox) frames.push(frame);
   links_[bus].inbox.clear();
 }
 
@@ -163,7 +167,8 @@ void Plant::deliver(int bus, const BusDelivery& delivery, std::int64_t t_ns) noe
     return;
   }
   const CanFrame& frame = delivery.item.frame;
-  if (frame.id == kSyncId && !frame.extended && frame.kind == FrameKind::kData) hearSync(t_ns);
+  if (frame.id == kSyncId && !frame.extended && !frame.is_fd && frame.kind == FrameKind::kData)
+    hearSync(t_ns);
   for (Node& node : drives_) {
     if (node.bus != bus) continue;
     node.drive.receive(delivery.item, t_ns);

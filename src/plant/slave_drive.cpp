@@ -54,7 +54,7 @@ void SlaveDrive::setTroubles(const DriveTroubles& troubles) noexcept {
 
 void SlaveDrive::receive(const QueuedFrame& item, std::int64_t t_ns) noexcept {
   const CanFrame& frame = item.frame;
-  if (frame.kind != FrameKind::kData || frame.extended) return;
+  if (frame.kind != FrameKind::kData || frame.extended || frame.is_fd) return;
   if (nmt_ == NodeState::kOff || nmt_ == NodeState::kInitialising) return;
   const std::uint32_t master = (objects_.get(0x1016, 1) >> 16) & 0x7F;
   if (frame.id == 0) onNmt(frame, t_ns);

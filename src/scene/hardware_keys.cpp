@@ -22,6 +22,9 @@ Table<BusConfig> busKeys() {
   return {
       text("interface", "CAN network interface", &BusConfig::interface),
       number("bit_rate_per_s", "1/s", within(10e3, 1e6), "of the bus", &BusConfig::bit_rate_per_s),
+      number("data_bit_rate_per_s", "1/s", within(10e3, 8e6),
+             "of the data of CAN FD frames; absent: the bus is classic CAN",
+             &BusConfig::data_bit_rate_per_s),
   };
 }
 

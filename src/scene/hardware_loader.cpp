@@ -33,6 +33,11 @@ void checkBuses(const LoadingRobot& l) {
     if (std::ranges::find(buses, name, &BusConfig::interface) != buses.begin() + i) {
       l.fail(path, inQuotes(name) + " is given twice", "each bus once");
     }
+    if (buses[i].data_bit_rate_per_s.value_or(HUGE_VAL) < buses[i].bit_rate_per_s) {
+      l.fail(fmt::format("can.buses[{}].data_bit_rate_per_s", i),
+             fmt::format("{} is less than the bit rate", *buses[i].data_bit_rate_per_s),
+             fmt::format("at least bit_rate_per_s = {}", buses[i].bit_rate_per_s));
+    }
   }
 }
 

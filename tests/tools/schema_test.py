@@ -176,7 +176,7 @@ class Case(unittest.TestCase):
         crops9 = CONFIG / "robots/crops9"
         robot = load((crops9 / "robot_with_lines.yaml").read_text())
         robot["urdf"] = str(crops9 / robot["urdf"])
-        robot["can"]["buses"][0]["bit_rate_per_s"] = 1e6
+        robot["can"]["buses"][0] |= {"bit_rate_per_s": 1e6, "data_bit_rate_per_s": 5e6}
         sheets = {"eds": str(CONFIG.parent / "tests/fuzz/sheets/drive.eds"),
                   "profile": str(CONFIG / "profiles/zeroerr_edriver.yaml")}  # fmt: skip
         robot["drives"] |= sheets

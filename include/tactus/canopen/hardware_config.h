@@ -18,6 +18,8 @@ inline constexpr int kMaxBuses = 8;
 struct BusConfig {
   std::string interface;  ///< name of the CAN network interface, as can0
   double bit_rate_per_s = 1e6;
+  /// Of the data of CAN FD frames; absent: a classic bus.
+  std::optional<double> data_bit_rate_per_s{};
 };
 
 /// A CiA 402 drive in cyclic synchronous velocity mode. counts = sign * counts_per_unit *
