@@ -101,6 +101,7 @@ std::vector<DriveSheet> readDriveSheets(const SourceFile& robot, const YamlNode&
   };
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     const DriveSection& drive = config.drives.joints[i];
+    if (drive.config.kind == DriveKind::kMoteus) continue;
     if (const auto file = named(i, "eds", drive.eds, config.drives.eds))
       sheets[i].eds = files.eds(*file);
     if (const auto file = named(i, "profile", drive.profile, config.drives.profile))

@@ -56,6 +56,10 @@ Table<DriveUnits> driveUnitKeys(const std::string& unit, const std::string& join
   return {
       number("counts_per_" + unit, "1/" + unit, within(1, kMaxCounts), "of the drive" + only,
              &DriveUnits::counts_per_unit),
+      number("turns_per_" + unit, "1/" + unit, above(0, 1e4),
+             "of a moteus, as it is configured" +
+                 std::string(unit == "rad" ? "; absent: 1 / (2 pi)" : "") + only,
+             &DriveUnits::turns_per_unit),
       number("offset_" + unit, unit, within(-1e6, 1e6),
              fmt::format("the joint's position at 0 counts; absent: {}{}", defaults.offset, only),
              &DriveUnits::offset),
@@ -69,7 +73,10 @@ Table<DriveUnits> driveUnitKeys(const std::string& unit, const std::string& join
 Table<DriveConfig> driveConfigKeys() {
   using Config = DriveConfig;
   return {
-      required(integer("node_id", within(1, 127), "CANopen node id", &Config::node_id)),
+      choice("kind", "what it understands: cia402 is CANopen, moteus needs CAN FD", &Config::kind,
+             kDriveKindWords),
+      required(integer("node_id", within(1, 127), "CANopen node id, or that of the moteus",
+                       &Config::node_id)),
       integer("sign", within(-1, 1), "-1: counts fall where the joint's value rises",
               &Config::sign),
       number("tracking_gain_per_s", "1/s", within(0, 5e3),
@@ -158,7 +165,7 @@ Row<RobotConfig> drivesSection() {
                    text("profile", "likewise: what they do otherwise than CiA 402 says",
                         &Config::profile)),
           onlyWith(canOfTheRobot(),
-                   sectionList("joints", {1, kMaxJoints}, "one CiA 402 drive a moving joint",
+                   sectionList("joints", {1, kMaxJoints}, "one drive a moving joint",
                                &Config::joints, driveKeys())),
       });
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "tactus/canopen/canopen.h"
+#include "tactus/canopen/moteus_frames.h"
 #include "tactus/scene/drive_loader.h"
 #include "tactus/scene/tactile_loader.h"
 
@@ -71,6 +72,11 @@ std::vector<UsedId> usedIds(const HardwareConfig& hardware, int bus) {
     const auto add = [&](std::uint32_t base, const char* name) {
       ids.push_back({base + drive.node_id, fmt::format("{} of node {}", name, drive.node_id)});
     };
+    if (drive.kind == DriveKind::kMoteus) {
+      ids.push_back(
+          {moteusReplyId(drive.node_id), fmt::format("reply of moteus {}", drive.node_id)});
+      continue;
+    }
     add(cob_id::kEmergency, "EMCY");
     add(cob_id::kTpdo1, "TPDO1");
     add(cob_id::kRpdo1, "RPDO1");

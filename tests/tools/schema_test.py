@@ -216,9 +216,16 @@ class Case(unittest.TestCase):
         heavy["simulation"]["arm"] = "flexible_gears"
         torques = ("max_torque", "coulomb_friction", "viscous_friction", "backlash")
         heavy["simulation"]["drives"] = {key: [0.01] * 9 for key in torques}
+        moteus = []
+        for joint, unit in ((0, "m"), (1, "rad")):
+            moteus.append(copy.deepcopy(robot))
+            joints = moteus[-1]["drives"]["joints"]
+            joints.insert(0, joints.pop(joint))
+            joints[0] = {"joint": joints[0]["joint"], "interface": "can0", "kind": "moteus",
+                         "node_id": joints[0]["node_id"], f"turns_per_{unit}": 0.5}  # fmt: skip
         extending = scene | {"extends": str(CONFIG / "scenes/free_motion.yaml")}
         self.trees = {"scene": [scene, stops, rests, told, heavy, extending, *shaped],
-                      "robot": [robot, revolute_first, listed]}
+                      "robot": [robot, revolute_first, listed, *moteus]}
 
     def tree_with(self, row):
         """A whole file that has the key, as a copy, and the map that the key is in."""

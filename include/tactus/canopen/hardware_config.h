@@ -22,9 +22,16 @@ struct BusConfig {
   std::optional<double> data_bit_rate_per_s{};
 };
 
-/// A CiA 402 drive in cyclic synchronous velocity mode. counts = sign * counts_per_unit *
-/// (q - offset), with q in m or rad.
+/// What a drive understands.
+enum class DriveKind : std::uint8_t {
+  kCia402,  ///< CANopen, CiA 402 in cyclic synchronous velocity mode
+  kMoteus,  ///< mjbots' moteus, on CAN FD
+};
+
+/// counts = sign * counts_per_unit * (q - offset), with q in m or rad. The counts of a moteus are
+/// turns.
 struct DriveConfig {
+  DriveKind kind = DriveKind::kCia402;
   int joint = 0;
   int bus = 0;                        ///< index into HardwareConfig::buses
   int node_id = 1;                    ///< 1..127

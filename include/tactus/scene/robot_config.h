@@ -18,7 +18,7 @@ struct CanSection {
 /// What a drive's entry says in m or in rad. Which of the two may stand there is known only with
 /// the joint.
 struct DriveUnits {
-  std::optional<double> counts_per_unit, offset, max_following_error;
+  std::optional<double> counts_per_unit, turns_per_unit, offset, max_following_error;
 };
 
 struct DriveSection {
