@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "tactus/canopen/moteus_frames.h"
+
 namespace tactus {
 namespace {
 
@@ -19,6 +21,20 @@ void addDrives(const HardwareConfig& hardware, int drives, double period_s, BusL
   load.terms.push_back({"heartbeats", drives + 1, kHeartbeatBytes, heartbeat_s});
 }
 
+/// Each of them in turn is told, and replies: 29-bit ids at worst.
+void addMoteus(const BusConfig& bus, int drives, double period_s, BusLoad& load) {
+  const FdTiming fd{bus.data_bit_rate_per_s.value_or(bus.bit_rate_per_s) / bus.bit_rate_per_s,
+                    true};
+  load.terms.push_back({"moteus command", drives, kMoteusCommandBytes, period_s, fd});
+  load.terms.push_back({"moteus reply", drives, kMoteusReplyBytes, period_s, fd});
+}
+
+int drivesOn(const HardwareConfig& hardware, int bus, DriveKind kind) {
+  return static_cast<int>(std::count_if(
+      hardware.drives.begin(), hardware.drives.end(),
+      [&](const DriveConfig& drive) { return drive.bus == bus && drive.kind == kind; }));
+}
+
 }  // namespace
 
 double BusLoad::bitsPerSecond() const noexcept {
@@ -32,9 +48,10 @@ std::vector<BusLoad> busLoads(const HardwareConfig& hardware, double period_s) {
   for (std::size_t i = 0; i < hardware.buses.size(); ++i) {
     const int bus = static_cast<int>(i);
     BusLoad load{{}, hardware.buses[i].bit_rate_per_s};
-    const auto drives = std::count_if(hardware.drives.begin(), hardware.drives.end(),
-                                      [bus](const DriveConfig& drive) { return drive.bus == bus; });
-    if (drives > 0) addDrives(hardware, static_cast<int>(drives), period_s, load);
+    const int drives = drivesOn(hardware, bus, DriveKind::kCia402);
+    if (drives > 0) addDrives(hardware, drives, period_s, load);
+    const int moteus = drivesOn(hardware, bus, DriveKind::kMoteus);
+    if (moteus > 0) addMoteus(hardware.buses[i], moteus, period_s, load);
     for (const CanTactileConfig& module : hardware.tactile_modules) {
       if (module.bus != bus) continue;
       load.terms.push_back(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "tactus/canopen/canopen.h"
 
@@ -22,19 +23,27 @@ bool mayHold(const DriveReport& report) noexcept {
   return !report.has_state || holds(report.state);
 }
 
+const DriveReport& reportOf(const AnyDrive& drive) noexcept {
+  return std::visit([](const auto& it) -> const DriveReport& { return it.report(); }, drive);
+}
+
+int busOf(const AnyDrive& drive) noexcept {
+  return std::visit([](const auto& it) { return it.bus(); }, drive);
+}
+
 }  // namespace
 
 CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
     : outboxes_(hardware.buses.size()),
-      has_drives_(hardware.buses.size(), false),
+      has_canopen_(hardware.buses.size(), false),
       heartbeat_(heartbeatFrame(hardware.canopen.master_node_id, NmtState::kOperational)),
       cycles_a_heartbeat_(std::max(
           1, static_cast<int>(std::lround(hardware.canopen.heartbeat_period_s / period_s)))),
       q_commanded_(JointVector::Zero(static_cast<int>(hardware.drives.size()))) {
   drives_.reserve(hardware.drives.size());
   for (const DriveConfig& drive : hardware.drives) {
-    drives_.emplace_back(drive, hardware.canopen, period_s);
-    has_drives_[drive.bus] = true;
+    drives_.push_back(makeDrive(drive, hardware.canopen, period_s));
+    if (drive.kind == DriveKind::kCia402) has_canopen_[drive.bus] = true;
   }
   for (const CanTactileConfig& module : hardware.tactile_modules)
     tactile_modules_.emplace_back(module, period_s);
@@ -42,8 +51,8 @@ CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
 
 void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
   for (const CanFrame& frame : frames) {
-    for (Drive& drive : drives_) {
-      if (drive.bus() == bus) drive.receive(frame);
+    for (AnyDrive& drive : drives_) {
+      if (busOf(drive) == bus) std::visit([&](auto& it) { it.receive(frame); }, drive);
     }
     for (TactileReceiver& module : tactile_modules_) {
       if (module.bus() == bus) module.receive(frame);
@@ -52,15 +61,15 @@ void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
 }
 
 void CanRobot::coast(int missed_cycles) noexcept {
-  for (Drive& drive : drives_) drive.coast(missed_cycles);
+  for (AnyDrive& drive : drives_) std::visit([&](auto& it) { it.coast(missed_cycles); }, drive);
 }
 
 void CanRobot::read(RobotInput& input) noexcept {
   input.q_measured.resize(static_cast<int>(drives_.size()));
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const int joint = static_cast<int>(i);
-    drives_[i].observe(q_commanded_[joint]);
-    input.q_measured[joint] = drives_[i].report().position;
+    std::visit([&](auto& it) { it.observe(q_commanded_[joint]); }, drives_[i]);
+    input.q_measured[joint] = drive(joint).position;
   }
   for (std::size_t i = 0; i < tactile_modules_.size(); ++i) {
     tactile_modules_[i].tick();
@@ -81,31 +90,39 @@ void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
   cycles_to_heartbeat_ = (is_heartbeat_due ? cycles_a_heartbeat_ : cycles_to_heartbeat_) - 1;
   for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
     outboxes_[bus].clear();
-    if (has_drives_[bus] && is_heartbeat_due) outboxes_[bus].push(heartbeat_);
+    if (has_canopen_[bus] && is_heartbeat_due) outboxes_[bus].push(heartbeat_);
   }
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const int joint = static_cast<int>(i);
-    drives_[i].update(goal_, is_restart_, velocity_setpoint[joint], q_commanded_[joint],
-                      outboxes_[drives_[i].bus()]);
+    FrameBatch& outbox = outboxes_[busOf(drives_[i])];
+    std::visit(
+        [&](auto& it) {
+          it.update(goal_, is_restart_, velocity_setpoint[joint], q_commanded_[joint], outbox);
+        },
+        drives_[i]);
   }
   for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
-    if (has_drives_[bus]) outboxes_[bus].push(syncFrame());
+    if (has_canopen_[bus]) outboxes_[bus].push(syncFrame());
   }
-  for (const Drive& drive : drives_) {
-    if (drive.needsSilence()) outboxes_[drive.bus()].clear();
+  for (const AnyDrive& drive : drives_) {
+    const bool needs_silence = std::visit([](const auto& it) { return it.needsSilence(); }, drive);
+    if (needs_silence) outboxes_[busOf(drive)].clear();
   }
 }
 
 void CanRobot::release() noexcept {
   for (FrameBatch& outbox : outboxes_) outbox.clear();
-  for (const Drive& drive : drives_) drive.release(outboxes_[drive.bus()]);
+  for (const AnyDrive& drive : drives_)
+    std::visit([&](const auto& it) { it.release(outboxes_[it.bus()]); }, drive);
 }
+
+const DriveReport& CanRobot::drive(int joint) const noexcept { return reportOf(drives_[joint]); }
 
 DrivesReport CanRobot::drives() const noexcept {
   DrivesReport all;
   all.are_configured = all.are_enabled = true;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    const DriveReport& report = drives_[i].report();
+    const DriveReport& report = reportOf(drives_[i]);
     all.are_configured = all.are_configured && report.is_configured;
     all.are_enabled = all.are_enabled && report.state == DriveState::kOperationEnabled;
     const bool may_hold = isReachable(report) && mayHold(report);
@@ -122,18 +139,19 @@ DrivesReport CanRobot::drives() const noexcept {
 }
 
 bool CanRobot::isHolding(int joint) const noexcept {
-  const DriveReport& report = drives_[joint].report();
+  const DriveReport& report = drive(joint);
   return isReachable(report) && report.has_state && holds(report.state) && !report.is_cut_off;
 }
 
 bool CanRobot::hasPositions() const noexcept {
   return std::all_of(drives_.begin(), drives_.end(),
-                     [](const Drive& drive) { return drive.report().has_position; });
+                     [](const AnyDrive& drive) { return reportOf(drive).has_position; });
 }
 
 long long CanRobot::malformedFrames() const noexcept {
   long long frames = 0;
-  for (const Drive& drive : drives_) frames += drive.malformedFrames();
+  for (const AnyDrive& drive : drives_)
+    frames += std::visit([](const auto& it) { return it.malformedFrames(); }, drive);
   return frames;
 }
 

@@ -17,7 +17,8 @@ std::uint32_t idOf(std::uint32_t base, int node_id) noexcept {
 }  // namespace
 
 bool isDataFrame(const CanFrame& frame, std::uint32_t id, std::uint8_t size) noexcept {
-  return frame.kind == FrameKind::kData && !frame.extended && frame.id == id && frame.size == size;
+  return frame.kind == FrameKind::kData && !frame.extended && !frame.is_fd && frame.id == id &&
+         frame.size == size;
 }
 
 std::uint32_t readLittleEndian(const CanFrame& frame, int offset, int size) noexcept {

@@ -39,7 +39,7 @@ Drive::Drive(const DriveConfig& config, const CanopenConfig& canopen, double per
       rest_watch_(period_s) {}
 
 void Drive::receive(const CanFrame& frame) noexcept {
-  if (frame.kind != FrameKind::kData || frame.extended) return;
+  if (frame.kind != FrameKind::kData || frame.extended || frame.is_fd) return;
   switch (frame.id - static_cast<std::uint32_t>(config_.node_id)) {
     case cob_id::kTpdo1:
       return receiveFeedback(frame);

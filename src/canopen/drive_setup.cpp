@@ -94,8 +94,12 @@ void DriveSetup::judgeAnswer() noexcept {
   const SetupStep& step = steps_[step_];
   const std::uint32_t value = sdo_.value();
   if (step.kind == SetupStep::Kind::kExpect && (value & step.mask) != step.value) {
-    if (step_cycles_ >= sdo_timeout_cycles_) return fail(0);
-    return sdo_.upload(step.entry);
+    if (step_cycles_ < sdo_timeout_cycles_) return sdo_.upload(step.entry);
+    fail(0);
+    failure_.is_other_value = true;
+    failure_.value = value & step.mask;
+    failure_.expected = step.value;
+    return;
   }
   const bool has_to_stop = step.kind == SetupStep::Kind::kStopPdo && !is_stopping_;
   if (!has_to_stop || (value & kPdoNotValid) != 0) return nextStep();

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 
@@ -49,6 +50,15 @@ InterpolationPeriod representablePeriod(double period_s) {
       "seconds); choose one as 0.001 or 0.00125 s");
 }
 
+/// A drive of CiA 402, and the one that was meant.
+SetupSteps identitySteps(const DriveConfig& drive) {
+  constexpr std::uint32_t kAllBits = 0xFFFFFFFF;
+  SetupSteps steps{expect({0x1000, 0, 4}, 402, 0xFFFF)};
+  if (drive.vendor_id) steps.push_back(expect({0x1018, 1, 4}, *drive.vendor_id, kAllBits));
+  if (drive.product_code) steps.push_back(expect({0x1018, 2, 4}, *drive.product_code, kAllBits));
+  return steps;
+}
+
 }  // namespace
 
 std::optional<InterpolationPeriod> interpolationPeriod(double period_s) noexcept {
@@ -68,9 +78,12 @@ SetupSteps setupSteps(const DriveConfig& drive, const CanopenConfig& canopen, do
   const std::uint32_t heartbeat_ms = milliseconds(canopen.heartbeat_period_s, "heartbeat_period_s");
   const std::uint32_t timeout_ms = milliseconds(canopen.heartbeat_timeout_s, "heartbeat_timeout_s");
   const InterpolationPeriod period = representablePeriod(period_s);
-  return {{
-      expect({0x1000, 0, 4}, 402, 0xFFFF),  // device type: a drive of CiA 402
-      write(0x6040, 0, 2, 0x0002),          // may still be moving for a master that has gone
+  SetupSteps steps = identitySteps(drive);
+  const auto add = [&steps](std::initializer_list<SetupStep> more) {
+    steps.insert(steps.end(), more);
+  };
+  add({
+      write(0x6040, 0, 2, 0x0002),  // may still be moving for a master that has gone
       // Mapping is changed while the PDO is not valid and its number of entries is 0
       // (CiA 301, 7.5.2.36, 7.5.2.38).
       stopPdo(0x1400),
@@ -88,22 +101,27 @@ SetupSteps setupSteps(const DriveConfig& drive, const CanopenConfig& canopen, do
       write(0x1A00, 2, 4, 0x60640020),
       write(0x1A00, 0, 1, 2),
       write(0x1800, 2, 1, kEverySync),
-      // What else it may send by default would not be in the bus's calculated load.
-      ifThere(stopPdo(0x1801)),
-      ifThere(stopPdo(0x1802)),
-      ifThere(stopPdo(0x1803)),
+  });
+  // What else it may send by default would not be in the bus's calculated load.
+  for (int pdo = 1; pdo < drive.transmit_pdos; ++pdo)
+    steps.push_back(ifThere(stopPdo(static_cast<std::uint16_t>(0x1800 + pdo))));
+  add({
       write(0x1400, 1, 4, cob_id::kRpdo1 + node),
       write(0x1800, 1, 4, kNoRemote | (cob_id::kTpdo1 + node)),
       write(0x6060, 0, 1, 9),           // cyclic synchronous velocity
       expect({0x6061, 0, 1}, 9, 0xFF),  // some drives show it only after a while
       write(0x60C2, 1, 1, period.value),
       write(0x60C2, 2, 1, static_cast<std::uint8_t>(period.exponent)),
-      write(0x605A, 0, 2, 2),           // quick stop: its own ramp, then disabled
+  });
+  // Quick stop: its own ramp, then disabled.
+  if (drive.has_quick_stop_option) add({write(0x605A, 0, 2, 2)});
+  add({
       ifThere(write(0x605E, 0, 2, 2)),  // fault: slow down on the quick stop's ramp
       ifThere(write(0x6007, 0, 2, 3)),  // master silent: quick stop
       write(0x1016, 1, 4, master << 16 | timeout_ms),
       write(0x1017, 0, 2, heartbeat_ms),
-  }};
+  });
+  return steps;
 }
 
 }  // namespace tactus

@@ -37,7 +37,7 @@ TactileReceiver::TactileReceiver(const CanTactileConfig& config, double period_s
 void TactileReceiver::receive(const CanFrame& frame) noexcept {
   const std::uint32_t index = frame.id - config_.first_id;
   if (index >= kFrames) return;
-  if (frame.kind != FrameKind::kData || frame.extended || frame.size != 8) {
+  if (frame.kind != FrameKind::kData || frame.extended || frame.is_fd || frame.size != 8) {
     ++counters_.malformed;
     return;
   }

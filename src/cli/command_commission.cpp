@@ -48,6 +48,13 @@ void printTimeLimits() {
 
 int commissionScene(CommissionArguments arguments) {
   const Scene scene = loadHardwareScene(arguments.scene, arguments.settings, "to commission");
+  for (const DriveConfig& drive : scene.hardware->drives) {
+    if (drive.kind == DriveKind::kMoteus)
+      throw InputError(
+          fmt::format("{}: the drive of joint {} is a moteus, expected drives of CiA "
+                      "402: see moteus_tool for its calibration",
+                      escaped(arguments.scene), scene.joint_names[drive.joint]));
+  }
   CommissionOptions& options = arguments.options;
   if (!arguments.joint.empty()) options.joint = jointNamed(scene, arguments.joint);
   options.revolute.measuring_error = arguments.measuring_error_deg * std::numbers::pi / 180.0;

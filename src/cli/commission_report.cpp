@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tactus/canopen/sdo_abort.h"
 #include "tactus/cli/commission_text.h"
+#include "tactus/record/fault_text.h"
 
 namespace tactus {
 namespace {
@@ -35,8 +35,7 @@ std::string strokeText(const Scene& scene, int joint, const StrokeReport& stroke
            "set its polarity (607E), or its wiring, right";
   if (stroke.fault == Fault::kDriveSetupRefused && refused.index != 0)
     return fmt::format("the drive refuses its set-up at object {:04x}:{:02x}: {}", refused.index,
-                       refused.subindex,
-                       refused.abort_code == 0 ? "no answer" : sdoAbortName(refused.abort_code));
+                       refused.subindex, refusalText(refused));
   if (stroke.fault == Fault::kFollowingError)
     return fmt::format(
         "it does not follow, {} behind the command; is it stuck, or its brake "

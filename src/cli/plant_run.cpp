@@ -96,9 +96,11 @@ class PlantPump {
         notes_(notes) {
     for (const BusConfig& bus : scene.hardware->buses) {
       locks_.push_back(std::make_unique<InterfaceLock>(bus.interface, "tactus plant"));
-      sockets_.push_back(std::make_unique<RawCanSocket>(bus.interface));
+      const bool is_fd = bus.data_bit_rate_per_s.has_value();
+      sockets_.push_back(std::make_unique<RawCanSocket>(bus.interface, is_fd));
       polled_.push_back({sockets_.back()->descriptor(), POLLIN, 0});
       requireUp(bus.interface);
+      if (is_fd) requireFd(bus.interface);
       interfaces_.push_back(bus.interface);
     }
     e_stop_.emplace(e_stop_file);  // it may be another plant's: that one holds the locks

@@ -21,7 +21,8 @@ std::int64_t threadTime_ns() noexcept {
 
 CanSocket openSocket(const HardwareConfig& hardware, int bus) {
   const BusIds ids = busIds(hardware, bus);
-  return CanSocket(hardware.buses[bus].interface, ids.received, ids.sent);
+  return CanSocket(hardware.buses[bus].interface, ids.received, ids.sent,
+                   hardware.buses[bus].data_bit_rate_per_s.has_value());
 }
 
 }  // namespace

@@ -14,8 +14,11 @@ constexpr int kCanHardware = 280;  ///< ARPHRD_CAN
 constexpr unsigned kUp = 1;        ///< IFF_UP
 
 std::string bringUp(const BusConfig& bus) {
-  return fmt::format("ip link set {} up type can bitrate {:.0f} restart-ms 0", bus.interface,
-                     bus.bit_rate_per_s);
+  const std::string fd = bus.data_bit_rate_per_s
+                             ? fmt::format(" dbitrate {:.0f} fd on", *bus.data_bit_rate_per_s)
+                             : "";
+  return fmt::format("ip link set {} up type can bitrate {:.0f}{} restart-ms 0", bus.interface,
+                     bus.bit_rate_per_s, fd);
 }
 
 /// A controller's settings can be changed only while it is down.
@@ -63,6 +66,17 @@ Finding checkBitRate(const BusConfig& bus, const CanLink& link) {
           "no frame gets through, or the bus carries less than was reckoned with", setAnew(bus)};
 }
 
+Finding checkDataBitRate(const BusConfig& bus, const CanLink& link) {
+  const double rate_per_s = static_cast<double>(link.data_bit_rate_per_s);
+  if (rate_per_s == *bus.data_bit_rate_per_s)
+    return {"can_data_bit_rate", Level::kOk,
+            fmt::format("{}: data at {} bit/s", bus.interface, link.data_bit_rate_per_s)};
+  return {"can_data_bit_rate", Level::kNotFit,
+          fmt::format("{}: data at {} bit/s, but robot.yaml says {:.0f}", bus.interface,
+                      link.data_bit_rate_per_s, *bus.data_bit_rate_per_s),
+          "no frame of CAN FD gets through", setAnew(bus)};
+}
+
 Finding checkRestart(const BusConfig& bus, const CanLink& link) {
   if (link.restart_ms == 0)
     return {"can_restart", Level::kOk, bus.interface + ": stays off after bus-off"};
@@ -107,6 +121,7 @@ std::vector<Finding> checkBus(const MachineRoot& root, const BusConfig& bus,
   findings.push_back(checkAdapter(folder, bus, link));
   if (link && link->kind == "can") {
     findings.push_back(checkBitRate(bus, *link));
+    if (bus.data_bit_rate_per_s) findings.push_back(checkDataBitRate(bus, *link));
     findings.push_back(checkRestart(bus, *link));
   }
   findings.push_back(checkQueue(folder, bus));

@@ -74,6 +74,8 @@ std::optional<CanLink> parseCanLink(std::span<const char> message) {
   if (link.kind != "can") return link;  // what others call 1 and 5 means something else
   const Bytes data = attribute(info, IFLA_INFO_DATA);
   link.bit_rate_per_s = frontOf<can_bittiming>(attribute(data, IFLA_CAN_BITTIMING)).bitrate;
+  link.data_bit_rate_per_s =
+      frontOf<can_bittiming>(attribute(data, IFLA_CAN_DATA_BITTIMING)).bitrate;
   link.restart_ms = frontOf<std::uint32_t>(attribute(data, IFLA_CAN_RESTART_MS));
   return link;
 }

@@ -71,14 +71,18 @@ void setOption(int descriptor, const std::string& interface, int option, const V
     failOnInterface(errno, interface, std::string("the kernel refuses the socket option ") + name);
 }
 
-/// Mask bits beside the id's keep extended and remote frames out of the kernel's match.
+/// Mask bits beside the id's keep ids of the other length and remote frames out of the kernel's
+/// match.
 void setFilters(int descriptor, const std::string& interface, std::span<const IdFilter> received,
                 std::span<const IdFilter> sent) {
   std::vector<can_filter> filters;
   for (const auto& ids : {received, sent}) {
-    for (const IdFilter& ours : ids)
+    for (const IdFilter& ours : ids) {
+      const canid_t bits = ours.is_extended ? CAN_EFF_MASK : CAN_SFF_MASK;
+      const canid_t kind = ours.is_extended ? CAN_EFF_FLAG : 0;
       filters.push_back(
-          {ours.id & CAN_SFF_MASK, (ours.mask & CAN_SFF_MASK) | CAN_EFF_FLAG | CAN_RTR_FLAG});
+          {(ours.id & bits) | kind, (ours.mask & bits) | CAN_EFF_FLAG | CAN_RTR_FLAG});
+    }
   }
   setOption(descriptor, interface, CAN_RAW_FILTER, filters.data(), filters.size(),
             "CAN_RAW_FILTER");
@@ -108,23 +112,25 @@ void bindTo(int descriptor, const std::string& interface) {
 struct CanSocket::Messages {
   static constexpr std::size_t kCount = FrameBatch::kCapacity;
 
-  explicit Messages(std::span<const IdFilter> filters) : received(filters.begin(), filters.end()) {
+  Messages(std::span<const IdFilter> filters, bool carries_fd)
+      : is_fd(carries_fd), received(filters.begin(), filters.end()) {
     for (std::size_t i = 0; i < kCount; ++i) {
-      parts[i] = {&frames[i], sizeof(can_frame)};
+      parts[i] = {&frames[i], carries_fd ? CANFD_MTU : CAN_MTU};
       headers[i].msg_hdr.msg_iov = &parts[i];
       headers[i].msg_hdr.msg_iovlen = 1;
     }
   }
 
-  std::array<can_frame, kCount> frames{};
+  const bool is_fd;
+  std::array<canfd_frame, kCount> frames{};
   std::array<iovec, kCount> parts{};
   std::array<mmsghdr, kCount> headers{};
   std::vector<IdFilter> received;
 };
 
 CanSocket::CanSocket(const std::string& interface, std::span<const IdFilter> received,
-                     std::span<const IdFilter> sent)
-    : messages_(std::make_unique<Messages>(received)) {
+                     std::span<const IdFilter> sent, bool is_fd)
+    : messages_(std::make_unique<Messages>(received, is_fd)) {
   ask(interface, SIOCGIFINDEX);  // the plainer message, if there is neither interface nor CAN
   Descriptor opened(socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
   if (opened.get() < 0)
@@ -132,7 +138,12 @@ CanSocket::CanSocket(const std::string& interface, std::span<const IdFilter> rec
                     "this kernel opens no CAN sockets; `modprobe can_raw` may help");
   setFilters(opened.get(), interface, received, sent);
   setOptions(opened.get(), interface);
+  if (is_fd) {
+    const int on = 1;
+    setOption(opened.get(), interface, CAN_RAW_FD_FRAMES, &on, 1, "CAN_RAW_FD_FRAMES");
+  }
   bindTo(opened.get(), interface);
+  if (is_fd) requireFd(interface);
   descriptor_ = opened.release();
 }
 
@@ -156,8 +167,10 @@ void CanSocket::receive(FrameBatch& frames) noexcept {
 
 bool CanSocket::take(std::size_t message, CanFrame& frame) noexcept {
   const mmsghdr& header = messages_->headers[message];
-  const bool is_whole = header.msg_len == CAN_MTU && (header.msg_hdr.msg_flags & MSG_TRUNC) == 0;
-  frame = fromKernel(messages_->frames[message]);
+  const bool is_frame =
+      header.msg_len == CAN_MTU || (messages_->is_fd && header.msg_len == CANFD_MTU);
+  const bool is_whole = is_frame && (header.msg_hdr.msg_flags & MSG_TRUNC) == 0;
+  frame = takeKernelFrame(messages_->frames[message], header.msg_len);
   if (is_whole && (header.msg_hdr.msg_flags & MSG_CONFIRM) != 0) {
     monitor_.onConfirmed(1);
   } else if (is_whole && frame.kind == FrameKind::kError) {
@@ -172,10 +185,11 @@ bool CanSocket::take(std::size_t message, CanFrame& frame) noexcept {
 
 /// What others send by the ids of our own frames passes the kernel's filters, but not this.
 bool CanSocket::isExpected(const CanFrame& frame) const noexcept {
-  if (frame.extended || frame.kind != FrameKind::kData) return false;
+  if (frame.kind != FrameKind::kData) return false;
   return std::any_of(messages_->received.begin(), messages_->received.end(),
                      [&frame](const IdFilter& filter) {
-                       return ((frame.id ^ filter.id) & filter.mask & CAN_SFF_MASK) == 0;
+                       return frame.extended == filter.is_extended && frame.is_fd == filter.is_fd &&
+                              ((frame.id ^ filter.id) & filter.mask) == 0;
                      });
 }
 
@@ -190,11 +204,13 @@ void CanSocket::probe(const CanFrame& harmless) noexcept {
 void CanSocket::handOver(std::span<const CanFrame> frames) noexcept {
   const std::size_t count = std::min(frames.size(), Messages::kCount);
   for (std::size_t i = 0; i < count; ++i) {
-    messages_->frames[i] = toKernel(frames[i]);
+    messages_->parts[i].iov_len = putKernelFrame(frames[i], messages_->frames[i]);
     messages_->headers[i].msg_hdr.msg_flags = 0;
   }
   const int accepted =
       sendmmsg(descriptor_, messages_->headers.data(), static_cast<unsigned>(count), MSG_DONTWAIT);
+  if (messages_->is_fd)  // what comes may be longer than what went
+    for (std::size_t i = 0; i < count; ++i) messages_->parts[i].iov_len = CANFD_MTU;
   if (accepted < 0) monitor_.onSendError(errno);
   monitor_.onSent(std::max(0, accepted), static_cast<int>(frames.size()));
 }
@@ -207,6 +223,15 @@ void requireUp(const std::string& interface) {
   if ((ask(interface, SIOCGIFFLAGS).ifr_flags & IFF_UP) == 0)
     failOnInterface(ENETDOWN, interface,
                     "the interface is down; `ip link set " + interface + " up`");
+}
+
+void requireFd(const std::string& interface) {
+  if (ask(interface, SIOCGIFMTU).ifr_mtu < static_cast<int>(CANFD_MTU))
+    failOnInterface(EMSGSIZE, interface,
+                    "is not set up for CAN FD; `ip link set " + interface +
+                        " up type can bitrate 1000000 dbitrate 5000000 fd on`, or of a vcan `ip "
+                        "link set " +
+                        interface + " mtu 72`");
 }
 
 /// A name in the abstract name space of unix sockets, which the kernel gives to one socket at a

@@ -10,7 +10,7 @@
 
 namespace tactus {
 
-RawCanSocket::RawCanSocket(const std::string& interface) {
+RawCanSocket::RawCanSocket(const std::string& interface, bool is_fd) {
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = static_cast<int>(if_nametoindex(interface.c_str()));
@@ -22,28 +22,35 @@ RawCanSocket::RawCanSocket(const std::string& interface) {
   if (descriptor_ < 0)
     failOnInterface(errno, interface,
                     "this kernel opens no CAN sockets; `modprobe can_raw` may help");
-  if (bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) return;
+  const int fd_frames = is_fd ? 1 : 0;
+  const bool is_set = !is_fd || setsockopt(descriptor_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &fd_frames,
+                                           sizeof(fd_frames)) == 0;
+  if (is_set &&
+      bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0)
+    return;
   const int problem = errno;
   close(descriptor_);
-  failOnInterface(problem, interface, "is no CAN interface");
+  failOnInterface(problem, interface, is_set ? "is no CAN interface" : "carries no CAN FD");
 }
 
 RawCanSocket::~RawCanSocket() { close(descriptor_); }
 
 void RawCanSocket::receive(FrameBatch& frames) noexcept {
   frames.clear();
-  can_frame raw;
+  canfd_frame raw;
   ssize_t size = 0;
+  const auto isFrame = [&size] { return size == CAN_MTU || size == CANFD_MTU; };
   while (frames.size() < FrameBatch::kCapacity &&
-         (size = read(descriptor_, &raw, sizeof(raw))) == CAN_MTU)
-    frames.push(fromKernel(raw));
+         (size = read(descriptor_, &raw, sizeof(raw)), isFrame()))
+    frames.push(takeKernelFrame(raw, static_cast<std::size_t>(size)));
   if (size < 0 && errno == ENODEV) is_gone_ = true;
 }
 
 void RawCanSocket::send(std::span<const CanFrame> frames) noexcept {
   for (const CanFrame& frame : frames) {
-    const can_frame raw = toKernel(frame);
-    if (write(descriptor_, &raw, sizeof(raw)) != CAN_MTU) ++refused_;
+    canfd_frame raw;
+    const std::size_t size = putKernelFrame(frame, raw);
+    if (write(descriptor_, &raw, size) != static_cast<ssize_t>(size)) ++refused_;
   }
 }
 

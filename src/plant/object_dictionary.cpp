@@ -123,14 +123,22 @@ bool carriesNodeId(const ObjectDescription& object) {
 
 }  // namespace
 
-ObjectDictionary::ObjectDictionary(int node_id) : node_id_(node_id) { reset(0, 0xFFFF); }
+ObjectDictionary::ObjectDictionary(int node_id, const DriveConfig& identity)
+    : node_id_(node_id), vendor_id_(identity.vendor_id), product_code_(identity.product_code) {
+  reset(0, 0xFFFF);
+}
 
 void ObjectDictionary::reset(std::uint16_t first_index, std::uint16_t last_index) noexcept {
   for (const ObjectDescription& object : kObjects) {
     if (object.index < first_index || object.index > last_index) continue;
-    const std::uint32_t own_id = carriesNodeId(object) ? static_cast<std::uint32_t>(node_id_) : 0;
-    values_[positionOf(&object)] = object.initial + own_id;
+    values_[positionOf(&object)] = initialValue(object);
   }
+}
+
+std::uint32_t ObjectDictionary::initialValue(const ObjectDescription& object) const noexcept {
+  if (object.index == 0x1018 && object.subindex == 1) return vendor_id_.value_or(object.initial);
+  if (object.index == 0x1018 && object.subindex == 2) return product_code_.value_or(object.initial);
+  return object.initial + (carriesNodeId(object) ? static_cast<std::uint32_t>(node_id_) : 0);
 }
 
 const ObjectDescription* ObjectDictionary::find(std::uint16_t index,

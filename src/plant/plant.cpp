@@ -18,6 +18,12 @@ constexpr double kFirstMove_periods = 0.25;
 constexpr double kMoveAfterSync_periods = 0.5;
 constexpr std::int64_t kLongSilence_periods = 100;
 
+/// Calls a function with the drive, whatever its kind.
+template <class Node, class Function>
+decltype(auto) with(Node& node, Function function) noexcept {
+  return std::visit(function, node.drive);
+}
+
 /// A module on a bus has 24 bits, filters only if nobody behind it does, and is tared there.
 PlantConfig withModulesOf(const HardwareConfig& hardware, PlantConfig plant) {
   for (std::size_t i = 0; i < hardware.tactile_modules.size(); ++i) {
@@ -44,23 +50,31 @@ Plant::Plant(const ControllerConfig& robot, const PlantConfig& plant,
       next_move_ns_(std::llround(1e9 * kFirstMove_periods * period_s)),
       last_sync_ns_(-(kLongSilence_periods + 1) * period_ns_) {
   std::vector<int> nodes(hardware_.buses.size(), 1);
-  for (const DriveConfig& config : hardware_.drives)
-    drives_.push_back({SlaveDrive(config, period_s), config.bus, nodes[config.bus]++,
-                       static_cast<std::uint32_t>(config.node_id)});
+  for (const DriveConfig& config : hardware_.drives) {
+    Node node{SlaveDrive(config, period_s), config.bus, nodes[config.bus]++,
+              static_cast<std::uint32_t>(config.node_id)};
+    if (config.kind == DriveKind::kMoteus) node.drive = MoteusSlave(config, period_s);
+    drives_.push_back(std::move(node));
+  }
   for (const CanTactileConfig& config : hardware_.tactile_modules)
     modules_.push_back({config.bus, config.first_id, nodes[config.bus]++});
   for (int bus = 0; bus < static_cast<int>(nodes.size()); ++bus)
-    links_.push_back(
-        {PlantBus(hardware_.buses[bus].bit_rate_per_s, nodes[bus]), FrameTroubles(bus), {}});
+    links_.push_back({PlantBus(hardware_.buses[bus].bit_rate_per_s, nodes[bus],
+                               hardware_.buses[bus].data_bit_rate_per_s),
+                      FrameTroubles(bus),
+                      {}});
   world_.read(seen_);
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    drives_[i].drive.setPosition(seen_.q_measured[hardware_.drives[i].joint]);
-    drives_[i].drive.setPowered(true, 0);
+    with(drives_[i], [&](auto& drive) {
+      drive.setPosition(seen_.q_measured[hardware_.drives[i].joint]);
+      drive.setPowered(true, 0);
+    });
   }
 }
 
 void Plant::send(int bus, const CanFrame& frame, std::int64_t t_ns) noexcept {
-  if (bus < 0 || bus >= buses() || frame.kind == FrameKind::kError || frame.size > 8) return;
+  const std::uint8_t most = frame.is_fd ? kMaxFdBytes : kMaxClassicBytes;
+  if (bus < 0 || bus >= buses() || frame.kind == FrameKind::kError || frame.size > most) return;
   if (t_ns > now_ns_) advance(t_ns);
   links_[bus].bus.send(PlantBus::kOtherSide, frame, now_ns_);
 }
@@ -74,7 +88,8 @@ void Plant::advance(std::int64_t t_ns) noexcept {
 }
 
 void Plant::take(int bus, FrameBatch& frames) noexcept {
-  frames = links_[bus].inbox;
+  frames.clear();
+  for (const CanFrame& frame : links_[bus].inbox) frames.push(frame);
   links_[bus].inbox.clear();
 }
 
@@ -88,7 +103,8 @@ std::int64_t Plant::nextEvent_ns() const noexcept {
   std::int64_t next_ns = std::min(next_move_ns_, next_trouble_ns_);
   for (const Link& link : links_)
     next_ns = std::min({next_ns, link.bus.nextEvent_ns(), link.troubles.nextDelivery_ns()});
-  for (const Node& node : drives_) next_ns = std::min(next_ns, node.drive.nextEvent_ns());
+  for (const Node& node : drives_)
+    next_ns = std::min(next_ns, with(node, [](const auto& drive) { return drive.nextEvent_ns(); }));
   return next_ns;
 }
 
@@ -96,11 +112,17 @@ bool Plant::emergencyStop(std::int64_t t_ns) const noexcept {
   return script_.isActive(Kind::kEmergencyStop, t_ns);
 }
 
+PowerState Plant::powerState(int joint) const noexcept {
+  return with(drives_[joint], [](const auto& drive) { return drive.powerState(); });
+}
+
 PlantCounters Plant::counters() const noexcept {
   PlantCounters counters;
   counters.frames_not_taken = frames_not_taken_;
   for (const Link& link : links_) counters.frames_refused += link.bus.refused();
-  for (const Node& node : drives_) counters.stale_setpoints_applied += node.drive.staleSetpoints();
+  for (const Node& node : drives_)
+    counters.stale_setpoints_applied +=
+        with(node, [](const auto& drive) { return drive.staleSetpoints(); });
   return counters;
 }
 
@@ -108,9 +130,12 @@ void Plant::step(std::int64_t t_ns) noexcept {
   if (t_ns >= next_trouble_ns_) applyTroubles(t_ns);
   for (int bus = 0; bus < buses(); ++bus) moveBus(bus, t_ns);
   for (Node& node : drives_) {
-    if (t_ns < node.drive.nextEvent_ns()) continue;
-    node.drive.update(t_ns);
-    collect(node, t_ns);
+    const bool is_due = with(node, [t_ns](auto& drive) {
+      if (t_ns < drive.nextEvent_ns()) return false;
+      drive.update(t_ns);
+      return true;
+    });
+    if (is_due) collect(node, t_ns);
   }
   if (t_ns >= next_move_ns_) moveWorld(t_ns);
 }
@@ -118,7 +143,7 @@ void Plant::step(std::int64_t t_ns) noexcept {
 void Plant::applyTroubles(std::int64_t t_ns) noexcept {
   for (int bus = 0; bus < buses(); ++bus) applyBusTroubles(bus, t_ns);
   for (Node& node : drives_) {
-    node.drive.setTroubles(troublesOf(node, t_ns));
+    with(node, [&](auto& drive) { drive.setTroubles(troublesOf(node, t_ns)); });
     collect(node, t_ns);
   }
   next_trouble_ns_ = script_.nextChange_ns(t_ns);
@@ -143,7 +168,7 @@ void Plant::applyBusTroubles(int bus, std::int64_t t_ns) noexcept {
   if (is_powered != link.bus.isPowered()) {
     link.bus.setPowered(is_powered, t_ns);
     for (Node& node : drives_)
-      if (node.bus == bus) node.drive.setPowered(is_powered, t_ns);
+      if (node.bus == bus) with(node, [&](auto& drive) { drive.setPowered(is_powered, t_ns); });
   }
   link.bus.setOtherSideOff(script_.isActive(Kind::kBusOff, bus, t_ns), t_ns);
 }
@@ -163,10 +188,12 @@ void Plant::deliver(int bus, const BusDelivery& delivery, std::int64_t t_ns) noe
     return;
   }
   const CanFrame& frame = delivery.item.frame;
-  if (frame.id == kSyncId && !frame.extended && frame.kind == FrameKind::kData) hearSync(t_ns);
+  // Controllers of CAN FD have no SYNC: the first command of a cycle is theirs.
+  const bool is_sync = frame.id == kSyncId && !frame.extended && !frame.is_fd;
+  if (frame.kind == FrameKind::kData && (is_sync || frame.is_fd)) hearSync(t_ns);
   for (Node& node : drives_) {
     if (node.bus != bus) continue;
-    node.drive.receive(delivery.item, t_ns);
+    with(node, [&](auto& drive) { drive.receive(delivery.item, t_ns); });
     collect(node, t_ns);
   }
   noticeEnabling(t_ns);
@@ -183,21 +210,24 @@ void Plant::give(Link& link, const CanFrame& frame) noexcept {
 }
 
 void Plant::collect(Node& node, std::int64_t t_ns) noexcept {
-  for (const CanFrame& frame : node.drive.outbox())
-    links_[node.bus].bus.send(node.number, frame, t_ns);
-  node.drive.outbox().clear();
+  FrameBatch& outbox = with(node, [](auto& drive) -> FrameBatch& { return drive.outbox(); });
+  for (const CanFrame& frame : outbox) links_[node.bus].bus.send(node.number, frame, t_ns);
+  outbox.clear();
 }
 
 void Plant::moveWorld(std::int64_t t_ns) noexcept {
   next_move_ns_ = t_ns + period_ns_;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    drives_[i].drive.move(period_s_);
-    velocity_[hardware_.drives[i].joint] = drives_[i].drive.velocity();
+    velocity_[hardware_.drives[i].joint] = with(drives_[i], [&](auto& drive) {
+      drive.move(period_s_);
+      return drive.velocity();
+    });
   }
   world_.write(velocity_);
   world_.read(seen_);
   for (std::size_t i = 0; i < drives_.size(); ++i) {
-    drives_[i].drive.setPosition(seen_.q_measured[hardware_.drives[i].joint]);
+    with(drives_[i],
+         [&](auto& drive) { drive.setPosition(seen_.q_measured[hardware_.drives[i].joint]); });
     collect(drives_[i], t_ns);
   }
   sendSamples(t_ns);
@@ -218,7 +248,8 @@ void Plant::sendSamples(std::int64_t t_ns) noexcept {
 void Plant::noticeEnabling(std::int64_t t_ns) noexcept {
   if (script_.hasStarted()) return;
   const bool is_enabled = std::any_of(drives_.begin(), drives_.end(), [](const Node& node) {
-    return node.drive.powerState() == PowerState::kOperationEnabled;
+    return with(node, [](const auto& drive) { return drive.powerState(); }) ==
+           PowerState::kOperationEnabled;
   });
   if (!is_enabled) return;
   world_.restartTime();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/canopen/bus_load.h"
+
 namespace tactus {
 namespace {
 
@@ -35,8 +37,13 @@ std::uint32_t arbitration(const CanFrame& frame) noexcept {
 }  // namespace
 
 int worstCaseBits(const CanFrame& frame) noexcept {
+  if (frame.is_fd) return worstCaseFdBits(frame.size, frame.extended).arbitration;
   const int data = frame.kind == FrameKind::kRemote ? 0 : frame.size;
   return (frame.extended ? 80 : 55) + 10 * data;
+}
+
+int worstCaseDataBits(const CanFrame& frame) noexcept {
+  return frame.is_fd ? worstCaseFdBits(frame.size, frame.extended).data : 0;
 }
 
 CanFrame unacknowledgedError() noexcept {
@@ -60,13 +67,16 @@ void FrameQueue::pop() noexcept {
   --size_;
 }
 
-PlantBus::PlantBus(double bit_rate_per_s, int nodes)
-    : bit_ns_(1e9 / bit_rate_per_s), queues_(static_cast<std::size_t>(nodes)) {}
+PlantBus::PlantBus(double bit_rate_per_s, int nodes, std::optional<double> data_bit_rate_per_s)
+    : bit_ns_(1e9 / bit_rate_per_s),
+      data_bit_ns_(data_bit_rate_per_s ? 1e9 / *data_bit_rate_per_s : 0.0),
+      queues_(static_cast<std::size_t>(nodes)) {}
 
 bool PlantBus::send(int node, const CanFrame& frame, std::int64_t t_ns) noexcept {
   if (node != kOtherSide && !is_powered_) return false;
   const bool is_off = node == kOtherSide && is_other_side_off_;
-  if (!is_off && queues_[node].push({frame, t_ns})) return true;
+  const bool is_carried = !frame.is_fd || data_bit_ns_ > 0.0;
+  if (!is_off && is_carried && queues_[node].push({frame, t_ns})) return true;
   ++refused_;
   return false;
 }
@@ -142,13 +152,13 @@ void PlantBus::start(std::int64_t t_ns) noexcept {
     return;
   }
   phase_ = Phase::kSending;
-  phase_end_ns_ = t_ns + duration_ns(worstCaseBits(queues_[sender_].front().frame));
+  phase_end_ns_ = t_ns + duration_ns(queues_[sender_].front().frame);
 }
 
 void PlantBus::giveUp(std::int64_t t_ns) noexcept {
-  const int bits = worstCaseBits(queues_[sender_].front().frame) + kErrorFlagBits;
   phase_ = Phase::kUnacknowledged;
-  phase_end_ns_ = t_ns + duration_ns(kAttemptsUntilPassive * bits);
+  phase_end_ns_ =
+      t_ns + kAttemptsUntilPassive * duration_ns(queues_[sender_].front().frame, kErrorFlagBits);
 }
 
 void PlantBus::becomeIdle(std::int64_t t_ns) noexcept {
@@ -156,6 +166,9 @@ void PlantBus::becomeIdle(std::int64_t t_ns) noexcept {
   free_from_ns_ = t_ns;
 }
 
-std::int64_t PlantBus::duration_ns(int bits) const noexcept { return std::llround(bits * bit_ns_); }
+std::int64_t PlantBus::duration_ns(const CanFrame& frame, int more_bits) const noexcept {
+  return std::llround((worstCaseBits(frame) + more_bits) * bit_ns_ +
+                      worstCaseDataBits(frame) * data_bit_ns_);
+}
 
 }  // namespace tactus

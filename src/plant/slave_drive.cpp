@@ -26,7 +26,7 @@ constexpr std::int64_t kMillisecond_ns = 1'000'000;
 SlaveDrive::SlaveDrive(const DriveConfig& config, double period_s)
     : config_(config),
       max_setpoint_age_ns_(std::llround(2e9 * period_s)),
-      objects_(config.node_id),
+      objects_(config.node_id, config),
       axis_(config) {}
 
 void SlaveDrive::setPowered(bool is_on, std::int64_t t_ns) noexcept {
@@ -54,7 +54,7 @@ void SlaveDrive::setTroubles(const DriveTroubles& troubles) noexcept {
 
 void SlaveDrive::receive(const QueuedFrame& item, std::int64_t t_ns) noexcept {
   const CanFrame& frame = item.frame;
-  if (frame.kind != FrameKind::kData || frame.extended) return;
+  if (frame.kind != FrameKind::kData || frame.extended || frame.is_fd) return;
   if (nmt_ == NodeState::kOff || nmt_ == NodeState::kInitialising) return;
   const std::uint32_t master = (objects_.get(0x1016, 1) >> 16) & 0x7F;
   if (frame.id == 0) onNmt(frame, t_ns);

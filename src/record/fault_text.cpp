@@ -17,7 +17,7 @@ bool isOfDrive(Fault fault) {
 
 std::string describeRefusal(const SetupFailure& failure) {
   return fmt::format(", object {:04X}:{:02X}: {}", failure.index, failure.subindex,
-                     failure.abort_code == 0 ? "no answer" : sdoAbortName(failure.abort_code));
+                     refusalText(failure));
 }
 
 std::string describeDrive(const FaultReport& report, const Scene& scene) {
@@ -67,6 +67,12 @@ Json busName(const FaultReport& report, const Scene& scene) {
 }
 
 }  // namespace
+
+std::string refusalText(const SetupFailure& failure) {
+  if (failure.is_other_value)
+    return fmt::format("is {:#x}, expected {:#x}", failure.value, failure.expected);
+  return failure.abort_code == 0 ? "no answer" : sdoAbortName(failure.abort_code);
+}
 
 std::string faultEvent(const FaultReport& report, const Scene& scene) {
   std::string text = faultName(report.fault) + describeCulprit(report, scene);

@@ -73,11 +73,10 @@ std::vector<NamedLinkCapsule> capsulesOf(const Scene& scene) {
   return named;
 }
 
-/// robot.yaml is the last but one of a scene's files.
 Scene withCapsules(const Scene& scene, const std::string& proposed) {
   if (!scene.plant.capsules.empty()) return scene;
   std::vector<SourceFile> sources = scene.sources;
-  sources[sources.size() - 2].text += "\n" + proposed;
+  sources[scene.scene_sources].text += "\n" + proposed;
   return loadScene(sources, scene.overrides, SceneUse::kSimulation);
 }
 

@@ -45,10 +45,11 @@ Json jointJson(const Scene& scene, int i) {
 Json busLoadJson(const std::string& interface, const BusLoad& load) {
   Json terms = Json::array();
   for (const BusLoadTerm& term : load.terms) {
-    terms.push_back({{"name", term.name},
-                     {"frames", term.frames},
-                     {"bits_a_frame", worstCaseBits(term.data_bytes)},
-                     {"period_s", term.period_s}});
+    terms.push_back(
+        {{"name", term.name},
+         {"frames", term.frames},
+         {"bits_a_frame", term.fd ? Json(term.bitsAFrame()) : Json(worstCaseBits(term.data_bytes))},
+         {"period_s", term.period_s}});
   }
   return {{"interface", interface}, {"bit_rate_per_s", load.bit_rate_per_s},
           {"terms", terms},         {"bits_per_s", load.bitsPerSecond()},
@@ -83,7 +84,7 @@ Json stabilityJson(const Scene& scene, const StabilityReport& stability) {
           {"loops", loops}};
 }
 
-/// The scene first, then what it extends, the robot, the URDF.
+/// The scene first, then what it extends, the robot, what its drives name, the URDF.
 std::vector<std::string> filesOf(const Scene& scene) {
   std::vector<std::string> paths;
   for (const SourceFile& file : scene.sources) paths.push_back(escaped(file.path));

@@ -10,7 +10,7 @@ constexpr double kCycleTolerance = 1e-9;
 std::string describeTerm(const BusLoadTerm& term, double period_s) {
   const double cycles = term.period_s / period_s;
   const bool is_each_cycle = cycles > 1.0 - kCycleTolerance && cycles < 1.0 + kCycleTolerance;
-  return fmt::format("{} x {}{} ({})", term.frames, worstCaseBits(term.data_bytes),
+  return fmt::format("{} x {:.4g}{} ({})", term.frames, term.bitsAFrame(),
                      is_each_cycle ? "" : fmt::format(" / {:.4g}", cycles), term.name);
 }
 

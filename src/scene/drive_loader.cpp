@@ -7,9 +7,14 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
+
+#include "tactus/scene/key_words.h"
 
 namespace tactus {
 namespace {
+
+constexpr double kTurns_per_rad = 1.0 / (2.0 * std::numbers::pi);
 
 int findJoint(const LoadingRobot& l, const std::string& joint, const std::string& path) {
   const std::vector<std::string>& names = l.chain.joint_names;
@@ -36,21 +41,44 @@ DriveUnits chooseUnits(const LoadingRobot& l, const DriveSection& drive, int joi
            stem + unit);
   };
   refuse(other.counts_per_unit, "counts_per_");
+  refuse(other.turns_per_unit, "turns_per_");
   refuse(other.offset, "offset_");
   refuse(other.max_following_error, "max_following_error_");
-  const DriveUnits& units = is_prismatic ? drive.metres : drive.radians;
-  if (!units.counts_per_unit) {
-    l.fail(path + ".counts_per_" + unit, "is missing", "a number >= 1 in 1/" + unit);
+  DriveUnits units = is_prismatic ? drive.metres : drive.radians;
+  const bool is_moteus = drive.config.kind == DriveKind::kMoteus;
+  std::optional<double>& given = is_moteus ? units.turns_per_unit : units.counts_per_unit;
+  const std::string key = (is_moteus ? "turns_per_" : "counts_per_") + unit;
+  if (is_moteus ? units.counts_per_unit : units.turns_per_unit) {
+    l.fail(fmt::format("{}.{}_per_{}", path, is_moteus ? "counts" : "turns", unit),
+           fmt::format("the drive is of kind {}", wordOf(kDriveKindWords, drive.config.kind)), key);
   }
+  if (!given && is_moteus && !is_prismatic) given = kTurns_per_rad;
+  if (!given) l.fail(path + "." + key, "is missing", "a number in 1/" + unit);
+  units.counts_per_unit = given;
   return units;
 }
 
-/// Positions and velocities are counts in an INTEGER32 on the bus.
+/// A moteus is on CAN FD, and has no CANopen to be told about.
+void checkMoteus(const LoadingRobot& l, const DriveSection& drive, const DriveConfig& config,
+                 const std::string& path) {
+  if (!l.can.buses[config.bus].data_bit_rate_per_s) {
+    l.fail(path + ".kind", fmt::format("a moteus on {}, which is classic CAN", drive.interface),
+           "a bus with data_bit_rate_per_s");
+  }
+  for (const auto& [key, file] : {std::pair{".eds", &drive.eds}, {".profile", &drive.profile}})
+    if (*file) l.fail(path + key, "a moteus is no CANopen device", "not this key");
+}
+
+/// Positions and velocities are counts in an INTEGER32 on the bus; of a moteus they are turns, of
+/// which its float tells 1e-3 at this many.
 void checkCounts(const LoadingRobot& l, const DriveConfig& drive, const std::string& path) {
-  constexpr double kMaxCount = std::numeric_limits<std::int32_t>::max();
+  constexpr double kMaxTurns = 1e4;
+  const bool is_moteus = drive.kind == DriveKind::kMoteus;
+  const double kMaxCount = is_moteus ? kMaxTurns : std::numeric_limits<std::int32_t>::max();
   const JointLimits& limits = l.chain.limits;
   const bool is_prismatic = l.chain.joints[drive.joint].type == JointType::kPrismatic;
-  const std::string key = path + (is_prismatic ? ".counts_per_m" : ".counts_per_rad");
+  const std::string key =
+      fmt::format("{}.{}_per_{}", path, is_moteus ? "turns" : "counts", is_prismatic ? "m" : "rad");
   const double farthest = std::max(std::abs(limits.lower[drive.joint] - drive.offset),
                                    std::abs(limits.upper[drive.joint] - drive.offset)) +
                           drive.max_following_error;
@@ -61,9 +89,11 @@ void checkCounts(const LoadingRobot& l, const DriveConfig& drive, const std::str
   const double largest = std::max(farthest, limits.max_velocity[drive.joint]);
   if (drive.counts_per_unit * largest > kMaxCount) {
     l.fail(key,
-           fmt::format("{:.4g} counts at the joint's limits do not fit into 32 bits",
-                       drive.counts_per_unit * largest),
-           fmt::format("at most {:.6g}", std::floor(kMaxCount / largest)));
+           fmt::format("{:.4g} {}", drive.counts_per_unit * largest,
+                       is_moteus ? "turns at the joint's limits are too many"
+                                 : "counts at the joint's limits do not fit into 32 bits"),
+           fmt::format("at most {:.6g}",
+                       is_moteus ? kMaxCount / largest : std::floor(kMaxCount / largest)));
   }
 }
 
@@ -80,6 +110,10 @@ DriveConfig makeDrive(const LoadingRobot& l, std::size_t i) {
   drive.max_following_error = units.max_following_error.value_or(drive.max_following_error);
   drive.max_velocity = l.chain.limits.max_velocity[drive.joint];
   checkCounts(l, drive, path);
+  if (drive.kind == DriveKind::kMoteus)
+    checkMoteus(l, given, drive, path);
+  else
+    applySheet(l.sheets[i], drive);
   return drive;
 }
 

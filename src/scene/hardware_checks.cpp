@@ -6,6 +6,7 @@
 
 #include "tactus/canopen/drive_setup.h"
 #include "tactus/scene/bus_load_text.h"
+#include "tactus/scene/eds_check.h"
 #include "tactus/scene/scene_checks.h"
 
 namespace tactus {
@@ -82,14 +83,26 @@ void checkBusLoads(const YamlNode& root, double period_s, const RobotConfig& con
   }
 }
 
+void checkSheets(const LoadedRobot& robot, double period_s, const HardwareConfig& hardware) {
+  for (std::size_t i = 0; i < robot.sheets.size(); ++i) {
+    if (!robot.sheets[i].eds) continue;
+    const auto joint =
+        std::ranges::find(robot.chain.joint_names, robot.config.drives.joints[i].joint);
+    const DriveConfig& drive = hardware.drives[joint - robot.chain.joint_names.begin()];
+    checkEds(*robot.sheets[i].eds, drive, hardware.buses[drive.bus], hardware.canopen, period_s);
+  }
+}
+
 }  // namespace
 
-void checkHardware(const YamlNode& scene, const YamlNode& robot, double period_s,
-                   const RobotConfig& config, const HardwareConfig& hardware) {
+void checkHardware(const YamlNode& scene, const LoadedRobot& robot, double period_s,
+                   const HardwareConfig& hardware) {
+  const RobotConfig& config = robot.config;
   checkCycle(scene, period_s);
-  checkHeartbeat(robot, period_s, *config.can);
-  checkTrackingGains(robot, period_s, config.drives.joints);
-  checkBusLoads(robot, period_s, config, hardware);
+  checkHeartbeat(robot.root, period_s, *config.can);
+  checkTrackingGains(robot.root, period_s, config.drives.joints);
+  checkSheets(robot, period_s, hardware);
+  checkBusLoads(robot.root, period_s, config, hardware);
 }
 
 }  // namespace tactus

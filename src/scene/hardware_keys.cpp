@@ -22,6 +22,9 @@ Table<BusConfig> busKeys() {
   return {
       text("interface", "CAN network interface", &BusConfig::interface),
       number("bit_rate_per_s", "1/s", within(10e3, 1e6), "of the bus", &BusConfig::bit_rate_per_s),
+      number("data_bit_rate_per_s", "1/s", within(10e3, 8e6),
+             "of the data of CAN FD frames; absent: the bus is classic CAN",
+             &BusConfig::data_bit_rate_per_s),
   };
 }
 
@@ -53,6 +56,10 @@ Table<DriveUnits> driveUnitKeys(const std::string& unit, const std::string& join
   return {
       number("counts_per_" + unit, "1/" + unit, within(1, kMaxCounts), "of the drive" + only,
              &DriveUnits::counts_per_unit),
+      number("turns_per_" + unit, "1/" + unit, above(0, 1e4),
+             "of a moteus, as it is configured" +
+                 std::string(unit == "rad" ? "; absent: 1 / (2 pi)" : "") + only,
+             &DriveUnits::turns_per_unit),
       number("offset_" + unit, unit, within(-1e6, 1e6),
              fmt::format("the joint's position at 0 counts; absent: {}{}", defaults.offset, only),
              &DriveUnits::offset),
@@ -66,7 +73,10 @@ Table<DriveUnits> driveUnitKeys(const std::string& unit, const std::string& join
 Table<DriveConfig> driveConfigKeys() {
   using Config = DriveConfig;
   return {
-      required(integer("node_id", within(1, 127), "CANopen node id", &Config::node_id)),
+      choice("kind", "what it understands: cia402 is CANopen, moteus needs CAN FD", &Config::kind,
+             kDriveKindWords),
+      required(integer("node_id", within(1, 127), "CANopen node id, or that of the moteus",
+                       &Config::node_id)),
       integer("sign", within(-1, 1), "-1: counts fall where the joint's value rises",
               &Config::sign),
       number("tracking_gain_per_s", "1/s", within(0, 5e3),
@@ -80,9 +90,14 @@ Table<DriveSection> driveKeys() {
       text("joint", "its name in the URDF", &Config::joint),
       text("interface", "its bus, one of can.buses", &Config::interface),
   };
+  const Table<Config> files = {
+      text("eds", "its electronic data sheet; absent: that of all drives", &Config::eds),
+      text("profile", "what it does otherwise than CiA 402 says; absent: that of all drives",
+           &Config::profile),
+  };
   return join(place, inside(&Config::config, driveConfigKeys()),
               inside(&Config::metres, driveUnitKeys("m", "prismatic")),
-              inside(&Config::radians, driveUnitKeys("rad", "revolute")));
+              inside(&Config::radians, driveUnitKeys("rad", "revolute")), files);
 }
 
 Table<CanTactileConfig> tareKeys() {
@@ -144,7 +159,13 @@ Row<RobotConfig> drivesSection() {
                                            "how far a joint may be from the scene's start",
                                            &Config::start_tolerance)),
           onlyWith(canOfTheRobot(),
-                   sectionList("joints", {1, kMaxJoints}, "one CiA 402 drive a moving joint",
+                   text("eds", "electronic data sheet of all drives that have none of their own",
+                        &Config::eds)),
+          onlyWith(canOfTheRobot(),
+                   text("profile", "likewise: what they do otherwise than CiA 402 says",
+                        &Config::profile)),
+          onlyWith(canOfTheRobot(),
+                   sectionList("joints", {1, kMaxJoints}, "one drive a moving joint",
                                &Config::joints, driveKeys())),
       });
 }

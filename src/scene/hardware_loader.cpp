@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "tactus/canopen/canopen.h"
+#include "tactus/canopen/moteus_frames.h"
 #include "tactus/scene/drive_loader.h"
 #include "tactus/scene/tactile_loader.h"
 
@@ -32,6 +33,11 @@ void checkBuses(const LoadingRobot& l) {
     }
     if (std::ranges::find(buses, name, &BusConfig::interface) != buses.begin() + i) {
       l.fail(path, inQuotes(name) + " is given twice", "each bus once");
+    }
+    if (buses[i].data_bit_rate_per_s.value_or(HUGE_VAL) < buses[i].bit_rate_per_s) {
+      l.fail(fmt::format("can.buses[{}].data_bit_rate_per_s", i),
+             fmt::format("{} is less than the bit rate", *buses[i].data_bit_rate_per_s),
+             fmt::format("at least bit_rate_per_s = {}", buses[i].bit_rate_per_s));
     }
   }
 }
@@ -66,6 +72,11 @@ std::vector<UsedId> usedIds(const HardwareConfig& hardware, int bus) {
     const auto add = [&](std::uint32_t base, const char* name) {
       ids.push_back({base + drive.node_id, fmt::format("{} of node {}", name, drive.node_id)});
     };
+    if (drive.kind == DriveKind::kMoteus) {
+      ids.push_back(
+          {moteusReplyId(drive.node_id), fmt::format("reply of moteus {}", drive.node_id)});
+      continue;
+    }
     add(cob_id::kEmergency, "EMCY");
     add(cob_id::kTpdo1, "TPDO1");
     add(cob_id::kRpdo1, "RPDO1");
@@ -155,9 +166,10 @@ bool isUsed(const HardwareConfig& hardware, int bus) {
 }  // namespace
 
 std::optional<HardwareConfig> loadHardware(const YamlNode& root, const RobotConfig& config,
-                                           const UrdfChain& chain) {
+                                           const UrdfChain& chain,
+                                           const std::vector<DriveSheet>& sheets) {
   if (!config.can) return std::nullopt;
-  const LoadingRobot l{root, config, *config.can, chain};
+  const LoadingRobot l{root, config, *config.can, chain, sheets};
   checkBuses(l);
   checkHeartbeat(l);
   HardwareConfig hardware{.buses = l.can.buses,

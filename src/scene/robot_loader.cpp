@@ -63,6 +63,7 @@ LoadedRobot loadRobot(const SourceFile& file, const SceneSettings& settings, Sou
     applyOverride(root, setting, modulePathIn(root, path));
   }
   RobotConfig config = readRobotConfig(root, numbers);
+  std::vector<DriveSheet> sheets = readDriveSheets(file, root, config, settings, reader);
   const SourceFile urdf = reader.read(settings.resolve(file.path, "robot.urdf", config.urdf),
                                       "urdf", locate(root, "urdf"));
 
@@ -78,11 +79,11 @@ LoadedRobot loadRobot(const SourceFile& file, const SceneSettings& settings, Sou
   }
   for (std::size_t i = 0; i < chain.module_links.size(); ++i)
     config.tactile_modules[i].config.link = chain.module_links[i];
-  std::optional<HardwareConfig> hardware = loadHardware(root, config, chain);
+  std::optional<HardwareConfig> hardware = loadHardware(root, config, chain, sheets);
   std::vector<BodyInertia> bodies;
   if (config.dynamics) bodies = loadUrdfBodies(urdf, chain);
-  return {std::move(root), std::move(config), std::move(chain), std::move(bodies),
-          std::move(hardware)};
+  return {std::move(root),   std::move(config),   std::move(chain),
+          std::move(bodies), std::move(hardware), std::move(sheets)};
 }
 
 }  // namespace tactus

@@ -204,7 +204,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
   std::optional<NamedClearance> clearance = loadClearance(root, config, robot, q_start);
   const std::optional<HardwareConfig> hardware = chooseHardware(config, robot);
   if (hardware && use == SceneUse::kHardware) {
-    checkHardware(root, robot.root, config.period_s, robot.config, *hardware);
+    checkHardware(root, robot, config.period_s, *hardware);
   }
   const Variant variant = config.controller ? config.controller->variant : Variant::kNone;
   const StiffnessSection stiffness = config.stiffness.value_or(StiffnessSection{});

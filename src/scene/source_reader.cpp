@@ -28,6 +28,27 @@ void checkIsText(const SourceFile& file, std::string_view key) {
   }
 }
 
+bool isUtf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8CharacterLength(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
+/// Throws FileProblem where that makes it too long.
+std::string utf8OfLatin(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x80) result += static_cast<char>(0xC0 | byte >> 6);
+    result += static_cast<char>(byte >= 0x80 ? 0x80 | (byte & 0x3F) : byte);
+  }
+  if (result.size() > kMaxFileBytes) throw FileProblem(kSizeProblem);
+  return result;
+}
+
 }  // namespace
 
 void requireRegularFile(const std::string& path) {
@@ -70,8 +91,19 @@ SourceFile SourceReader::readFirst(const std::string& path) {
 
 SourceFile SourceReader::read(const std::string& path, std::string_view key,
                               const SourcePosition& named_at) {
+  return take(path, key, named_at, false);
+}
+
+SourceFile SourceReader::readLatin(const std::string& path, std::string_view key,
+                                   const SourcePosition& named_at) {
+  return take(path, key, named_at, true);
+}
+
+SourceFile SourceReader::take(const std::string& path, std::string_view key,
+                              const SourcePosition& named_at, bool may_be_latin) {
   try {
     SourceFile file{path, provider_(path)};
+    if (may_be_latin && !isUtf8(file.text)) file.text = utf8OfLatin(file.text);
     checkIsText(file, key);
     files_.push_back(file);
     return file;

@@ -197,6 +197,56 @@ TEST(DriveSetup, RefusesADeviceThatIsNoDrive) {
   EXPECT_EQ(rig.report().setup_failure.index, 0x1000);
 }
 
+TEST(DriveSetup, RefusesAnotherProductAndSaysWhatItIs) {
+  DriveConfig config = test::driveConfig();
+  config.vendor_id = 0x12345678;
+  config.product_code = 7;
+  DriveRig rig(config);
+  rig.slave.objects[{0x1018, 1}] = 0x12345678;
+  rig.slave.objects[{0x1018, 2}] = 7;
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+  for (const int subindex : {1, 2}) {
+    DriveRig other(config);
+    other.slave.objects = rig.slave.objects;
+    other.slave.objects[{0x1018, subindex}] = 8;
+    other.slave.writes.clear();
+    other.configure();
+    const SetupFailure& failure = other.report().setup_failure;
+    EXPECT_EQ(other.report().fault, Fault::kDriveSetupRefused);
+    EXPECT_EQ(failure.index, 0x1018);
+    EXPECT_EQ(failure.subindex, subindex);
+    EXPECT_TRUE(failure.is_other_value);
+    EXPECT_EQ(failure.value, 8u);
+    EXPECT_EQ(failure.expected, subindex == 1 ? 0x12345678u : 7u);
+    EXPECT_TRUE(other.slave.writes.empty()) << "what is not ours stays as it is";
+  }
+}
+
+TEST(DriveSetup, SwitchesOffAllTransmitPdosThatItIsToldOf) {
+  DriveConfig config = test::driveConfig();
+  config.transmit_pdos = 7;
+  DriveRig rig(config);
+  rig.slave.objects[{0x1804, 1}] = 0x1C5;
+  rig.slave.objects[{0x1806, 1}] = 0x2C5;
+  rig.slave.objects[{0x1807, 1}] = 0x3C5;
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+  EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1804, 1})], 0x800001C5u);
+  EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1806, 1})], 0x800002C5u);
+  EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1807, 1})], 0x3C5u);
+}
+
+TEST(DriveSetup, LeavesOutAQuickStopOptionThatThereIsNot) {
+  DriveConfig config = test::driveConfig();
+  config.has_quick_stop_option = false;
+  DriveRig rig(config);
+  rig.slave.refused[{0x605A, 0}] = 0x06020000;
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+  EXPECT_EQ(rig.slave.writes.size(), 24u);
+}
+
 TEST(DriveSetup, RefusesADriveThatDoesNotTakeTheMode) {
   DriveRig rig;
   rig.slave.shows_mode = false;

@@ -96,6 +96,19 @@ TEST_F(BusChecks, AnotherBitRateThanTheRobotsIsNotFit) {
   EXPECT_EQ(levelOf(check(CanLink{"can", 0, 0}), "can_bit_rate"), Level::kNotFit);
 }
 
+TEST_F(BusChecks, ABusOfCanFdHasARateOfItsData) {
+  const BusConfig bus{"can0", 1e6, 5e6};
+  const auto findings = [&](long data_bit_rate_per_s) {
+    return checkBus(machine.root(), bus, CanLink{"can", 1'000'000, 0, data_bit_rate_per_s});
+  };
+  EXPECT_EQ(levelOf(findings(5'000'000), "can_data_bit_rate"), Level::kOk);
+  const std::vector<Finding> other = findings(0);
+  EXPECT_EQ(levelOf(other, "can_data_bit_rate"), Level::kNotFit);
+  EXPECT_EQ(other[3].what, "can0: data at 0 bit/s, but robot.yaml says 5000000");
+  EXPECT_TRUE(contains(other[3].how_to_mend, "bitrate 1000000 dbitrate 5000000 fd on"));
+  EXPECT_EQ(check().size(), 5u) << "a classic bus is not asked for one";
+}
+
 TEST_F(BusChecks, RestartAfterBusOffIsWarnedOf) {
   EXPECT_EQ(levelOf(check(CanLink{"can", 1'000'000, 100}), "can_restart"), Level::kWarning);
 }

@@ -41,7 +41,7 @@ CanFrame frameOf(const std::uint8_t* bytes) {
   frame.kind = (head & 0x38) == 0x38 ? static_cast<FrameKind>(bytes[1] % 3) : FrameKind::kData;
   frame.extended = (head & 0x38) == 0x30;
   frame.size = (head & 0x38) == 0x28 ? bytes[1] : 8;
-  std::memcpy(frame.data.data(), bytes + 5, frame.data.size());
+  std::memcpy(frame.data.data(), bytes + 5, tactus::kMaxClassicBytes);
   return frame;
 }
 

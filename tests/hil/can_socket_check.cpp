@@ -171,6 +171,49 @@ void checkForeign(const std::string& interface) {
         "another node that sends by our ids is counted as foreign, and no confirmation");
 }
 
+CanFrame fdFrameOf(std::uint32_t id, std::uint8_t size) {
+  CanFrame frame;
+  frame.id = id;
+  frame.is_fd = true;
+  frame.extended = id > CAN_SFF_MASK;
+  frame.size = size;
+  for (std::uint8_t i = 0; i < size; ++i) frame.data[i] = static_cast<std::uint8_t>(0x40 + i);
+  return frame;
+}
+
+/// After checkForeign(), which lets the interface carry CAN FD.
+void checkFd(const std::string& interface) {
+  constexpr std::uint32_t kToNode = 0x8001;
+  const IdFilter received[] = {{0x100, 0x7FF, false, true}, {0x181}};
+  const IdFilter sent[] = {{kToNode, CAN_EFF_MASK, true, true}, {0x201}};
+  CanSocket bus(interface, received, sent, true);
+  RawCanSocket player(interface, true);
+  const std::vector<CanFrame> ours = {fdFrameOf(kToNode, 24), frameOf(0x201, 6)};
+  FrameBatch frames;
+  for (int i = 0; i < 5; ++i) {
+    bus.receive(frames);
+    bus.monitor().update();
+    bus.send(ours);
+    pause();
+    player.receive(frames);
+    check(std::equal(frames.begin(), frames.end(), ours.begin(), ours.end()),
+          "a cycle of both kinds arrives as it was sent");
+    player.send({{fdFrameOf(0x100, 64), frameOf(0x181, 6)}});
+    pause();
+  }
+  bus.receive(frames);
+  check(frames.size() == 2 && *frames.begin() == fdFrameOf(0x100, 64) &&
+            *(frames.begin() + 1) == frameOf(0x181, 6),
+        "so do answers of both kinds, after frames that were shorter");
+  check(bus.monitor().fault() == Fault::kNone && bus.monitor().counters().sent == 10,
+        "and each is confirmed");
+  player.send({{fdFrameOf(0x181, 8), frameOf(0x100, 8)}});
+  pause();
+  bus.receive(frames);
+  check(frames.empty() && bus.monitor().counters().foreign == 2,
+        "an id that comes by the other kind of frame is foreign");
+}
+
 void checkUnconfirmed(const std::string& interface) {
   CanSocket bus(interface, kReceived, {});
   const OtherNode other(interface);
@@ -369,6 +412,7 @@ void checkGone(const std::string& interface) {
 void checkAll(const std::string& interface) {
   checkExchange(interface);
   checkForeign(interface);
+  checkFd(interface);
   checkUnconfirmed(interface);
   checkErrorFrames(interface);
   checkFlood(interface);

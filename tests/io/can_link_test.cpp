@@ -54,6 +54,17 @@ TEST(CanLink, ReadsKindBitRateAndRestart) {
   EXPECT_EQ(link->restart_ms, 100);
 }
 
+TEST(CanLink, ReadsTheRateOfTheData) {
+  can_bittiming timing{};
+  timing.bitrate = 5'000'000;
+  const auto link = parseCanLink(linkMessage(
+      "can", controllerData(1'000'000, 0) + attribute(IFLA_CAN_DATA_BITTIMING, bytesOf(timing))));
+  ASSERT_TRUE(link);
+  EXPECT_EQ(link->bit_rate_per_s, 1'000'000);
+  EXPECT_EQ(link->data_bit_rate_per_s, 5'000'000);
+  EXPECT_EQ(parseCanLink(linkMessage("can", controllerData(1, 0)))->data_bit_rate_per_s, 0);
+}
+
 TEST(CanLink, AnotherKindsAttributesAreNotTakenForACans) {
   const auto link = parseCanLink(linkMessage("vcan", controllerData(500'000, 100)));
   ASSERT_TRUE(link);

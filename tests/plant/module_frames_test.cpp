@@ -16,7 +16,7 @@ std::int32_t channel(const CanFrame& frame, int first) {
 TEST(ModuleFrames, LayOutOneSampleByHand) {
   const auto frames =
       moduleFrames(0x100, 0xA7, {1, -1, 256, -256, 65536, -65536, 8388606, -2}, false);
-  const std::array<std::array<std::uint8_t, 8>, 4> expected = {
+  const std::array<decltype(CanFrame::data), 4> expected = {
       {{0xA7, 0, 0x01, 0x00, 0x00, 0xFF, 0xFF, 0xFF},
        {0xA7, 0, 0x00, 0x01, 0x00, 0x00, 0xFF, 0xFF},
        {0xA7, 0, 0x00, 0x00, 0x01, 0x00, 0x00, 0xFF},

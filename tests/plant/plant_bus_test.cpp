@@ -8,6 +8,7 @@
 
 #include "plant/can_bytes.h"
 #include "support/random.h"
+#include "tactus/canopen/bus_load.h"
 
 namespace tactus {
 namespace {
@@ -35,6 +36,29 @@ TEST(WorstCaseBits, AreThoseOfTheLoadBudget) {
   CanFrame remote = canFrame(0x181, {0, 0, 0, 0, 0, 0, 0, 0});
   remote.kind = FrameKind::kRemote;
   EXPECT_EQ(worstCaseBits(remote), 55);
+}
+
+TEST(PlantBus, AFrameOfCanFdSwitchesItsRate) {
+  PlantBus bus(1e6, 2, 5e6);
+  CanFrame frame = canFrame(0x8001, {});
+  frame.extended = frame.is_fd = true;
+  frame.size = 24;
+  ASSERT_TRUE(bus.send(1, frame, 0));
+  const FdBits bits = worstCaseFdBits(24, true);
+  const std::int64_t end_ns = 1000 * bits.arbitration + 200 * bits.data;
+  EXPECT_TRUE(runUntil(bus, end_ns - 1).empty());
+  EXPECT_EQ(runUntil(bus, end_ns).size(), 1u);
+  ASSERT_TRUE(bus.send(1, canFrame(0x181, {1, 2, 3, 4, 5, 6}), end_ns));
+  EXPECT_TRUE(runUntil(bus, end_ns + 114999).empty());
+  EXPECT_EQ(runUntil(bus, end_ns + 115000).size(), 1u) << "as on a classic bus";
+}
+
+TEST(PlantBus, AClassicBusCarriesNoCanFd) {
+  PlantBus bus(1e6, 2);
+  CanFrame frame = canFrame(0x181, {});
+  frame.is_fd = true;
+  EXPECT_FALSE(bus.send(PlantBus::kOtherSide, frame, 0));
+  EXPECT_EQ(bus.refused(), 1u);
 }
 
 TEST(PlantBus, AFrameTakesItsTimeByTheBitRate) {

@@ -61,16 +61,16 @@ class SdoServer : public testing::Test {
 
 TEST_F(SdoServer, AnswersUploadsByteForByte) {
   CanFrame response = ask(canFrame(0x601, {0x40, 0x00, 0x10, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(response.data, (std::array<std::uint8_t, 8>{0x43, 0x00, 0x10, 0, 0x92, 0x01, 0x02, 0}));
+  EXPECT_EQ(response.data, (decltype(CanFrame::data){0x43, 0x00, 0x10, 0, 0x92, 0x01, 0x02, 0}));
   response = ask(canFrame(0x601, {0x40, 0x5A, 0x60, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(response.data, (std::array<std::uint8_t, 8>{0x4B, 0x5A, 0x60, 0, 2, 0, 0, 0}));
+  EXPECT_EQ(response.data, (decltype(CanFrame::data){0x4B, 0x5A, 0x60, 0, 2, 0, 0, 0}));
   response = ask(canFrame(0x601, {0x40, 0x18, 0x10, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(response.data, (std::array<std::uint8_t, 8>{0x4F, 0x18, 0x10, 0, 4, 0, 0, 0}));
+  EXPECT_EQ(response.data, (decltype(CanFrame::data){0x4F, 0x18, 0x10, 0, 4, 0, 0, 0}));
 }
 
 TEST_F(SdoServer, AnswersDownloadsByteForByte) {
   CanFrame response = ask(canFrame(0x601, {0x2F, 0x60, 0x60, 0, 9, 0, 0, 0}));
-  EXPECT_EQ(response.data, (std::array<std::uint8_t, 8>{0x60, 0x60, 0x60, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(response.data, (decltype(CanFrame::data){0x60, 0x60, 0x60, 0, 0, 0, 0, 0}));
   EXPECT_EQ(read(0x6060, 0), 9u);
   response = ask(canFrame(0x601, {0x2B, 0x17, 0x10, 0, 0xE8, 0x03, 0, 0}));
   EXPECT_EQ(response.data[0], 0x60);
@@ -95,7 +95,7 @@ TEST_F(SdoServer, AbortsWithTheCodesOfTheStandard) {
   EXPECT_EQ(write(0x60C2, 2, 3, 1), 0x0609'0030u);
   EXPECT_EQ(write(0x605A, 0, 5, 2), 0x0609'0030u);
   CanFrame response = ask(canFrame(0x601, {0x40, 0x00, 0x20, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(response.data, (std::array<std::uint8_t, 8>{0x80, 0, 0x20, 0, 0, 0, 2, 6}));
+  EXPECT_EQ(response.data, (decltype(CanFrame::data){0x80, 0, 0x20, 0, 0, 0, 2, 6}));
   response = ask(canFrame(0x601, {0x21, 0x17, 0x10, 0, 2, 0, 0, 0}));  // segmented
   EXPECT_EQ(number(response, 4, 4), 0x0504'0001u);
   response = ask(canFrame(0x601, {0x60, 0x17, 0x10, 0, 0, 0, 0, 0}));

@@ -535,5 +535,17 @@ TEST_F(DriveOfNode5, NoFrameMovesItButAnEnabledDrivesSetpoint) {
   }
 }
 
+TEST(DriveWithADataSheet, IsTheProductThatItNames) {
+  DriveConfig config;
+  config.vendor_id = 0x5A65726F;
+  SlaveDrive drive(config, 0.001);
+  for (int power = 0; power < 2; ++power) {
+    drive.setPowered(true, 0);
+    EXPECT_EQ(drive.objects().get(0x1018, 1), 0x5A65726Fu);
+    EXPECT_EQ(drive.objects().get(0x1018, 2), 1u) << "as from a factory";
+    drive.setPowered(false, 0);
+  }
+}
+
 }  // namespace
 }  // namespace tactus

@@ -31,6 +31,18 @@ TEST(HardwareLoad, PutsBusesInTheirPlace) {
   EXPECT_EQ(hardware.start_tolerance, 0.03);
 }
 
+TEST(HardwareLoad, ABusOfCanFdHasARateOfItsData) {
+  SceneFiles files = hardwareFiles();
+  EXPECT_FALSE(files.load().hardware->buses[0].data_bit_rate_per_s);
+  files.robot = test::replaced(files.robot, "{interface: can0}",
+                               "{interface: can0, data_bit_rate_per_s: 5e6}");
+  const HardwareConfig hardware = files.load().hardware.value();
+  EXPECT_EQ(hardware.buses[0].data_bit_rate_per_s, 5e6);
+  EXPECT_EQ(busLoads(hardware, 0.001)[0].share(),
+            busLoads(hardwareFiles().load().hardware.value(), 0.001)[0].share())
+      << "CANopen's frames are as long as ever";
+}
+
 TEST(HardwareLoad, DeadlineOfAStopNeedsNoLines) {
   SceneFiles files = hardwareFiles();
   EXPECT_EQ(files.load().hardware->canopen.stop_deadline_s, CanopenConfig{}.stop_deadline_s);

@@ -86,7 +86,7 @@ class VirtualRobotCell {
 
   bool isAnyDrive(std::initializer_list<PowerState> states) const {
     for (int joint = 0; joint < joints_; ++joint) {
-      const PowerState state = plant.drive(joint).powerState();
+      const PowerState state = plant.powerState(joint);
       if (std::find(states.begin(), states.end(), state) != states.end()) return true;
     }
     return false;

@@ -135,6 +135,12 @@ class BadInput(unittest.TestCase):
         self.assertIn("\ncan2     3 x 115 (RPDO1) + ", text)
         self.assertNotIn("can3", text, "nobody reads the module")
 
+    def test_commission_knows_no_moteus(self):
+        scene = CONFIG / "scenes/robots/planar2_moteus.yaml"
+        result = self.run_tactus("commission", scene)
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertIn("the drive of joint shoulder is a moteus, expected ", result.stderr)
+
     def test_unstable_gains(self):
         """Refused for the robot; a simulation may show what they do."""
         scene = self.write("controller:\n  time_constant_s: 0.03\n")

@@ -176,7 +176,11 @@ class Case(unittest.TestCase):
         crops9 = CONFIG / "robots/crops9"
         robot = load((crops9 / "robot_with_lines.yaml").read_text())
         robot["urdf"] = str(crops9 / robot["urdf"])
-        robot["can"]["buses"][0]["bit_rate_per_s"] = 1e6
+        robot["can"]["buses"][0] |= {"bit_rate_per_s": 1e6, "data_bit_rate_per_s": 5e6}
+        sheets = {"eds": str(CONFIG.parent / "tests/fuzz/sheets/drive.eds"),
+                  "profile": str(CONFIG / "profiles/zeroerr_edriver.yaml")}  # fmt: skip
+        robot["drives"] |= sheets
+        robot["drives"]["joints"][0] |= sheets
         robot["dynamics"] = load((crops9 / "robot.yaml").read_text())["dynamics"] | {
             "servo_bandwidth_hz": 40, "servo_integral_hz": 8}  # fmt: skip
         robot["gravity_m_per_s2"] = [0, 0, -9.81]
@@ -212,9 +216,16 @@ class Case(unittest.TestCase):
         heavy["simulation"]["arm"] = "flexible_gears"
         torques = ("max_torque", "coulomb_friction", "viscous_friction", "backlash")
         heavy["simulation"]["drives"] = {key: [0.01] * 9 for key in torques}
+        moteus = []
+        for joint, unit in ((0, "m"), (1, "rad")):
+            moteus.append(copy.deepcopy(robot))
+            joints = moteus[-1]["drives"]["joints"]
+            joints.insert(0, joints.pop(joint))
+            joints[0] = {"joint": joints[0]["joint"], "interface": "can0", "kind": "moteus",
+                         "node_id": joints[0]["node_id"], f"turns_per_{unit}": 0.5}  # fmt: skip
         extending = scene | {"extends": str(CONFIG / "scenes/free_motion.yaml")}
         self.trees = {"scene": [scene, stops, rests, told, heavy, extending, *shaped],
-                      "robot": [robot, revolute_first, listed]}
+                      "robot": [robot, revolute_first, listed, *moteus]}
 
     def tree_with(self, row):
         """A whole file that has the key, as a copy, and the map that the key is in."""

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "tactus/canopen/any_drive.h"
 #include "tactus/canopen/can_frame.h"
-#include "tactus/canopen/drive.h"
 #include "tactus/canopen/hardware_config.h"
 #include "tactus/canopen/tactile_receiver.h"
 #include "tactus/control/robot.h"
@@ -45,15 +45,15 @@ class CanRobot final : public Robot {
   void release() noexcept;
 
   /// What write() wants on the bus, in this order: the master's heartbeat, which behind SYNC
-  /// would wait for all feedback; setpoints; SYNC. Nothing on a bus with a drive that only silence
-  /// stops.
+  /// would wait for all feedback; setpoints; SYNC. Heartbeat and SYNC where drives of CANopen are;
+  /// nothing on a bus with a drive that only silence stops.
   const FrameBatch& outbox(int bus) const noexcept { return outboxes_[bus]; }
 
   /// A frame that tells a dead bus's return and moves nothing; on such a bus only, each 100 cycles.
   const CanFrame& probe() const noexcept { return heartbeat_; }
 
   DrivesReport drives() const noexcept;
-  const DriveReport& drive(int joint) const noexcept { return drives_[joint].report(); }
+  const DriveReport& drive(int joint) const noexcept;
   /// By what this joint's own drive says: known, in reach, and holding it or slowing it down.
   bool isHolding(int joint) const noexcept;
   bool hasPositions() const noexcept;
@@ -63,10 +63,10 @@ class CanRobot final : public Robot {
   std::span<TactileReceiver> tactileModules() noexcept { return tactile_modules_; }
 
  private:
-  std::vector<Drive> drives_;
+  std::vector<AnyDrive> drives_;
   std::vector<TactileReceiver> tactile_modules_;
   std::vector<FrameBatch> outboxes_;  ///< one a bus
-  std::vector<bool> has_drives_;      ///< one a bus
+  std::vector<bool> has_canopen_;     ///< one a bus: drives of CANopen are there
   CanFrame heartbeat_;
   int cycles_a_heartbeat_;
   int cycles_to_heartbeat_ = 0;

@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kHeartbeat = 0x700;
 
 inline constexpr int kMaxNodeId = 127;
 
-/// A data frame with an 11-bit id, this one, and this many bytes.
+/// A classic data frame with an 11-bit id, this one, and this many bytes.
 bool isDataFrame(const CanFrame& frame, std::uint32_t id, std::uint8_t size) noexcept;
 
 /// The number of `size` bytes (1..4) at `offset`; offset + size <= 8.

@@ -4,48 +4,14 @@
 #include <optional>
 
 #include "tactus/canopen/can_frame.h"
-#include "tactus/canopen/cia402.h"
+#include "tactus/canopen/drive_report.h"
 #include "tactus/canopen/drive_setup.h"
 #include "tactus/canopen/hardware_config.h"
 #include "tactus/canopen/pdo.h"
 #include "tactus/canopen/rest_watch.h"
 #include "tactus/canopen/velocity_counts.h"
-#include "tactus/control/fault.h"
 
 namespace tactus {
-
-/// What the daemon wants of a drive this cycle.
-enum class DriveGoal : std::uint8_t {
-  kSilent,     ///< send nothing to it
-  kConfigure,  ///< NMT pre-operational, write the set-up by SDO, NMT start; then as kDisabled
-  kDisabled,   ///< configured, power off
-  kEnabled,    ///< operation enabled, following the velocity setpoint
-  kQuickStop,  ///< stop by itself, then switch on disabled
-};
-
-/// What is known of a drive after a cycle's frames.
-struct DriveReport {
-  bool is_configured = false;
-  DriveState state = DriveState::kNotReady;
-  bool has_state = false;  ///< the last status word was one that the standard knows
-  bool is_silent = false;  ///< now: out of reach, so that `state` is an old one
-  /// When last heard of it had no power: its status word said so, or it has started anew. What is
-  /// not seen off is dealt with as if it moved.
-  bool is_off = false;
-  bool is_restarting = false;  ///< it said that it boots, and was reset to make sure of that
-  bool is_moving_on = false;   ///< in its quick stop it goes on as fast as before
-  /// Not seen off in time, or moving on: it gets NMT stop, and then silence on its bus.
-  bool is_cut_off = false;
-  bool has_position = false;
-  double position = 0.0;  ///< m or rad
-  /// kDriveSilent, kDriveFault, kDriveStateLost, kFollowingError, kDriveSetupRefused, or
-  /// kCommandNotFinite if a setpoint was NaN or infinite; the first one stays until kConfigure
-  /// starts anew.
-  Fault fault = Fault::kNone;
-  FaultDetail detail;                ///< of that fault: what it was judged by
-  std::uint16_t emergency_code = 0;  ///< of the last EMCY, 0: none
-  SetupFailure setup_failure;
-};
 
 /// The master's side of one CiA 402 drive in cyclic synchronous velocity mode (9). Knows no socket
 /// and no clock: time is counted in cycles. RPDO1 (0x200 + id): 6040 and 60FF; TPDO1 (0x180 + id):

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "tactus/canopen/can_frame.h"
 #include "tactus/canopen/hardware_config.h"
@@ -10,11 +10,14 @@
 
 namespace tactus {
 
-/// Why a drive could not be configured: the object and the abort code, 0 for a time-out.
+/// Why a drive could not be configured: the object and the abort code, 0 for a time-out, or for
+/// another value than the one that was waited for.
 struct SetupFailure {
   std::uint16_t index = 0;
   std::uint8_t subindex = 0;
   std::uint32_t abort_code = 0;
+  bool is_other_value = false;
+  std::uint32_t value = 0, expected = 0;  ///< of that
 };
 
 /// 60C2: the period is value * 10^exponent seconds.
@@ -43,8 +46,7 @@ struct SetupStep {
   bool may_be_read_only = false;  ///< drives may have it without letting it be written
 };
 
-inline constexpr int kSetupStepCount = 29;
-using SetupSteps = std::array<SetupStep, kSetupStepCount>;
+using SetupSteps = std::vector<SetupStep>;
 
 /// The steps in their order. Throws std::invalid_argument with one line if the drive could not be
 /// told the period or the heartbeat times.

@@ -18,11 +18,20 @@ inline constexpr int kMaxBuses = 8;
 struct BusConfig {
   std::string interface;  ///< name of the CAN network interface, as can0
   double bit_rate_per_s = 1e6;
+  /// Of the data of CAN FD frames; absent: a classic bus.
+  std::optional<double> data_bit_rate_per_s{};
 };
 
-/// A CiA 402 drive in cyclic synchronous velocity mode. counts = sign * counts_per_unit *
-/// (q - offset), with q in m or rad.
+/// What a drive understands.
+enum class DriveKind : std::uint8_t {
+  kCia402,  ///< CANopen, CiA 402 in cyclic synchronous velocity mode
+  kMoteus,  ///< mjbots' moteus, on CAN FD
+};
+
+/// counts = sign * counts_per_unit * (q - offset), with q in m or rad. The counts of a moteus are
+/// turns.
 struct DriveConfig {
+  DriveKind kind = DriveKind::kCia402;
   int joint = 0;
   int bus = 0;                        ///< index into HardwareConfig::buses
   int node_id = 1;                    ///< 1..127
@@ -33,6 +42,10 @@ struct DriveConfig {
   double max_velocity =
       std::numeric_limits<double>::infinity();  ///< m/s or rad/s, tracking included
   double tracking_gain_per_s = 0.0;  ///< pulls the drive to the commanded position; 0: none
+  /// Entries 1018:1 and :2, which the node has to have; absent: any.
+  std::optional<std::uint32_t> vendor_id{}, product_code{};
+  int transmit_pdos = 4;              ///< all but the first are switched off, those that are there
+  bool has_quick_stop_option = true;  ///< entry 605A; else its quick stop is its own affair
 };
 
 /// CANopen settings common to all drives.

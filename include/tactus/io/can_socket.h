@@ -10,22 +10,26 @@
 
 namespace tactus {
 
-/// Ids that match (id & mask) == (filter.id & mask); standard data frames only.
+/// Ids that match (id & mask) == (filter.id & mask); data frames only, of one kind.
 struct IdFilter {
   std::uint32_t id = 0;
   std::uint32_t mask = 0x7FF;
+  bool is_extended = false;  ///< 29-bit ids, and a mask of as many
+  bool is_fd = false;        ///< frames of CAN FD
 };
 
 /// One raw CAN socket, bound to one interface. Data frames by exact filters, error frames on, own
-/// frames echoed as confirmation to the monitor. One recvmmsg and one sendmmsg a cycle. Extended,
-/// remote and FD frames are kept out by the kernel already; every frame is checked all the same.
+/// frames echoed as confirmation to the monitor. One recvmmsg and one sendmmsg a cycle. Ids of
+/// other lengths, remote frames and, on a classic bus, FD frames are kept out by the kernel
+/// already; every frame is checked all the same.
 class CanSocket {
  public:
   /// received: ids that receive() returns. sent: ids that go out; the kernel filters echoes as it
   /// does all frames, so without its id a frame is never confirmed and the bus taken for stalled.
-  /// Throws std::system_error whose text names interface, what failed and what to do.
+  /// is_fd: the bus carries CAN FD, which its interface has to be set up for. Throws
+  /// std::system_error whose text names interface, what failed and what to do.
   CanSocket(const std::string& interface, std::span<const IdFilter> received,
-            std::span<const IdFilter> sent);
+            std::span<const IdFilter> sent, bool is_fd = false);
   ~CanSocket();
   CanSocket(const CanSocket&) = delete;
   CanSocket& operator=(const CanSocket&) = delete;
@@ -64,6 +68,9 @@ inline constexpr int kMaxTransmitQueue = 16;
 
 /// Throws std::system_error where the interface is down or missing, with the way to mend it.
 void requireUp(const std::string& interface);
+
+/// Throws std::system_error where the interface is set up for classic frames alone.
+void requireFd(const std::string& interface);
 
 /// Held while a daemon owns an interface: a second one on it throws std::runtime_error. Freed by
 /// the kernel whenever the process ends. Holds in one network namespace, as interfaces do. Whoever

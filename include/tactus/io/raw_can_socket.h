@@ -12,8 +12,9 @@ namespace tactus {
 /// frames, sends whatever it is told, error frames too, and judges nothing.
 class RawCanSocket {
  public:
-  /// Throws std::system_error whose text names interface, what failed and what to do.
-  explicit RawCanSocket(const std::string& interface);
+  /// is_fd: CAN FD, too. Throws std::system_error whose text names interface, what failed and what
+  /// to do.
+  explicit RawCanSocket(const std::string& interface, bool is_fd = false);
   ~RawCanSocket();
   RawCanSocket(const RawCanSocket&) = delete;
   RawCanSocket& operator=(const RawCanSocket&) = delete;

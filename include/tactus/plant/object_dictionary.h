@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+
+#include "tactus/canopen/hardware_config.h"
 
 namespace tactus {
 
@@ -38,7 +41,8 @@ struct ObjectDescription {
 /// bytes.
 class ObjectDictionary {
  public:
-  explicit ObjectDictionary(int node_id);
+  /// identity: what 1018 tells in place of a factory's.
+  explicit ObjectDictionary(int node_id, const DriveConfig& identity = {});
 
   /// The initial values of all objects from first_index to last_index.
   void reset(std::uint16_t first_index, std::uint16_t last_index) noexcept;
@@ -57,7 +61,10 @@ class ObjectDictionary {
                   int size) noexcept;
 
  private:
+  std::uint32_t initialValue(const ObjectDescription& object) const noexcept;
+
   int node_id_;
+  std::optional<std::uint32_t> vendor_id_, product_code_;
   std::array<std::uint32_t, 64> values_{};
 };
 

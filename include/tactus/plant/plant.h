@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <variant>
 #include <vector>
 
 #include "tactus/canopen/can_frame.h"
 #include "tactus/canopen/hardware_config.h"
 #include "tactus/control/controller_config.h"
+#include "tactus/plant/moteus_slave.h"
 #include "tactus/plant/plant_bus.h"
 #include "tactus/plant/slave_drive.h"
 #include "tactus/plant/trouble.h"
@@ -22,7 +24,7 @@ struct PlantCounters {
   std::uint64_t frames_not_taken = 0;         ///< lost because take() came too late
 };
 
-/// The robot as its buses see it: drives (CiA 402 slaves of our own making, apart from the master's
+/// The robot as its buses see it: drives (of our own making, apart from the master's
 /// code), tactile modules and obstacles, in one world. Every bus takes its time: a frame lasts as
 /// many bits as it has, the lowest id goes first, queues are short. Knows no socket and no clock:
 /// time is an argument, in ns since the plant was switched on.
@@ -58,7 +60,10 @@ class Plant {
 
   PlantCounters counters() const noexcept;
   int buses() const noexcept { return static_cast<int>(links_.size()); }
-  const SlaveDrive& drive(int joint) const noexcept { return drives_[joint].drive; }
+  /// Of CiA 402.
+  const SlaveDrive& drive(int joint) const { return std::get<SlaveDrive>(drives_[joint].drive); }
+  const MoteusSlave& moteus(int joint) const { return std::get<MoteusSlave>(drives_[joint].drive); }
+  PowerState powerState(int joint) const noexcept;
   const PlantBus& bus(int bus) const noexcept { return links_[bus].bus; }
   const SimulatedRobot& world() const noexcept { return world_; }
   bool wasEnabled() const noexcept { return script_.hasStarted(); }  ///< a drive, ever
@@ -71,7 +76,7 @@ class Plant {
     FrameBatch inbox;
   };
   struct Node {
-    SlaveDrive drive;
+    std::variant<SlaveDrive, MoteusSlave> drive;
     int bus;
     int number;  ///< on the bus, from 1
     std::uint32_t id;

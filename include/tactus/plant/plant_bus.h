@@ -13,8 +13,11 @@ namespace tactus {
 
 inline constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
 
-/// Length on the bus with every stuff bit there can be, and the space to the next frame.
+/// Length on the bus with every stuff bit there can be, and the space to the next frame: of a
+/// classic frame, and of all of a CAN FD frame that goes at the bus's bit rate.
 int worstCaseBits(const CanFrame& frame) noexcept;
+/// Of a CAN FD frame what goes at the data bit rate; of a classic one 0.
+int worstCaseDataBits(const CanFrame& frame) noexcept;
 
 /// What the other side's controller reports of itself, as linux/can/error.h defines it.
 CanFrame unacknowledgedError() noexcept;
@@ -57,11 +60,12 @@ class PlantBus {
   static constexpr int kOtherSide = 0;    ///< the node that is no part of the plant
   static constexpr int kController = -1;  ///< "sender" of error frames for the other side
 
-  /// nodes: with the other side, which is node 0.
-  PlantBus(double bit_rate_per_s, int nodes);
+  /// nodes: with the other side, which is node 0. data_bit_rate_per_s: of CAN FD frames, which a
+  /// bus without one does not carry.
+  PlantBus(double bit_rate_per_s, int nodes, std::optional<double> data_bit_rate_per_s = {});
 
-  /// False: the queue is full or the other side is in bus-off, which is counted, or the node has no
-  /// power.
+  /// False: the queue is full, the other side is in bus-off or the bus does not carry CAN FD, which
+  /// is counted, or the node has no power.
   bool send(int node, const CanFrame& frame, std::int64_t t_ns) noexcept;
 
   /// Without power no node of the plant sends, hears or acknowledges: the other side's frame stays
@@ -90,9 +94,10 @@ class PlantBus {
   std::optional<BusDelivery> report(std::int64_t t_ns) noexcept;
   void giveUp(std::int64_t t_ns) noexcept;
   void becomeIdle(std::int64_t t_ns) noexcept;
-  std::int64_t duration_ns(int bits) const noexcept;
+  std::int64_t duration_ns(const CanFrame& frame, int more_bits = 0) const noexcept;
 
   double bit_ns_;
+  double data_bit_ns_;              ///< 0: no CAN FD
   std::vector<FrameQueue> queues_;  ///< one a node
   Phase phase_ = Phase::kIdle;
   int sender_ = kOtherSide;

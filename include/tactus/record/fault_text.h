@@ -15,6 +15,10 @@ std::string faultEvent(const FaultReport& report, const Scene& scene);
 /// The same, what that fault is, and how the arm comes to rest.
 std::string describeFault(const FaultReport& report, const Scene& scene);
 
+/// Why a drive refused its set-up at an object: "no answer", "invalid value", "is 0x1, expected
+/// 0x2".
+std::string refusalText(const SetupFailure& failure);
+
 /// "running", or "fault: drive_silent, drive 2 on can1 (joint j5), ...: no feedback ..." and so on.
 std::string describeMode(const ModeReport& report, const Scene& scene);
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "tactus/scene/drive_sheets.h"
 #include "tactus/scene/robot_config.h"
 #include "tactus/scene/urdf_loader.h"
 #include "tactus/scene/yaml_tree.h"
@@ -15,6 +16,7 @@ struct LoadingRobot {
   const RobotConfig& config;
   const CanSection& can;
   const UrdfChain& chain;
+  const std::vector<DriveSheet>& sheets;  ///< one for each entry of drives.joints
 
   /// Throws InputError at the value of a dotted path.
   [[noreturn]] void fail(const std::string& path, const std::string& problem,

@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "tactus/canopen/hardware_config.h"
 #include "tactus/control/controller_config.h"
 #include "tactus/plant/trouble.h"
 #include "tactus/scene/scene_config.h"
@@ -64,6 +65,11 @@ inline constexpr std::array kTroubleWords = {
     Word<Trouble::Kind>{"boot_up", Trouble::Kind::kBootUp},
     Word<Trouble::Kind>{"heartbeat_only", Trouble::Kind::kHeartbeatOnly},
     Word<Trouble::Kind>{"emergency_stop", Trouble::Kind::kEmergencyStop},
+};
+
+inline constexpr std::array kDriveKindWords = {
+    Word<DriveKind>{"cia402", DriveKind::kCia402},
+    Word<DriveKind>{"moteus", DriveKind::kMoteus},
 };
 
 inline constexpr std::array kFeedbackWords = {

@@ -18,7 +18,7 @@ struct CanSection {
 /// What a drive's entry says in m or in rad. Which of the two may stand there is known only with
 /// the joint.
 struct DriveUnits {
-  std::optional<double> counts_per_unit, offset, max_following_error;
+  std::optional<double> counts_per_unit, turns_per_unit, offset, max_following_error;
 };
 
 struct DriveSection {
@@ -26,11 +26,13 @@ struct DriveSection {
   std::string interface;  ///< of its bus
   DriveConfig config;     ///< without joint, bus and what depends on the unit
   DriveUnits metres, radians;
+  std::optional<std::string> eds, profile;  ///< paths as written; absent: those of all drives
 };
 
 struct DrivesSection {
   double position_lag_s = PlantConfig{}.drive_lag_s;
   double start_tolerance = HardwareConfig{}.start_tolerance;
+  std::optional<std::string> eds, profile;  ///< of drives that have none of their own
   std::vector<DriveSection> joints;
 };
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tactus/scene/drive_sheets.h"
 #include "tactus/scene/robot_config.h"
 #include "tactus/scene/source_reader.h"
 #include "tactus/scene/table_reader.h"
@@ -20,6 +21,7 @@ struct LoadedRobot {
   UrdfChain chain;
   std::vector<BodyInertia> bodies;         ///< one a joint; none without `dynamics`
   std::optional<HardwareConfig> hardware;  ///< absent without `can`
+  std::vector<DriveSheet> sheets;          ///< one for each entry of drives.joints
 };
 
 /// Settings of the command line that change the robot have keys that begin like this.

@@ -59,8 +59,9 @@ struct Scene {
   std::string robot_name;  ///< as the URDF spells it
   std::vector<std::string> joint_names;
   std::vector<std::string> module_links;  ///< of the tactile modules that the controller reads
-  std::vector<SourceFile> sources;  ///< the scene first, then what it extends, the robot, the URDF
-  std::size_t scene_sources = 0;    ///< of these, from the first on, are the scene's own
+  /// The scene first, then what it extends, the robot, what its drives name, the URDF.
+  std::vector<SourceFile> sources;
+  std::size_t scene_sources = 0;  ///< of these, from the first on, are the scene's own
   std::vector<Override> overrides;
   /// Every number of scene and robot, defaults included, by dotted path: for the log's readers.
   std::vector<std::pair<std::string, double>> numbers;

@@ -45,9 +45,16 @@ class SourceReader {
   /// or at the first byte that is no UTF-8 text.
   SourceFile read(const std::string& path, std::string_view key, const SourcePosition& named_at);
 
+  /// The same for files whose text may be Latin-1 instead, which is kept in UTF-8.
+  SourceFile readLatin(const std::string& path, std::string_view key,
+                       const SourcePosition& named_at);
+
   const std::vector<SourceFile>& files() const { return files_; }
 
  private:
+  SourceFile take(const std::string& path, std::string_view key, const SourcePosition& named_at,
+                  bool may_be_latin);
+
   FileProvider provider_;
   std::vector<SourceFile> files_;
 };

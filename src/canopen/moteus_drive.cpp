@@ -1,0 +1,250 @@
+#include "tactus/canopen/moteus_drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "tactus/canopen/cycle_count.h"
+
+namespace tactus {
+namespace {
+
+using CommandKind = MoteusCommand::Kind;
+
+/// Slower is rest, turns of the output shaft a second times 2 pi: rad/s, or m/s of a spindle.
+constexpr double kRestingVelocity = 0.01;
+constexpr int kRestingCycles = 5;
+/// A command is seen in the reply of the next cycle, and one may be late.
+constexpr int kSettledAfter_cycles = 3;
+constexpr int kMostReplies = 2;
+
+/// None for modes that nobody here asks for.
+std::optional<DriveState> stateOf(int mode) noexcept {
+  switch (static_cast<MoteusMode>(mode)) {
+    case MoteusMode::kStopped:
+      return DriveState::kSwitchOnDisabled;
+    case MoteusMode::kFault:
+      return DriveState::kFault;
+    case MoteusMode::kEnabling:
+    case MoteusMode::kCalibrating:
+    case MoteusMode::kCalibrationComplete:
+      return DriveState::kSwitchedOn;
+    case MoteusMode::kPosition:
+      return DriveState::kOperationEnabled;
+    case MoteusMode::kTimeout:
+    case MoteusMode::kZeroVelocity:
+    case MoteusMode::kBrake:
+      return DriveState::kQuickStopActive;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+MoteusDrive::MoteusDrive(const DriveConfig& config, const CanopenConfig& canopen, double period_s)
+    : config_(config),
+      watchdog_s_(static_cast<float>(canopen.heartbeat_timeout_s)),
+      boot_timeout_cycles_(cyclesLasting(canopen.boot_timeout_s, period_s)),
+      stop_deadline_cycles_(cyclesLasting(canopen.stop_deadline_s, period_s)),
+      rest_watch_(period_s) {
+  if (!(watchdog_s_ > 0.0F))
+    throw std::invalid_argument("heartbeat_timeout_s: the drive's watchdog needs a time above 0");
+}
+
+void MoteusDrive::receive(const CanFrame& frame) noexcept {
+  if (!isMoteusReply(frame, config_.node_id)) return;
+  const auto reply = decodeMoteusReply(frame, config_.node_id);
+  if (!reply) {
+    ++malformed_frames_;
+    return;
+  }
+  reply_ = reply;
+  periods_heard_ = std::min(periods_heard_ + 1, kMostReplies);
+}
+
+void MoteusDrive::coast(int missed_cycles) noexcept {
+  const auto pass = [&](int& cycles) {
+    const long long passed = static_cast<long long>(cycles) + missed_cycles;
+    const long long latest = stop_deadline_cycles_ - kSettledAfter_cycles;
+    if (cycles > 0) cycles = std::max(cycles, static_cast<int>(std::min(passed, latest)));
+  };
+  pass(quick_stop_cycles_);
+  pass(ignored_cycles_);
+  rest_watch_.restart();
+}
+
+void MoteusDrive::observe(double position) noexcept {
+  countSilence();
+  takeReply();
+  if (phase_ == Phase::kSetup) judgeSetup();
+  if (phase_ == Phase::kConfigured) judgeOperation(position);
+  reply_.reset();
+}
+
+void MoteusDrive::update(DriveGoal goal, bool restart, double velocity, double position,
+                         FrameBatch& out) noexcept {
+  goal_ = goal;
+  is_asked_ = false;
+  watchStop(goal);
+  const bool is_new = phase_ == Phase::kUnconfigured && report_.fault == Fault::kNone;
+  if (goal == DriveGoal::kConfigure && (restart || is_new)) startSetup();
+  if (goal == DriveGoal::kSilent || report_.is_cut_off || phase_ == Phase::kUnconfigured) return;
+  if (isRunning(goal) && !(std::isfinite(velocity) && std::isfinite(position)))
+    fail(Fault::kCommandNotFinite, {velocity, config_.max_velocity, "m/s or rad/s"});
+  out.push(moteusCommandFrame(config_.node_id, command(goal, velocity, position)));
+  is_asked_ = true;
+}
+
+void MoteusDrive::release(FrameBatch& out) const noexcept {
+  if (report_.is_off) out.push(moteusCommandFrame(config_.node_id, {.kind = CommandKind::kStop}));
+}
+
+void MoteusDrive::startSetup() noexcept {
+  report_ = {};
+  last_.reset();
+  phase_ = Phase::kSetup;
+  setup_cycles_ = silent_cycles_ = resting_cycles_ = enabled_cycles_ = 0;
+}
+
+void MoteusDrive::judgeSetup() noexcept {
+  const bool is_ready = reply_ && last_->map == kMoteusMap && last_->fault == 0 &&
+                        report_.state == DriveState::kSwitchOnDisabled && report_.has_position;
+  if (is_ready) {
+    phase_ = Phase::kConfigured;
+    report_.is_configured = true;
+    return;
+  }
+  if (++setup_cycles_ > boot_timeout_cycles_) refuseSetup();
+}
+
+/// Names the register that was not as it has to be.
+void MoteusDrive::refuseSetup() noexcept {
+  phase_ = Phase::kUnconfigured;
+  SetupFailure& failure = report_.setup_failure;
+  const auto blame = [&failure](std::uint16_t number, std::int32_t value, std::int32_t expected) {
+    failure = {number,
+               0,
+               0,
+               true,
+               static_cast<std::uint32_t>(value),
+               static_cast<std::uint32_t>(expected)};
+  };
+  if (last_ && last_->map != kMoteusMap)
+    blame(moteus_register::kMapVersion, last_->map.value_or(0), kMoteusMap);
+  else if (last_ && last_->fault != 0)
+    blame(moteus_register::kFault, last_->fault, 0);
+  else if (last_ && report_.state != DriveState::kSwitchOnDisabled)
+    blame(moteus_register::kMode, last_->mode, 0);
+  else
+    failure = {moteus_register::kPosition, 0, 0};
+  fail(Fault::kDriveSetupRefused);
+}
+
+/// In cycles in which a reply was asked for, up to where it matters.
+void MoteusDrive::countSilence() noexcept {
+  if (reply_)
+    silent_cycles_ = 0;
+  else if (is_asked_)
+    silent_cycles_ = std::min(silent_cycles_ + 1, kMaxSilentCycles + 1);
+  report_.is_silent = phase_ == Phase::kConfigured && silent_cycles_ > kMaxSilentCycles;
+}
+
+void MoteusDrive::takeReply() noexcept {
+  if (!reply_ || phase_ == Phase::kUnconfigured) return;
+  if (last_ && !reply_->map) reply_->map = last_->map;
+  last_ = reply_;
+  const auto state = stateOf(reply_->mode);
+  report_.has_state = state.has_value();
+  report_.state = state.value_or(DriveState::kNotReady);
+  report_.is_off = state == DriveState::kSwitchOnDisabled || state == DriveState::kFault;
+  if (state == DriveState::kFault)
+    report_.emergency_code = static_cast<std::uint16_t>(reply_->fault);
+  takePosition(*reply_);
+}
+
+/// What is no number is no position: the last one stays.
+void MoteusDrive::takePosition(const MoteusReply& reply) noexcept {
+  const double scale = config_.sign * config_.counts_per_unit;
+  const bool is_slow = std::abs(reply.velocity / scale) < kRestingVelocity;
+  resting_cycles_ = is_slow ? std::min(resting_cycles_ + 1, kRestingCycles) : 0;
+  if (!std::isfinite(reply.position) || !std::isfinite(reply.velocity)) return;
+  report_.position = reply.position / scale + config_.offset;
+  report_.has_position = true;
+}
+
+void MoteusDrive::judgeOperation(double position) noexcept {
+  if (report_.is_silent) fail(Fault::kDriveSilent);
+  if (reply_ && (report_.state == DriveState::kFault || !std::isfinite(reply_->position) ||
+                 !std::isfinite(reply_->velocity)))
+    fail(Fault::kDriveFault, {.value = static_cast<double>(reply_->fault), .unit = "fault code"});
+  const bool is_running = isRunning(goal_);
+  if (goal_ == DriveGoal::kEnabled && !is_running && enabled_cycles_ >= kSettledAfter_cycles)
+    fail(Fault::kDriveStateLost);
+  enabled_cycles_ = is_running ? std::min(enabled_cycles_ + 1, kSettledAfter_cycles) : 0;
+  if (!is_running) return;
+  if (!std::isfinite(position)) return fail(Fault::kCommandNotFinite);
+  const double distance = std::abs(position - report_.position);
+  const double limit = config_.max_following_error;
+  if (reply_ && distance > limit) fail(Fault::kFollowingError, {distance, limit, "m or rad"});
+}
+
+void MoteusDrive::watchStop(DriveGoal goal) noexcept {
+  const bool ignores = goal == DriveGoal::kDisabled && phase_ == Phase::kConfigured &&
+                       report_.state == DriveState::kOperationEnabled;
+  ignored_cycles_ = ignores ? std::min(ignored_cycles_, stop_deadline_cycles_) + 1 : 0;
+  if (ignored_cycles_ > stop_deadline_cycles_) fail(Fault::kDriveStateLost);
+  const int periods = std::exchange(periods_heard_, 0);
+  if (goal != DriveGoal::kQuickStop) {
+    rest_watch_.restart();
+    quick_stop_cycles_ = 0;
+    report_.is_moving_on = report_.is_cut_off = false;
+    return;
+  }
+  const bool is_unheard = silent_cycles_ > kMaxSilentCycles || !report_.has_position;
+  if (is_unheard) rest_watch_.restart();
+  if (!is_unheard && rest_watch_.update(report_.position, periods)) report_.is_moving_on = true;
+  quick_stop_cycles_ = std::min(quick_stop_cycles_, stop_deadline_cycles_) + 1;
+  const bool is_late = quick_stop_cycles_ > stop_deadline_cycles_ || report_.is_moving_on;
+  if (is_late && !report_.is_off) report_.is_cut_off = true;
+}
+
+bool MoteusDrive::isRunning(DriveGoal goal) const noexcept {
+  return goal == DriveGoal::kEnabled && phase_ == Phase::kConfigured &&
+         report_.fault == Fault::kNone && report_.state == DriveState::kOperationEnabled;
+}
+
+MoteusCommand MoteusDrive::command(DriveGoal goal, double velocity, double position) noexcept {
+  MoteusCommand command{.watchdog_s = watchdog_s_, .asks_for_map = phase_ == Phase::kSetup};
+  const bool is_to_run =
+      goal == DriveGoal::kEnabled && phase_ == Phase::kConfigured && report_.fault == Fault::kNone;
+  command.kind = is_to_run ? CommandKind::kVelocity : stopping();
+  if (isRunning(goal)) command.velocity = turnsPerSecond(velocity, position);
+  return command;
+}
+
+/// A fault that came in operation stays, as it would be cleared by stopping.
+MoteusCommand::Kind MoteusDrive::stopping() const noexcept {
+  if (!last_) return CommandKind::kQuery;
+  if (report_.state == DriveState::kFault)
+    return phase_ == Phase::kSetup ? CommandKind::kStop : CommandKind::kQuery;
+  const bool has_torque = report_.state != DriveState::kSwitchOnDisabled;
+  const bool is_resting = resting_cycles_ >= kRestingCycles;
+  return has_torque && !is_resting ? CommandKind::kZeroVelocity : CommandKind::kStop;
+}
+
+float MoteusDrive::turnsPerSecond(double velocity, double position) const noexcept {
+  const double limit = config_.max_following_error;
+  const double lag = std::clamp(position - report_.position, -limit, limit);
+  const double tracking = std::clamp(velocity + config_.tracking_gain_per_s * lag,
+                                     -config_.max_velocity, config_.max_velocity);
+  return static_cast<float>(config_.sign * config_.counts_per_unit * tracking);
+}
+
+void MoteusDrive::fail(Fault fault, const FaultDetail& detail) noexcept {
+  if (report_.fault != Fault::kNone) return;
+  report_.fault = fault;
+  report_.detail = detail;
+}
+
+}  // namespace tactus

@@ -1,0 +1,192 @@
+#include "tactus/canopen/moteus_drive.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "support/period.h"
+
+namespace tactus {
+namespace {
+
+constexpr int kMoteusNode = 7;
+
+DriveConfig moteusConfig() {
+  DriveConfig config;
+  config.kind = DriveKind::kMoteus;
+  config.node_id = kMoteusNode;
+  config.counts_per_unit = 0.5;
+  config.sign = -1;
+  config.offset = 0.25;
+  config.max_velocity = 2.0;
+  return config;
+}
+
+CanFrame moteusReply(int mode, float position, float velocity, int fault, int map = kMoteusMap) {
+  CanFrame frame;
+  frame.id = moteusReplyId(kMoteusNode);
+  frame.is_fd = true;
+  const auto put = [&frame](int byte) {
+    frame.data[frame.size++] = static_cast<std::uint8_t>(byte);
+  };
+  const auto putFloat = [&put](float value) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof(bits));
+    for (int i = 0; i < 4; ++i) put(static_cast<int>(bits >> 8 * i & 0xFF));
+  };
+  put(0x21), put(0x00), put(mode), put(0x2E), put(0x01);
+  putFloat(position);
+  putFloat(velocity);
+  put(0x21), put(0x0F), put(fault), put(0x29), put(0x82), put(0x02);
+  put(map), put(0), put(0), put(0);
+  return frame;
+}
+
+/// What a command says: mode (-1: none) and velocity in turns/s.
+struct Said {
+  int mode = -1;
+  float velocity = 0.0F;
+};
+
+Said saidBy(const CanFrame& frame) {
+  Said said;
+  if (frame.data[0] != 0x01) return said;
+  said.mode = frame.data[2];
+  if (said.mode == 10) std::memcpy(&said.velocity, &frame.data[9], sizeof(float));
+  return said;
+}
+
+struct MoteusRig {
+  MoteusDrive drive{moteusConfig(), CanopenConfig{}, test::kPeriod_s};
+  double position = 0.25;
+  int mode = 0, fault = 0;
+  float turns = 0.0F;
+
+  Said cycle(DriveGoal goal, double velocity = 0.0, bool restart = false) {
+    drive.receive(moteusReply(mode, turns, 0.0F, fault));
+    return quietCycle(goal, velocity, restart);
+  }
+  Said quietCycle(DriveGoal goal, double velocity = 0.0, bool restart = false) {
+    FrameBatch out;
+    drive.observe(position);
+    drive.update(goal, restart, velocity, position, out);
+    EXPECT_LE(out.size(), 1u);
+    return out.empty() ? Said{-2, 0.0F} : saidBy(*out.begin());
+  }
+  void configure() {
+    cycle(DriveGoal::kConfigure, 0.0, true);
+    cycle(DriveGoal::kConfigure);
+    ASSERT_TRUE(drive.report().is_configured);
+  }
+  void enable() {
+    configure();
+    EXPECT_EQ(cycle(DriveGoal::kEnabled, 1.0).velocity, 0.0F) << "not before it follows";
+    mode = 10;
+    for (int i = 0; i < 5; ++i) cycle(DriveGoal::kEnabled);
+  }
+};
+
+TEST(MoteusDrive, TurnsRadiansIntoTurnsAndBack) {
+  MoteusRig rig;
+  rig.turns = 0.5F;
+  rig.enable();
+  EXPECT_DOUBLE_EQ(rig.drive.report().position, 0.25 - 1.0);
+  rig.turns = 0.0F;
+  MoteusRig other;
+  other.enable();
+  EXPECT_FLOAT_EQ(other.cycle(DriveGoal::kEnabled, 1.5).velocity, -0.75F);
+  EXPECT_FLOAT_EQ(other.cycle(DriveGoal::kEnabled, 9.0).velocity, -1.0F) << "at most 2 rad/s";
+}
+
+TEST(MoteusDrive, RestsBeforeItLetsGo) {
+  MoteusRig rig;
+  rig.enable();
+  rig.drive.receive(moteusReply(10, 0.0F, 0.3F, 0));
+  EXPECT_EQ(rig.quietCycle(DriveGoal::kQuickStop).mode, 12);
+  for (int i = 0; i < 3; ++i) {
+    rig.drive.receive(moteusReply(12, 0.0F, 0.2F, 0));
+    EXPECT_EQ(rig.quietCycle(DriveGoal::kQuickStop).mode, 12);
+  }
+  rig.mode = 12;
+  int cycles = 0;
+  while (rig.cycle(DriveGoal::kQuickStop).mode == 12 && cycles < 20) ++cycles;
+  EXPECT_LT(cycles, 10);
+  rig.mode = 0;
+  EXPECT_EQ(rig.cycle(DriveGoal::kQuickStop).mode, 0);
+  EXPECT_TRUE(rig.drive.report().is_off);
+}
+
+TEST(MoteusDrive, LeavesAFaultAsItIsUntilARestart) {
+  MoteusRig rig;
+  rig.enable();
+  rig.mode = 1;
+  rig.fault = 34;
+  for (const DriveGoal goal : {DriveGoal::kEnabled, DriveGoal::kQuickStop, DriveGoal::kDisabled})
+    EXPECT_EQ(rig.cycle(goal, 1.0).mode, -1) << "which would clear it";
+  EXPECT_EQ(rig.drive.report().fault, Fault::kDriveFault);
+  EXPECT_EQ(rig.drive.report().emergency_code, 34);
+  EXPECT_EQ(rig.cycle(DriveGoal::kConfigure, 0.0, true).mode, -1) << "first it is asked";
+  EXPECT_EQ(rig.cycle(DriveGoal::kConfigure).mode, 0);
+}
+
+TEST(MoteusDrive, IsNotSilentWhileNobodyAsks) {
+  MoteusRig rig;
+  rig.configure();
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(rig.quietCycle(DriveGoal::kSilent).mode, -2);
+  EXPECT_EQ(rig.drive.report().fault, Fault::kNone);
+  for (int i = 0; i < MoteusDrive::kMaxSilentCycles; ++i) rig.quietCycle(DriveGoal::kDisabled);
+  EXPECT_EQ(rig.drive.report().fault, Fault::kNone);
+  rig.quietCycle(DriveGoal::kDisabled);
+  EXPECT_EQ(rig.drive.report().fault, Fault::kDriveSilent);
+}
+
+TEST(MoteusDrive, ARequestThatIsNoNumberIsNone) {
+  for (const double velocity : {std::nan(""), HUGE_VAL}) {
+    MoteusRig rig;
+    rig.enable();
+    EXPECT_EQ(rig.cycle(DriveGoal::kEnabled, velocity).mode, 0) << "it rests already";
+    EXPECT_EQ(rig.drive.report().fault, Fault::kCommandNotFinite);
+  }
+}
+
+/// Whatever it replies and whatever is wanted of it: no velocity but the one that was asked for,
+/// and none unless it follows, is set up and has no fault.
+TEST(MoteusDrive, GetsNoOtherVelocity) {
+  std::mt19937 random(17);
+  const auto chance = [&random](int one_in) {
+    return random() % static_cast<unsigned>(one_in) == 0;
+  };
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  int moved = 0;
+  for (int run = 0; run < 200; ++run) {
+    MoteusRig rig;
+    rig.enable();
+    DriveGoal goal = DriveGoal::kEnabled;
+    for (int cycle = 0; cycle < 200; ++cycle) {
+      if (chance(60)) goal = static_cast<DriveGoal>(random() % 5);
+      const int mode = chance(40) ? static_cast<int>(random() % 17) : 10;
+      const float turns = chance(200) ? kNaN : 0.001F * static_cast<float>(random() % 10);
+      if (!chance(10)) rig.drive.receive(moteusReply(mode, turns, 0.0F, chance(50) ? 33 : 0));
+      const double velocity = 0.01 * static_cast<double>(random() % 100);
+      const Said said = rig.quietCycle(goal, velocity, chance(50));
+      const DriveReport& report = rig.drive.report();
+      const bool is_quiet = goal == DriveGoal::kSilent || report.is_cut_off;
+      EXPECT_TRUE(!is_quiet || said.mode == -2) << said.mode;
+      EXPECT_TRUE(goal == DriveGoal::kEnabled || said.mode != 10);
+      ASSERT_TRUE(std::isfinite(said.velocity) && std::isfinite(report.position));
+      if (said.velocity == 0.0F) continue;
+      ++moved;
+      EXPECT_FLOAT_EQ(said.velocity, static_cast<float>(-0.5 * velocity));
+      EXPECT_EQ(report.state, DriveState::kOperationEnabled);
+      EXPECT_EQ(report.fault, Fault::kNone);
+      EXPECT_TRUE(report.is_configured);
+    }
+  }
+  EXPECT_GT(moved, 500);
+}
+
+}  // namespace
+}  // namespace tactus

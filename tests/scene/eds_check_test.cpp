@@ -1,0 +1,148 @@
+#include "tactus/scene/eds_check.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "support/eds_text.h"
+#include "support/scene_files.h"
+
+namespace tactus {
+namespace {
+
+struct SheetCase {
+  DriveConfig drive{};
+  BusConfig bus{"can0", 1e6};
+  CanopenConfig canopen{};
+  double period_s = 0.001;
+
+  std::string error(const std::string& text) const {
+    try {
+      checkEds(parseEds({"drive.eds", text}), drive, bus, canopen, period_s);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+/// A line of the sheet that is replaced, and what it is then refused for: at that line, by that
+/// key.
+struct WrongLine {
+  std::string_view section, key, line;
+  std::string_view problem, expectation;
+};
+
+void PrintTo(const WrongLine& wrong, std::ostream* stream) {
+  *stream << wrong.section << " " << wrong.line;
+}
+
+class WrongSheet : public testing::TestWithParam<WrongLine> {};
+
+TEST_P(WrongSheet, IsRefusedAtItsLine) {
+  const WrongLine& wrong = GetParam();
+  const std::string eds = test::edsText();
+  const std::string error =
+      SheetCase{}.error(test::withEdsLine(eds, wrong.section, wrong.key, wrong.line));
+  const std::string place =
+      fmt::format("drive.eds:{}:1: {}.{}: ", test::edsLineOf(eds, wrong.section, wrong.key),
+                  wrong.section, wrong.key);
+  test::expectError(error, {"", "", place, wrong.problem, wrong.expectation});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Device, WrongSheet,
+    testing::Values(
+        WrongLine{"DeviceInfo", "BaudRate_1000", "BaudRate_1000=0", "1000 kbit/s of can0", "1,"},
+        WrongLine{"DeviceInfo", "BaudRate_1000", "BaudRate_1000=x", "'x' is no number", "0 or 1"},
+        WrongLine{"DeviceInfo", "NrOfRXPDO", "NrOfRXPDO=0", "no such PDO", "1 or more"},
+        WrongLine{"DeviceInfo", "NrOfTXPDO", "NrOfTXPDO=0", "no such PDO", "1 or more"},
+        WrongLine{"DeviceInfo", "Granularity", "Granularity=0", "cannot be changed", "1 to 16"},
+        WrongLine{"DeviceInfo", "Granularity", "Granularity=64", "maps no 16 bits", "1 to 16"},
+        WrongLine{"6502", "DefaultValue", "DefaultValue=0xA5", "mode 9", "bit 8 set"},
+        WrongLine{"1000", "DefaultValue", "DefaultValue=0x191", "401 is another device", "402"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Entries, WrongSheet,
+    testing::Values(
+        WrongLine{"6040", "PDOMapping", "PDOMapping=0", "to RPDO1", "1"},
+        WrongLine{"60FF", "PDOMapping", "PDOMapping=0", "to RPDO1", "1"},
+        WrongLine{"6041", "PDOMapping", "PDOMapping=0", "to TPDO1", "1"},
+        WrongLine{"6064", "PDOMapping", "PDOMapping=0x0", "to TPDO1", "1"},
+        WrongLine{"60FF", "AccessType", "AccessType=ro", "received by a PDO", "rw, rww or wo"},
+        WrongLine{"60FF", "AccessType", "AccessType=rwr", "received by a PDO", "rw, rww or wo"},
+        WrongLine{"6064", "AccessType", "AccessType=wo", "sent by a PDO", "ro, rw or rwr"},
+        WrongLine{"6064", "AccessType", "AccessType=rww", "sent by a PDO", "ro, rw or rwr"},
+        WrongLine{"60FF", "DataType", "DataType=0x0003", "signed 16 bit", "signed type of 32"},
+        WrongLine{"60FF", "DataType", "DataType=0x0007", "unsigned 32 bit", "signed type of 32"},
+        WrongLine{"6064", "DataType", "DataType=0x0015", "signed 64 bit", "signed type of 32"},
+        WrongLine{"6041", "DataType", "DataType=0x0007", "unsigned 32 bit", "a type of 16"},
+        WrongLine{"1600sub0", "AccessType", "AccessType=ro", "cannot be written", "rw"},
+        WrongLine{"1A00sub2", "AccessType", "AccessType=const", "cannot be written", "rw"},
+        WrongLine{"1400sub1", "AccessType", "AccessType=wo", "cannot be read", "ro or rw"},
+        WrongLine{"1400sub1", "AccessType", "AccessType=ro", "cannot be written", "rw"},
+        WrongLine{"605E", "AccessType", "AccessType=ro", "cannot be written", "rw"},
+        WrongLine{"6061", "AccessType", "AccessType=wo", "cannot be read", "ro or rw"},
+        WrongLine{"6060", "HighLimit", "HighLimit=6", "below the 9", "at least 9"},
+        WrongLine{"605A", "LowLimit", "LowLimit=5", "above the 2", "at most 2"},
+        WrongLine{"1017", "HighLimit", "HighLimit=10", "below the 20", "at least 20"},
+        WrongLine{"60C2sub2", "HighLimit", "HighLimit=0xFC", "below the -3", "at least -3"},
+        WrongLine{"60C2sub2", "LowLimit", "LowLimit=-2", "above the -3", "at most -3"}));
+
+TEST(EdsCheck, AcceptsADriveThatFits) {
+  EXPECT_EQ(SheetCase{}.error(test::edsText()), "");
+  std::string windows;
+  for (const char c : test::edsText()) windows += c == '\n' ? "\r\n" : std::string(1, c);
+  EXPECT_EQ(SheetCase{}.error(windows), "");
+}
+
+TEST(EdsCheck, MissesWhatTheSetUpNeedsAndNothingElse) {
+  const std::string eds = test::edsText();
+  const auto errorWithout = [&](const char* section) {
+    return SheetCase{}.error(test::withoutEdsSection(eds, section));
+  };
+  for (const char* const needed : {"1000", "1016", "1017", "1400", "1600", "1800", "1A00", "6040",
+                                   "6041", "605A", "6060", "6061", "6064", "60C2", "60FF"}) {
+    const std::string error = errorWithout(needed);
+    EXPECT_NE(error.find(": " + std::string(needed)), std::string::npos) << needed << error;
+    EXPECT_NE(error.find("the drive does not have it, expected it"), std::string::npos) << error;
+  }
+  for (const char* const optional : {"6007", "605E", "6502", "1018", "1401", "1801", "1005"})
+    EXPECT_EQ(errorWithout(optional), "") << optional;
+  EXPECT_NE(errorWithout("DeviceInfo").find("the section is missing"), std::string::npos);
+}
+
+TEST(EdsCheck, LeavesOutWhatTheProfileLeavesOut) {
+  SheetCase sheet;
+  sheet.drive.has_quick_stop_option = false;
+  EXPECT_EQ(sheet.error(test::withoutEdsSection(test::edsText(), "605A")), "");
+}
+
+TEST(EdsCheck, LooksAtBitRateAndCycleOfThisRobot) {
+  SheetCase sheet;
+  sheet.bus.bit_rate_per_s = 5e5;
+  EXPECT_EQ(sheet.error(test::edsText()), "");
+  sheet.bus.bit_rate_per_s = 8e5;
+  EXPECT_NE(sheet.error(test::edsText()).find("800 kbit/s of can0"), std::string::npos);
+  sheet.bus.bit_rate_per_s = 9e5;
+  EXPECT_NE(sheet.error(test::edsText()).find("no drive has the 900000 bit/s"), std::string::npos);
+  sheet.bus.bit_rate_per_s = 1e6;
+  const std::string only_1_ms =
+      test::withEdsLine(test::edsText(), "60C2sub1", "PDOMapping", "LowLimit=1\nHighLimit=1");
+  EXPECT_EQ(sheet.error(only_1_ms), "");
+  sheet.period_s = 0.002;
+  EXPECT_NE(sheet.error(only_1_ms).find("60C2sub1.HighLimit: is below the 2 needed"),
+            std::string::npos);
+}
+
+TEST(EdsCheck, AsksForNoMoreThanTheSheetSays) {
+  std::string eds = test::edsText();
+  eds = test::withEdsLine(eds, "6502", "DefaultValue", "DefaultValue=");
+  eds = test::withEdsLine(eds, "1000", "DefaultValue", "DefaultValue=0");
+  eds = test::withEdsLine(eds, "6060", "HighLimit", "HighLimit=");
+  eds = test::withEdsLine(eds, "605A", "HighLimit", "HighLimit=$NODEID+1");
+  eds = test::withEdsLine(eds, "1400sub5", "AccessType", "AccessType=ro");
+  EXPECT_EQ(SheetCase{}.error(eds), "");
+}
+
+}  // namespace
+}  // namespace tactus
