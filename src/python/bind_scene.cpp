@@ -19,6 +19,22 @@ Scene load(const std::string& path, const std::vector<std::string>& settings) {
   return loadScene(path, parseOverrides(settings), SceneUse::kSimulation);
 }
 
+/// From files as sources() gives them: nothing is read, so that a study has one state of them.
+Scene loadSources(const std::vector<std::pair<std::string, std::string>>& files,
+                  const std::vector<std::string>& settings) {
+  if (files.empty()) throw py::value_error("no file, expected at least a scene");
+  std::vector<SourceFile> sources;
+  for (const auto& [path, text] : files) sources.push_back({path, text});
+  return loadScene(sources, parseOverrides(settings), SceneUse::kSimulation);
+}
+
+py::list sources(const Scene& scene) {
+  py::list list;
+  for (const SourceFile& file : scene.sources)
+    list.append(py::make_tuple(py::bytes(file.path), py::bytes(file.text)));
+  return list;
+}
+
 /// As for a run on hardware, from the files as they were read.
 std::string check(const Scene& scene) {
   const Scene checked = loadScene(scene.sources, scene.overrides, SceneUse::kHardware);
@@ -58,10 +74,12 @@ std::vector<std::string> files(const Scene& scene) {
 
 void bindScene(py::module_& module) {
   module.def("load_scene", &load, py::arg("path"), py::arg("settings"), WithoutLock());
+  module.def("load_sources", &loadSources, py::arg("files"), py::arg("settings"), WithoutLock());
   classOf<Scene>(module, "Scene", "A scene with everything it names.")
       .def("check", &check, WithoutLock())
       .def("gains", &gains)
       .def("numbers", &numbers)
+      .def("sources", &sources)
       .def("files", [](const Scene& scene) { return texts(files(scene)); })
       .def_property_readonly("name", [](const Scene& scene) { return textOf(scene.name); })
       .def_property_readonly("robot", [](const Scene& scene) { return textOf(scene.robot_name); })
