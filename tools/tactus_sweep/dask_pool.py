@@ -2,6 +2,7 @@
 
 import logging
 import time
+from concurrent.futures import CancelledError
 
 import distributed
 from tactus._sweep import OtherVersion, run_batch
@@ -20,11 +21,12 @@ class DaskPool:
     """As Pool."""
 
     def __init__(self, plan, scheduler, identity):
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        for name in ("distributed", "distributed.client"):  # what it says, this says in one line
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
         self.plan, self.identity = plan, identity
         self.batches = {}  # future: runs
         try:
-            self.client = distributed.Client(scheduler, timeout=CONNECT_S, set_as_default=False)
+            self.client = distributed.Client(scheduler, timeout=CONNECT_S)
             self.client.wait_for_workers(1, timeout=WORKERS_S)
         except (OSError, ValueError, TimeoutError, ImportError, distributed.TimeoutError) as error:
             raise PoolError(one_line(f"{scheduler}: no Dask scheduler with a worker ({error}), expected its "
@@ -39,6 +41,12 @@ class DaskPool:
                 raise other_version(f"worker {worker}", is_identity(answer) or first_line(answer), self.identity)
 
     def rows(self, pending):
+        try:
+            yield from self.batches_of(pending)
+        except (OSError, CancelledError, distributed.TimeoutError) as error:
+            raise lost() from error
+
+    def batches_of(self, pending):
         waiting = list(reversed(pending))
         begin, done, total = time.monotonic(), 0, len(waiting)
         size = 1
@@ -67,8 +75,7 @@ class DaskPool:
         if future.status == "finished":
             return future.result()
         if future.status != "error":
-            raise PoolError("the Dask scheduler is lost; the runs before are kept, and the same command goes on",
-                            3)
+            raise lost()
         error = future.exception()
         if isinstance(error, OtherVersion):
             raise other_version("a worker", str(error), self.identity)
@@ -80,9 +87,15 @@ class DaskPool:
         return [{"run": numbers[0], "outcome": "failed", "reason": reason}]
 
     def close(self):
-        for future in self.batches:
-            future.cancel()
-        self.client.close()
+        try:
+            self.client.cancel(list(self.batches))
+            self.client.close()
+        except (OSError, CancelledError, distributed.TimeoutError):
+            pass  # without a scheduler there is nothing to cancel
+
+
+def lost():
+    return PoolError("the Dask scheduler is lost; the runs before are kept, and the same command goes on", 3)
 
 
 def is_identity(answer):

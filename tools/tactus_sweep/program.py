@@ -36,7 +36,7 @@ def run_program(arguments):
     except (results.ResultsError, PoolError) as error:
         return refuse(error, error.exit_code, arguments)
     except OSError as error:
-        return refuse(f"{error.filename or arguments.output}: {error.strerror}", FAULT, arguments)
+        return refuse(f"{error.filename or arguments.output}: {error.strerror or error}", FAULT, arguments)
     except Stopped as stopped:
         return refuse(f"{stopped}: stopped; the runs so far are kept, and the same command goes on", FAULT,
                       arguments)
