@@ -87,7 +87,7 @@ class Interrupted(Sweeps):
         """Twice, each time after some runs more; the results are there before the table is."""
         begun = 0
         for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
-            sweep = subprocess.Popen(self.command(self.folder / "study.yaml", self.out, "-j", 2),
+            sweep = subprocess.Popen(self.command(self.folder / "study.yaml", self.out, "-j", 1),
                                      stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
             self.wait_for_lines(begun + 10)
             sweep.send_signal(number)
@@ -101,10 +101,10 @@ class Interrupted(Sweeps):
         self.finish()
 
     def wait_for_lines(self, count):
-        for _ in range(1200):
+        for _ in range(6000):
             if self.file_.exists() and self.file_.read_bytes().count(b"\n") >= min(count, RUNS + 1):
                 return
-            time.sleep(0.05)
+            time.sleep(0.01)
         self.fail("no run is done in a minute")
 
     def test_by_the_death_of_a_worker(self):

@@ -6,17 +6,19 @@ usage: sweep_test.py FOLDER TACTUS"""
 import html
 import json
 import math
+import pathlib
 import re
 import shlex
 import subprocess
+import tempfile
 import unittest
 
 import numpy as np
-from common import TACTUS
+from common import ROOT, TACTUS
 from scipy import stats
 from sweep_common import RUNS, SCENE, Sweeps, rows_of, runs_in, table_of
 
-from tactus_sweep import judge, progress
+from tactus_sweep import judge, progress, scenes, study
 
 
 class Results(Sweeps):
@@ -165,6 +167,26 @@ class BadStudies(Sweeps):
         for arguments in ((), ("-o", "out", "-j", "0"), ("-o", "out", "--nonsense")):
             done = subprocess.run([TACTUS, "sweep", self.study(), *arguments], capture_output=True, cwd=self.folder)
             self.assertEqual(done.returncode, 2)
+
+
+class Shipped(unittest.TestCase):
+    """Studies that come along, and the one of the document: no key is wrong."""
+
+    def test_are_right(self):
+        text = (ROOT / "docs/sweeps.md").read_text()
+        [shown] = re.findall(r"```yaml\n(# my_study.yaml\n.*?)```", text, re.S)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "my_study.yaml"
+            path.write_text(shown.replace("config/", f"{ROOT}/config/"))
+            plans = [self.plan(path), *map(self.plan, sorted((ROOT / "config/studies").glob("*.yaml")))]
+        self.assertGreater(len(plans), 1)
+        self.assertIn(f"This one has {plans[0].runs:,}.".replace(",", " "), text)
+
+    def plan(self, path):
+        read = study.read_study(path)
+        plan = study.make_plan(read, scenes.load_files(read))
+        scenes.check_keys(read, plan)
+        return plan
 
 
 class Judgement(unittest.TestCase):

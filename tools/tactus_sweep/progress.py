@@ -4,7 +4,7 @@ import math
 import sys
 import time
 
-ON_TERMINAL_S, IN_FILE_S = 0.2, 10.0
+ON_TERMINAL_S, IN_FILE_S = 0.2, 60.0
 SILENT_S = 2.0
 
 

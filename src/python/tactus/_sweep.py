@@ -7,6 +7,7 @@ its first one says which tactus it is.
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import os
@@ -85,6 +86,7 @@ def as_bytes(text: str) -> bytes:
     return text.encode("utf-8", "surrogateescape")
 
 
+@functools.cache
 def identity() -> dict[str, str]:
     """Of this tactus: two that differ need not compute the same."""
     build = hashlib.sha256(Path(_core.__file__).read_bytes()).hexdigest()[:16]
