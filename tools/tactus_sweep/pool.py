@@ -13,6 +13,7 @@ import tactus
 BATCH_S = 0.25  # of one worker: short enough to show progress, long enough to cost nothing
 MAX_BATCH = 500  # a pipe takes this many numbers, even when nobody reads
 BATCHES_AHEAD = 2
+GATHER_S = 0.02  # for rows that come one by one are a tenth of what short runs take
 DEATHS = 2  # a run that ends its worker that often has failed
 
 
@@ -92,6 +93,8 @@ class Pool:
             for worker in self.workers:
                 self.feed(worker, waiting)
             rows = []
+            self.selector.select()
+            time.sleep(GATHER_S)
             for key, _ in self.selector.select():
                 rows += self.serve(key.data, waiting)
             done += len(rows)
@@ -119,7 +122,7 @@ class Pool:
         self.forget(worker)
         worker.end()
         if worker.identity is None:
-            raise PoolError("a worker process does not start, expected what the lines before name", 3)
+            raise PoolError("a worker process ends before its first run; its own lines above say why", 3)
         left = [run for batch in worker.batches for run in batch]
         failed = []
         if left:

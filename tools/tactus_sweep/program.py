@@ -102,6 +102,7 @@ def answer_of(plan, rows, run_now, folder):
     outcomes = [row["outcome"] for row in rows]
     return {"done": True, "runs": plan.runs, "run_now": run_now, "completed": outcomes.count("completed"),
             "refused": outcomes.count("refused"), "failed": outcomes.count("failed"),
+            "faults": sum(outcome not in ("completed", "refused", "failed") for outcome in outcomes),
             "within_limits": sum(row["is_within"] for row in rows),
             "best": {"is_fit": best.is_fit, "run": best.worst["run"], "set": plan.settings(best.worst["run"]),
                      judge.FORCE: known(best.force_N), judge.ERROR: known(best.error_m),
@@ -116,7 +117,8 @@ def known(value):
 def text_of(answer):
     best = answer["best"]
     lines = [f"{answer['runs']} runs, {answer['run_now']} of them now: {answer['completed']} completed, "
-             f"{answer['within_limits']} within the limits, {answer['refused']} refused, {answer['failed']} failed"]
+             f"{answer['within_limits']} within the limits, {answer['faults']} with a fault, {answer['refused']} refused, "
+             f"{answer['failed']} failed"]
     if best["objective"] is not None:
         lines.append(f"best: {', '.join(best['set'])}" + ("" if best["is_fit"] else " (not within the limits)"))
     return "\n".join([*lines, f"table: {answer['table']}", f"report: {answer['report']}"])
