@@ -7,6 +7,7 @@ import html
 import json
 import math
 import pathlib
+import random
 import re
 import shlex
 import subprocess
@@ -14,7 +15,7 @@ import tempfile
 import unittest
 
 import numpy as np
-from common import ROOT, TACTUS
+from common import ROOT, SCENES, TACTUS, tactus
 from scipy import stats
 from sweep_common import RUNS, SCENE, Sweeps, rows_of, runs_in, table_of
 
@@ -112,6 +113,41 @@ if "-m" in sys.orig_argv and "tactus._sweep" in sys.orig_argv:
                          (True, 4, 4, 4))
         answer = json.loads(self.sweep(study, self.folder / "out", "--json").stdout)
         self.assertEqual((answer["runs"], answer["run_now"]), (4, 0))
+
+
+class Scenes(unittest.TestCase):
+    """Of files that are parsed once."""
+
+    SETTINGS = ({}, {"controller.damping": "0.9"}, {"controller.nonsense": "1"},
+                {"robot.tactile_modules[0].max_force_N": "50", "simulation.drive_lag_s": "0.01"},
+                {"robot.nonsense": "1"}, {"simulation.obstacles[0].x_m": "0.7", "task.drift_gain_per_s": "2"},
+                {"controller.variant": "none"}, {"controller.damping": "-1"}, {"simulation.duration_s": "3"})
+
+    def test_are_those_of_loading_whatever_was_loaded_before(self):
+        chance = random.Random(7)
+        for name in ("scenario1_tactus", "whole_arm/crops9_skin_two_links", "robots/planar2_contact"):
+            path = SCENES / f"{name}.yaml"
+            files = tactus.Scene(path)._core.sources()
+            parsed = tactus._core.study_scene(files)
+            for settings in chance.choices(self.SETTINGS, k=30):
+                texts = [f"{key}={value}".encode() for key, value in settings.items()]
+                with self.subTest(scene=name, settings=settings):
+                    self.assertEqual(self.outcome(lambda: parsed.load(texts)),
+                                     self.outcome(lambda: tactus.Scene(path, set=settings)._core))
+
+    def outcome(self, load):
+        try:
+            scene = load()
+            return scene.numbers(), scene.gains(), scene.files(), scene.sources()
+        except tactus.ConfigError as error:
+            return str(error), error.line, error.key
+
+    def test_give_the_figures_of_the_module(self):
+        run = tactus.simulate(tactus.Scene(SCENE))
+        figures = json.loads(tactus._core.figures(run.scene._core))
+        for summary in (figures, run.summary):
+            del summary["step_time_ns"], summary["real_time_factor"]
+        self.assertEqual(figures, run.summary)
 
 
 class BadStudies(Sweeps):

@@ -4,7 +4,7 @@ import pathlib
 
 import tactus
 from tactus import _core
-from tactus._sweep import as_bytes
+from tactus._sweep import as_bytes, load
 
 from .study_text import StudyError, one_line
 
@@ -41,7 +41,7 @@ def try_setting(files, settings, setting, places, scene):
     key = setting.split("=")[0]
     others = [other for other in settings if other.split("=")[0] != key]
     try:
-        _core.load_sources(files, [as_bytes(text) for text in (*others, setting)])
+        load(files, [*others, setting])
     except tactus.ConfigError as error:
         mark = f"--set {key}"
         if error.file != mark:

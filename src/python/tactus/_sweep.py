@@ -93,11 +93,20 @@ def identity() -> dict[str, str]:
     return {"version": _core.VERSION, "build": build}
 
 
+def load(files: Files, settings: list[str]) -> _core.Scene:
+    return _parsed(tuple(files)).load([as_bytes(setting) for setting in settings])
+
+
+@functools.lru_cache(maxsize=64)
+def _parsed(files: tuple[tuple[bytes, bytes], ...]) -> _core.StudyScene:
+    """Parsing takes most of the time of loading, and more than a short run."""
+    return _core.study_scene(files)
+
+
 def run(files: Files, settings: list[str]) -> Row:
     """Outcome and figures; what goes wrong is an outcome, too."""
     try:
-        scene = _core.load_sources(files, [as_bytes(setting) for setting in settings])
-        summary = json.loads(_core.figures(scene))
+        summary = json.loads(_core.figures(load(files, settings)))
     except ConfigError as error:
         return {"outcome": "refused", "reason": str(error)}
     except Exception as error:  # whatever it is, the other runs go on
