@@ -82,6 +82,7 @@ int tactusProgram(int argc, char** argv) {
   addPlantCommand(app, exit_code);
   addCommissionCommand(app, exit_code);
   addBenchCommand(app, exit_code);
+  addSweepCommand(app, exit_code);
   addKeysCommand(app, exit_code);
   addDoctorCommand(app, exit_code);
   addStatusCommand(app, exit_code);

@@ -50,6 +50,15 @@ py::tuple simulateScene(const Scene& scene) {
   return py::make_tuple(std::move(columns), textOf(summary));
 }
 
+/// The summary as JSON, of a run that keeps no cycle: a third less time.
+std::string runFigures(const Scene& scene) {
+  long long cycles = 0;
+  const SimulationResult result = simulate(scene, [&](const CycleRecord&) {
+    if (++cycles % kCyclesBetweenLooks == 0) lookForSignals();
+  });
+  return jsonText(summaryJson(scene, result.figures, result.real_time_factor));
+}
+
 template <typename Value>
 py::dict dictOf(const std::vector<std::pair<std::string, Value>>& pairs) {
   py::dict dict;
@@ -102,6 +111,7 @@ py::tuple names(std::size_t count, const char* (*name)(Enum)) {
 
 void bindRuns(py::module_& module) {
   module.def("simulate", &simulateScene, py::arg("scene"));
+  module.def("figures", &runFigures, py::arg("scene"), WithoutLock());
   module.def("read_log", &readLog, py::arg("path"));
   module.def("replay", &replay, py::arg("logs"), py::arg("settings"), WithoutLock());
   module.def("contacts", &contacts, py::arg("path"), WithoutLock());

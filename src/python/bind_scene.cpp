@@ -1,6 +1,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "tactus/python/bindings.h"
@@ -8,6 +10,7 @@
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/gain_keys.h"
 #include "tactus/scene/key_words.h"
+#include "tactus/scene/parsed_scene.h"
 #include "tactus/scene/scene_loader.h"
 
 namespace py = pybind11;
@@ -17,6 +20,36 @@ namespace {
 
 Scene load(const std::string& path, const std::vector<std::string>& settings) {
   return loadScene(path, parseOverrides(settings), SceneUse::kSimulation);
+}
+
+/// Of a study: from files as sources() gives them, so that a study has one state of them.
+class StudyScene {
+ public:
+  explicit StudyScene(std::vector<SourceFile> files) : files_(std::move(files)) {}
+
+  Scene load(const std::vector<std::string>& settings) {
+    const std::lock_guard lock(mutex_);
+    return files_.load(parseOverrides(settings), SceneUse::kSimulation);
+  }
+
+ private:
+  ParsedScene files_;
+  std::mutex mutex_;
+};
+
+std::unique_ptr<StudyScene> studyScene(
+    const std::vector<std::pair<std::string, std::string>>& files) {
+  if (files.empty()) throw py::value_error("no file, expected at least a scene");
+  std::vector<SourceFile> sources;
+  for (const auto& [path, text] : files) sources.push_back({path, text});
+  return std::make_unique<StudyScene>(std::move(sources));
+}
+
+py::list sources(const Scene& scene) {
+  py::list list;
+  for (const SourceFile& file : scene.sources)
+    list.append(py::make_tuple(py::bytes(file.path), py::bytes(file.text)));
+  return list;
 }
 
 /// As for a run on hardware, from the files as they were read.
@@ -58,10 +91,14 @@ std::vector<std::string> files(const Scene& scene) {
 
 void bindScene(py::module_& module) {
   module.def("load_scene", &load, py::arg("path"), py::arg("settings"), WithoutLock());
+  module.def("study_scene", &studyScene, py::arg("files"));
+  classOf<StudyScene>(module, "StudyScene", "The files of a scene, for many scenes of them.")
+      .def("load", &StudyScene::load, py::arg("settings"), WithoutLock());
   classOf<Scene>(module, "Scene", "A scene with everything it names.")
       .def("check", &check, WithoutLock())
       .def("gains", &gains)
       .def("numbers", &numbers)
+      .def("sources", &sources)
       .def("files", [](const Scene& scene) { return texts(files(scene)); })
       .def_property_readonly("name", [](const Scene& scene) { return textOf(scene.name); })
       .def_property_readonly("robot", [](const Scene& scene) { return textOf(scene.robot_name); })

@@ -55,7 +55,7 @@ std::string SceneSettings::resolve(const std::string& named_in, std::string_view
 
 LoadedRobot loadRobot(const SourceFile& file, const SceneSettings& settings, SourceReader& reader,
                       NamedNumbers& numbers) {
-  YamlNode root = parseYaml(file);
+  YamlNode root = reader.parse(file);
   for (const Override& setting : settings.overrides) {
     if (!setting.key.starts_with(kRobotPrefix)) continue;
     const std::string_view path = std::string_view(setting.key).substr(kRobotPrefix.size());

@@ -15,6 +15,7 @@
 #include "tactus/scene/hardware_loader.h"
 #include "tactus/scene/key_words.h"
 #include "tactus/scene/link_errors.h"
+#include "tactus/scene/parsed_scene.h"
 #include "tactus/scene/robot_loader.h"
 #include "tactus/scene/scene_checks.h"
 #include "tactus/scene/source_reader.h"
@@ -27,7 +28,7 @@ constexpr std::size_t kMaxExtends = 8;
 
 /// Reads a scene file and lays it over the one it extends. `above` are the files that led here.
 YamlNode readScene(const SourceFile& file, SourceReader& reader, std::vector<std::string> above) {
-  YamlNode scene = parseYaml(file);
+  YamlNode scene = reader.parse(file);
   const auto extends = std::ranges::find(scene.entries, "extends", &YamlEntry::key);
   if (extends == scene.entries.end() || extends->value.kind == YamlNode::Kind::kNull) return scene;
   const YamlNode& base = extends->value;
@@ -186,8 +187,8 @@ std::string sceneName(const std::string& path) {
 }
 
 Scene loadNamed(const std::string& path, const std::vector<Override>& overrides, SceneUse use,
-                FileProvider provider) {
-  SourceReader reader(std::move(provider));
+                FileProvider provider, YamlTrees* parsed) {
+  SourceReader reader(std::move(provider), parsed);
   YamlNode root = readScene(reader.readFirst(path), reader, {});
   applyOverrides(root, overrides);
   NamedNumbers numbers;
@@ -237,9 +238,9 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
 
 /// An error in another file says which scene led there.
 Scene load(const std::string& path, const std::vector<Override>& overrides, SceneUse use,
-           FileProvider provider) {
+           FileProvider provider, YamlTrees* parsed = nullptr) {
   try {
-    return loadNamed(path, overrides, use, std::move(provider));
+    return loadNamed(path, overrides, use, std::move(provider), parsed);
   } catch (const InputError& error) {
     const std::string_view text = error.what();
     const std::string scene = escaped(path);
@@ -263,6 +264,13 @@ Scene loadScene(const std::string& path, const std::vector<Override>& overrides,
 Scene loadScene(const std::vector<SourceFile>& files, const std::vector<Override>& overrides,
                 SceneUse use) {
   return load(files.empty() ? "-" : files.front().path, overrides, use, provideFrom(files));
+}
+
+ParsedScene::ParsedScene(std::vector<SourceFile> files) : files_(std::move(files)) {}
+
+Scene ParsedScene::load(const std::vector<Override>& overrides, SceneUse use) {
+  return tactus::load(files_.empty() ? "-" : files_.front().path, overrides, use,
+                      provideFrom(files_), &trees_);
 }
 
 Override parseOverride(std::string_view text) {

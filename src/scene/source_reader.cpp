@@ -115,6 +115,13 @@ SourceFile SourceReader::take(const std::string& path, std::string_view key,
   }
 }
 
+YamlNode SourceReader::parse(const SourceFile& file) {
+  if (!parsed_) return parseYaml(file);
+  const auto found = parsed_->find(file.path);
+  if (found != parsed_->end()) return found->second;
+  return parsed_->emplace(file.path, parseYaml(file)).first->second;
+}
+
 std::string resolvePath(const std::string& from, const std::string& reference) {
   return (fs::path(from).parent_path() / reference).lexically_normal().string();
 }

@@ -23,6 +23,7 @@ void addReplayCommand(CLI::App& app, int& exit_code);
 void addPlantCommand(CLI::App& app, int& exit_code);
 void addCommissionCommand(CLI::App& app, int& exit_code);
 void addBenchCommand(CLI::App& app, int& exit_code);
+void addSweepCommand(CLI::App& app, int& exit_code);
 void addKeysCommand(CLI::App& app, int& exit_code);
 void addDoctorCommand(CLI::App& app, int& exit_code);
 void addStatusCommand(CLI::App& app, int& exit_code);

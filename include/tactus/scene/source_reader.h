@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -8,6 +9,7 @@
 
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/scene.h"
+#include "tactus/scene/yaml_tree.h"
 
 namespace tactus {
 
@@ -32,10 +34,15 @@ std::string readFromDisk(const std::string& path);
 /// The files of a log. Throws FileProblem for any other path.
 FileProvider provideFrom(const std::vector<SourceFile>& files);
 
+/// What was parsed of files, by their paths.
+using YamlTrees = std::map<std::string, YamlNode>;
+
 /// Reads text files and keeps every one, in the order they were asked for.
 class SourceReader {
  public:
-  explicit SourceReader(FileProvider provider) : provider_(std::move(provider)) {}
+  /// `parsed`, if any, has trees of these very files, and takes those that it has not yet.
+  explicit SourceReader(FileProvider provider, YamlTrees* parsed = nullptr)
+      : provider_(std::move(provider)), parsed_(parsed) {}
 
   /// The scene, which only the command line names. Throws InputError at its first line, or at the
   /// first byte that is no UTF-8 text.
@@ -49,6 +56,9 @@ class SourceReader {
   SourceFile readLatin(const std::string& path, std::string_view key,
                        const SourcePosition& named_at);
 
+  /// As parseYaml().
+  YamlNode parse(const SourceFile& file);
+
   const std::vector<SourceFile>& files() const { return files_; }
 
  private:
@@ -56,6 +66,7 @@ class SourceReader {
                   bool may_be_latin);
 
   FileProvider provider_;
+  YamlTrees* parsed_;
   std::vector<SourceFile> files_;
 };
 

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""A study on a Dask cluster: a scheduler and workers that are processes of their own. Ends with 4 where
+distributed is not installed.
+
+usage: sweep_dask_test.py FOLDER TACTUS"""
+
+import importlib.util
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from common import FOLDER
+from sweep_common import RUNS, STUDY, Sweeps, runs_in, table_of
+
+NO_DASK = 4
+ON_WORKER = ["--nthreads", "1", "--no-dashboard", "--no-nanny", "--death-timeout", "30"]
+
+
+class Cluster(Sweeps):
+    def setUp(self):
+        super().setUp()
+        self.address = self.folder / "scheduler.json"
+        self.processes = []
+        self.addCleanup(self.end)
+        self.dask("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file",
+                  self.address)
+        self.wait(lambda: self.address.exists() and self.address.read_text().endswith("}"))
+        self.scheduler = self.address.read_text().split('"address": "')[1].split('"')[0]
+
+    def dask(self, kind, *arguments, module=FOLDER):
+        with open(self.folder / f"{kind}.txt", "ab") as said:
+            process = subprocess.Popen(
+                ["/usr/bin/python3", "-m", f"distributed.cli.dask_{kind}", *map(str, arguments)], stderr=said,
+                stdout=said, cwd=self.folder, env=os.environ | {"PYTHONPATH": str(module or "/nowhere")})
+        self.processes.append(process)
+        return process
+
+    def worker(self, name, module=FOLDER):
+        return self.dask("worker", self.scheduler, "--name", name, "--local-directory", self.folder / name,
+                         *ON_WORKER, module=module)
+
+    def end(self):
+        for process in self.processes:
+            process.kill()
+            process.wait()
+
+    def wait(self, is_there):
+        for _ in range(1200):
+            if is_there():
+                return
+            time.sleep(0.05)
+        self.fail("it did not come in a minute")
+
+    def done(self):
+        path = self.folder / "out/results.jsonl"
+        return path.read_bytes().count(b"\n") - 1 if path.exists() else 0
+
+    def test_has_the_table_of_one_machine_though_a_worker_dies(self):
+        runs = 4 * RUNS  # so that some are left when the worker dies
+        study = self.study(STUDY.replace("points: 5", "points: 20"))
+        whole = self.whole("whole", "-j", 2, study=study)
+        first, _ = self.worker("first"), self.worker("second")
+        sweep = subprocess.Popen(self.command(study, self.folder / "out", "--scheduler", self.scheduler), stderr=subprocess.PIPE, text=True,
+                                 stdout=subprocess.PIPE)
+        self.wait(lambda: self.done() >= 5)
+        self.assertIsNone(sweep.poll())
+        self.assertLess(self.done(), runs)
+        first.send_signal(signal.SIGKILL)
+        said, errors = sweep.communicate(timeout=120)
+        self.assertEqual((sweep.returncode, errors), (0, ""), said)
+        self.assertEqual(sorted(runs_in(self.folder / "out")), list(range(runs)))
+        self.assertEqual(table_of(self.folder / "out"), table_of(whole))
+
+    def test_refuses_workers_with_another_tactus(self):
+        other = self.folder / "other"
+        shutil.copytree(FOLDER, other)
+        [core] = (other / "tactus").glob("_core.*.so")
+        core.write_bytes(core.read_bytes() + b"\0")  # the same to the loader, not to whoever compares
+        for name, module, expected in (("of_another_build", other, "tactus .*, build .*"),
+                                       ("with_none", None, ".*No module named 'tactus.*")):
+            with self.subTest(name=name):
+                worker = self.worker(name, module)
+                done = self.sweep(self.study(), self.folder / "out", "--scheduler", self.scheduler)
+                self.assertEqual((done.returncode, done.stdout, self.done()), (1, "", 0), done.stderr)
+                self.assertRegex(done.stderr, rf"\Aworker tcp://[\d.:]+ is refused: {expected}, expected tactus "
+                                              r"[\d.]+, build \w+\n\Z")
+                worker.kill()
+                worker.wait()
+
+    def test_says_where_there_is_no_scheduler(self):
+        self.end()
+        done = self.sweep(self.study(), self.folder / "out", "--scheduler", self.scheduler)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, rf"\A{self.scheduler}: no Dask scheduler with a worker .*\n\Z")
+
+
+if __name__ == "__main__":
+    if importlib.util.find_spec("distributed") is None:
+        print("distributed is not installed: apt-get install python3-distributed")
+        sys.exit(NO_DASK)
+    unittest.main()

@@ -1,0 +1,267 @@
+#!/usr/bin/env python3
+"""`tactus sweep`: what a study leaves, whoever computes it, and what it says of studies that are wrong.
+
+usage: sweep_test.py FOLDER TACTUS"""
+
+import html
+import json
+import math
+import pathlib
+import random
+import re
+import shlex
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+from common import ROOT, SCENES, TACTUS, tactus
+from scipy import stats
+from sweep_common import RUNS, SCENE, Sweeps, rows_of, runs_in, table_of
+
+from tactus_sweep import judge, progress, scenes, study
+
+
+class Results(Sweeps):
+    def test_are_the_same_bytes_for_any_number_of_workers(self):
+        one, three = self.whole("one", "-j", 1), self.whole("three", "-j", 3)
+        self.assertEqual(table_of(one), table_of(three))
+        self.assertEqual((one / "report.html").read_bytes(), (three / "report.html").read_bytes())
+        self.assertEqual([int(row["run"]) for row in rows_of(one)], list(range(RUNS)))
+        self.assertEqual(sorted(runs_in(three)), list(range(RUNS)))
+        self.expect_all_kinds(rows_of(one))
+        self.expect_front(one)
+        self.expect_reruns(one)
+
+    def expect_all_kinds(self, rows):
+        outcomes = {row["outcome"] for row in rows}
+        self.assertIn("refused", outcomes)
+        self.assertIn("completed", outcomes)
+        self.assertEqual(len(outcomes), 3, outcomes)  # and a fault
+        for row in rows:
+            early = float(row["simulation.obstacles[0].vanishes_s"]) < float(
+                row["simulation.obstacles[0].appears_s"])
+            self.assertEqual(row["outcome"] == "refused", early)
+            self.assertEqual(row["reason"] == "", row["outcome"] == "completed")
+            if row["outcome"] == "refused":
+                self.assertIn("vanishes_s: 3.6 s is too early, expected more than appears_s = 4", row["reason"])
+            if row["outcome"] == "completed":
+                is_within = float(row["peak_force_N"]) <= 1.38
+                self.assertEqual((row["is_within"], row["objective"]),
+                                 (str(int(is_within)), row["peak_force_N"]))
+
+    def expect_front(self, folder):
+        """By comparing each with each."""
+        groups = {}
+        for row in rows_of(folder):
+            key = tuple(row[key] for key in ("simulation.obstacles[0].appears_s", "controller.damping",
+                                             "simulation.obstacles[0].vanishes_s"))
+            known = [float(row[name] or "inf") if row["outcome"] == "completed" else math.inf
+                     for name in ("peak_force_N", "tcp_error_max_m")]
+            groups.setdefault(key, []).append(known)
+        worst = {key: tuple(map(max, zip(*values))) for key, values in groups.items()}
+        front = {key for key, (force, error) in worst.items() if math.isfinite(force) and not any(
+            f <= force and e <= error and (f, e) != (force, error) for f, e in worst.values())}
+        page = (folder / "report.html").read_text()
+        part = page[page.index('<table class="front">'):]
+        names = re.findall(r'<th scope="row">(.*?)</th>', part[:part.index("</table>")])
+        shown = {tuple(dict(setting.split("=") for setting in html.unescape(name).split(", "))[key]
+                       for key in ("simulation.obstacles[0].appears_s", "controller.damping",
+                                   "simulation.obstacles[0].vanishes_s")) for name in names}
+        self.assertEqual(shown, front)
+
+    def expect_reruns(self, folder):
+        """The line of the worst run gives its figures."""
+        page = html.unescape((folder / "report.html").read_text()).replace("\xa0", " ")
+        part = page[page.index('<table class="worst">'):]
+        run = re.search(r'<th scope="row">(\d+)</th>', part)[1]
+        words = shlex.split(re.search(r"tactus simulate [^<]*", part)[0])
+        done = subprocess.run([TACTUS, *words[1:]], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = json.loads((self.folder / f"runs/study/run_{run}/summary.json").read_text())
+        row = rows_of(folder)[int(run)]
+        for name in ("peak_force_N", "tcp_error_max_m", "tcp_error_rms_m"):
+            self.assertEqual(float(row[name]), summary[name])
+
+    def test_of_a_worker_that_dies_are_a_row(self):
+        """Each worker that meets a trap in its tactus ends as if it had crashed."""
+        trap = self.file("sitecustomize.py", """
+import os, sys
+if "-m" in sys.orig_argv and "tactus._sweep" in sys.orig_argv:
+    import tactus._core
+    figures = tactus._core.figures
+    def trapped(scene):
+        if scene.numbers()["controller.damping"] == 0.625:
+            os._exit(7)
+        return figures(scene)
+    tactus._core.figures = trapped
+""")
+        study = self.study(f"scenes: [{SCENE}]\nset: {{simulation.duration_s: 0.1}}\n"
+                           "grid: {controller.damping: [0.5, 0.625, 0.75, 1]}\n")
+        folder = self.folder / "trapped"
+        done = self.sweep(study, folder, "-j", 2, env={"PYTHONPATH": str(trap.parent), "PATH": "/usr/bin"})
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual([row["outcome"] for row in rows_of(folder)],
+                         ["completed", "failed", "completed", "completed"])
+        self.assertEqual(rows_of(folder)[1]["reason"], "its worker ended with 7, 2 times")
+
+    def test_as_json(self):
+        study = self.study(f"scenes: [{SCENE}]\nset: {{simulation.duration_s: 0.1}}\n"
+                           "sobol: {points: 4, keys: {controller.damping: {from: 0.5, to: 1}}}\n")
+        answer = json.loads(self.sweep(study, self.folder / "out", "--json").stdout)
+        self.assertEqual((answer["done"], answer["runs"], answer["run_now"], answer["completed"]),
+                         (True, 4, 4, 4))
+        answer = json.loads(self.sweep(study, self.folder / "out", "--json").stdout)
+        self.assertEqual((answer["runs"], answer["run_now"]), (4, 0))
+
+
+class Scenes(unittest.TestCase):
+    """Of files that are parsed once."""
+
+    SETTINGS = ({}, {"controller.damping": "0.9"}, {"controller.nonsense": "1"},
+                {"robot.tactile_modules[0].max_force_N": "50", "simulation.drive_lag_s": "0.01"},
+                {"robot.nonsense": "1"}, {"simulation.obstacles[0].x_m": "0.7", "task.drift_gain_per_s": "2"},
+                {"controller.variant": "none"}, {"controller.damping": "-1"}, {"simulation.duration_s": "3"})
+
+    def test_are_those_of_loading_whatever_was_loaded_before(self):
+        chance = random.Random(7)
+        for name in ("scenario1_tactus", "whole_arm/crops9_skin_two_links", "robots/planar2_contact"):
+            path = SCENES / f"{name}.yaml"
+            files = tactus.Scene(path)._core.sources()
+            parsed = tactus._core.study_scene(files)
+            for settings in chance.choices(self.SETTINGS, k=30):
+                texts = [f"{key}={value}".encode() for key, value in settings.items()]
+                with self.subTest(scene=name, settings=settings):
+                    self.assertEqual(self.outcome(lambda: parsed.load(texts)),
+                                     self.outcome(lambda: tactus.Scene(path, set=settings)._core))
+
+    def outcome(self, load):
+        try:
+            scene = load()
+            return scene.numbers(), scene.gains(), scene.files(), scene.sources()
+        except tactus.ConfigError as error:
+            return str(error), error.line, error.key
+
+    def test_give_the_figures_of_the_module(self):
+        run = tactus.simulate(tactus.Scene(SCENE))
+        figures = json.loads(tactus._core.figures(run.scene._core))
+        for summary in (figures, run.summary):
+            del summary["step_time_ns"], summary["real_time_factor"]
+        self.assertEqual(figures, run.summary)
+
+
+class BadStudies(Sweeps):
+    def refuse(self, text, expected, exit_code=1):
+        study = self.study(text)
+        done = self.sweep(study, self.folder / "out")
+        self.assertEqual((done.returncode, done.stdout), (exit_code, ""), done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertRegex(done.stderr.replace(str(study), "study.yaml"), expected)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_are_refused_with_their_place(self):
+        begin = f"scenes: [{SCENE}]\n"
+        for text, expected in (
+                ("", r"^study.yaml:1:1: -: an empty file, expected a study"),
+                ("[1]", r":1:1: -: a list, expected a section"),
+                ("foo: 1", r":1:1: foo: unknown key, expected one of scenes, "),
+                ("grid: {}", r":1:1: -: without scenes, "),
+                ("scenes: []", r":1:9: scenes: an empty list, "),
+                ("scenes: [gone.yaml]", r":1:10: scenes\[0\]: 'gone.yaml' is no file, "),
+                ("scenes: [a\x07b]", r"^study.yaml:1:\d+: .*expected YAML"),
+                ("scenes: &a [b]\nset: *a", r":2:6: -: an alias, "),
+                (begin + begin, r":2:1: scenes: is there twice, "),
+                (begin + "grid: {controller.damping: [0.5", r"expected YAML"),
+                (begin + "grid: {controller.damping: []}", r":2:28: grid.controller.damping: an empty list, "),
+                (begin + "grid: {controller.damping: [1, 1]}", r"'1' is there twice"),
+                (begin + "grid: {controller.dampin: [1]}", r":2:8: controller.dampin: unknown key, .*'damping'"),
+                (begin + "grid:\n  controller.damping: [1, -2]", r":3:3: controller.damping: '-2' is out of "),
+                (begin + "set: {controller.variant: 3}", r":2:7: controller.variant: '3', expected one of"),
+                (begin + "grid: {controller.damping: {from: 1, to: 11, count: 2}}", r"'11.0' is out of range"),
+                (begin + "grid: {controller.damping: {from: 1, to: 1, count: 2}}", r"1 is not above from, 1"),
+                (begin + "grid: {controller.damping: {from: 0.5, to: .inf, count: 2}}", r"'.inf', expected a f"),
+                (begin + "grid: {controller.damping: {from: 0.5, to: 1, count: 1}}", r"'1', expected a whole"),
+                (begin + "grid: {controller.damping: {from: 0, to: 1, count: 2, scale: log}}", r"scale is log"),
+                (begin + "sobol: {points: 3, keys: {controller.damping: [1]}}", r":2:17: .*a power of 2"),
+                (begin + "sobol: {points: 4}", r"sobol: without keys"),
+                (begin + "disturbances: {draws: 2, keys: {controller.damping: {mean: 1, "
+                 "standard_deviation: 0}}}", r"'0', expected a number > 0"),
+                (begin + "set: {controller.damping: 1}\ngrid: {controller.damping: [1]}",
+                 r":3:\d+: grid.controller.damping: has its values elsewhere"),
+                (begin + "grid: {controller.damping: {from: 0.5, to: 1, count: 1001}, "
+                 "controller.time_constant_s: {from: 0.1, to: 1, count: 1001}}", r"1002001 runs, expected at"),
+                (begin + "limits: {peak: 1}", r"limits.peak: unknown key"),
+                (begin + "objective: nothing", r"'nothing', expected one of peak_force_N")):
+            with self.subTest(text=text):
+                self.refuse(text, expected)
+
+    def test_name_what_is_wrong_with_a_scene(self):
+        self.file("scene.yaml", f"extends: {SCENE}\ncontroller:\n  damping: x\n")
+        self.refuse("scenes: [scene.yaml]", r"scene.yaml:3:12: controller.damping: 'x' is not a number")
+
+    def test_are_usage_where_options_are(self):
+        for arguments in ((), ("-o", "out", "-j", "0"), ("-o", "out", "--nonsense")):
+            done = subprocess.run([TACTUS, "sweep", self.study(), *arguments], capture_output=True, cwd=self.folder)
+            self.assertEqual(done.returncode, 2)
+
+
+class Shipped(unittest.TestCase):
+    """Studies that come along, and the one of the document: no key is wrong."""
+
+    def test_are_right(self):
+        text = (ROOT / "docs/sweeps.md").read_text()
+        [shown] = re.findall(r"```yaml\n(# my_study.yaml\n.*?)```", text, re.S)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "my_study.yaml"
+            path.write_text(shown.replace("config/", f"{ROOT}/config/"))
+            plans = [self.plan(path), *map(self.plan, sorted((ROOT / "config/studies").glob("*.yaml")))]
+        self.assertGreater(len(plans), 1)
+        self.assertIn(f"This one has {plans[0].runs:,}.".replace(",", " "), text)
+
+    def plan(self, path):
+        read = study.read_study(path)
+        plan = study.make_plan(read, scenes.load_files(read))
+        scenes.check_keys(read, plan)
+        return plan
+
+
+class Judgement(unittest.TestCase):
+    def test_front_is_what_nothing_beats(self):
+        random = np.random.default_rng(3)
+        for size in (1, 2, 50):
+            points = random.integers(0, 8, (size, 2)).astype(float)  # with ties
+            found = [judge.Candidate((i,), [], 0.0, *point, True) for i, point in enumerate(points)]
+            got = {(one.force_N, one.error_m) for one in judge.front(found)}
+            wanted = {tuple(p) for p in points if not any(
+                (q <= p).all() and (q < p).any() for q in points)}
+            self.assertEqual(got, wanted)
+            self.assertEqual(len(judge.front(found)), len(wanted))
+
+    def test_rank_correlation_is_that_of_scipy(self):
+        random = np.random.default_rng(4)
+        for values in (5, 1000):
+            x, y = random.integers(0, values, 200), random.integers(0, values, 200)
+            y = y + x // 2
+            self.assertAlmostEqual(judge.rank_correlation(x, y), stats.spearmanr(x, y)[0], 12)
+        self.assertTrue(math.isnan(judge.rank_correlation(x, 0 * y)))
+
+    def test_share_of_the_variance_is_that_of_a_known_sum(self):
+        """y = 3 a + b with equal variances: a explains 9 of 10, what is not there nothing."""
+        random = np.random.default_rng(5)
+        a, b, c = random.random((3, 4000))
+        for x, share in ((a, 0.9), (b, 0.1), (c, 0.0)):
+            self.assertAlmostEqual(judge.variance_share(x, 3 * a + b), share, delta=0.02)
+        levels = np.floor(a * 4)
+        self.assertAlmostEqual(judge.variance_share(levels, levels), 1.0, 12)
+        few = np.array([judge.variance_share(random.random(40), random.random(40)) for _ in range(300)])
+        self.assertLess(few.mean(), 0.06)  # chance does not look like a cause
+
+    def test_of_progress(self):
+        self.assertEqual(progress.progress_text(50, 100, 10, 20.0), "50 of 100 runs, 50 %, 100 s left".replace(
+            "100 s", "2 min"))
+        self.assertEqual(progress.progress_text(90, 100, 10, 20.0), "90 of 100 runs, 90 %, 20 s left")
+        self.assertEqual(progress.progress_text(0, 100, 0, 20.0), "0 of 100 runs, 0 %")
+
+
+if __name__ == "__main__":
+    unittest.main()

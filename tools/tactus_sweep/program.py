@@ -1,0 +1,126 @@
+"""`tactus sweep`."""
+
+import json
+import os
+import signal
+import sys
+
+from tactus._sweep import identity
+
+from . import judge, results, scenes, table
+from .pool import Pool, PoolError
+from .progress import Progress
+from .study import make_plan, read_study
+from .study_text import StudyError
+
+DONE, BAD_INPUT, FAULT = 0, 1, 3
+
+
+class Stopped(BaseException):
+    """By SIGTERM or Ctrl-C."""
+
+
+def stop(number, _):
+    raise Stopped(signal.Signals(number).name)
+
+
+def run_program(arguments):
+    """Exit code."""
+    try:
+        study = read_study(arguments.study)
+        plan = make_plan(study, scenes.load_files(study))
+        scenes.check_keys(study, plan)
+        answer = sweep(study, plan, arguments)
+    except StudyError as error:
+        return refuse(error, BAD_INPUT, arguments)
+    except (results.ResultsError, PoolError) as error:
+        return refuse(error, error.exit_code, arguments)
+    except OSError as error:
+        return refuse(f"{error.filename or arguments.output}: {error.strerror or error}", FAULT, arguments)
+    except Stopped as stopped:
+        return refuse(f"{stopped}: stopped; the runs so far are kept, and the same command goes on", FAULT,
+                      arguments)
+    print(json.dumps(answer) if arguments.json else text_of(answer))
+    return DONE if answer["completed"] else FAULT
+
+
+def refuse(error, exit_code, arguments):
+    print(error, file=sys.stderr)
+    if arguments.json:
+        print(json.dumps({"done": False, "error": str(error)}))
+    return exit_code
+
+
+def sweep(study, plan, arguments):
+    me = identity()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, stop)
+    kept = results.Results(arguments.output, results.header_of(plan, me))
+    before = len(kept.rows)
+    try:
+        if kept.damaged:
+            print(f"{kept.path}: {kept.damaged} damaged lines, their runs are done again", file=sys.stderr)
+        compute(plan, kept, arguments, me)
+    finally:
+        kept.close()
+    rows = [kept.rows[run] for run in range(plan.runs)]
+    judge.judge(study, rows)
+    table.write_whole(arguments.output / table.NAME, table.table_text(study, plan, rows))
+    from . import study_page  # takes a second
+
+    table.write_whole(arguments.output / study_page.NAME, study_page.build_page(study, plan, rows))
+    return answer_of(plan, rows, plan.runs - before, arguments.output)
+
+
+def compute(plan, kept, arguments, me):
+    pending = [run for run in range(plan.runs) if run not in kept.rows]
+    if not pending:
+        return
+    progress = Progress(len(kept.rows), plan.runs)
+    pool = make_pool(plan, arguments, me)
+    try:
+        for rows in pool.rows(pending):
+            kept.add(rows)
+            progress.show(len(kept.rows))
+    finally:
+        progress.end()
+        pool.close()
+
+
+def make_pool(plan, arguments, me):
+    if arguments.scheduler is None:
+        return Pool(plan, arguments.jobs or len(os.sched_getaffinity(0)), me)
+    try:
+        from .dask_pool import DaskPool
+    except ModuleNotFoundError as error:
+        raise PoolError(f"{error}; install it: apt-get install python3-distributed", FAULT) from error
+    return DaskPool(plan, arguments.scheduler, me)
+
+
+def answer_of(plan, rows, run_now, folder):
+    best = judge.candidates(plan, rows)[0]
+    outcomes = [row["outcome"] for row in rows]
+    return {"done": True, "runs": plan.runs, "run_now": run_now, "completed": outcomes.count("completed"),
+            "refused": outcomes.count("refused"), "failed": outcomes.count("failed"),
+            "faults": sum(outcome not in ("completed", "refused", "failed") for outcome in outcomes),
+            "within_limits": sum(row["is_within"] for row in rows),
+            "best": {"is_fit": best.is_fit, "run": best.worst["run"], "set": plan.settings(best.worst["run"]),
+                     judge.FORCE: known(best.force_N), judge.ERROR: known(best.error_m),
+                     "objective": known(best.objective)},
+            "table": str(folder / table.NAME), "report": str((folder / "report.html").resolve())}
+
+
+def known(value):
+    return value if value < float("inf") else None
+
+
+def text_of(answer):
+    best = answer["best"]
+    lines = [f"{answer['runs']} runs, {answer['run_now']} of them now: {answer['completed']} completed, "
+             f"{answer['within_limits']} within the limits, {answer['faults']} with a fault, {answer['refused']} refused, "
+             f"{answer['failed']} failed"]
+    if best["objective"] is not None:
+        lines.append(f"best: {', '.join(best['set'])}" + ("" if best["is_fit"] else " (not within the limits)"))
+    return "\n".join([*lines, f"table: {answer['table']}", f"report: {answer['report']}"])
+
+
