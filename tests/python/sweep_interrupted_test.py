@@ -20,7 +20,7 @@ from sweep_common import RUNS, SCENE, STUDY, Sweeps, runs_in, table_of
 from tactus_sweep import judge, results, scenes, table
 from tactus_sweep.study import make_plan, read_study
 
-CUTS = 400
+CUTS = 150
 
 
 class Interrupted(Sweeps):
