@@ -211,5 +211,15 @@ TEST(DriveStop, FeedbackIsJudgedInTheCycleInWhichItComes) {
   EXPECT_EQ(rig.report().fault, Fault::kDriveFault) << "before anything is sent";
 }
 
+/// Buses that are told nothing are told nothing of a restart either; it is made up for afterwards.
+TEST(DriveStop, OneThatHasToRestartIsNotToldInSilence) {
+  DriveRig rig = deafDrive(0.1);
+  rig.slave.ignores_nmt = true;
+  rig.slave.say(0x700, {0});
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(rig.cycle(DriveGoal::kSilent).empty()) << i;
+  EXPECT_TRUE(rig.report().is_restarting);
+  EXPECT_TRUE(isAmong(kResetNode, rig.cycle(DriveGoal::kQuickStop)));
+}
+
 }  // namespace
 }  // namespace tactus
