@@ -39,7 +39,7 @@ def suites(layer, stem):
     return [name for _, names in sorted(found) for name in names]
 
 
-def stages(file):
+def stages(file, own):
     _, layer, name = file.split("/")
     program = f"tactus_{layer}_tests"
     near = suites(layer, name.removesuffix(".cpp"))
@@ -48,7 +48,7 @@ def stages(file):
         patterns = ":".join(f"{suite}.*:*/{suite}.*" for suite in near)
         first.append(Stage(f"near {patterns}", program, ("--gtest_fail_fast", f"--gtest_filter={patterns}")))
     whole = Stage(layer, program, ("--gtest_fail_fast", f"--gtest_filter=-{LONG}"))
-    return [*first, whole, *OTHERS[layer], CAMPAIGN]
+    return [*first, whole] if own else [*first, whole, *OTHERS[layer], CAMPAIGN]
 
 
 def precompiled(folder, flags):
@@ -96,7 +96,7 @@ def forget_old(folder, objects):
         mark.write_text(key)
 
 
-def layer_target(folder, layers, jobs):
+def layer_target(folder, layers, jobs, own):
     every = [str(path.relative_to(SOURCE)) for layer in LAYERS for path in sources(layer)]
     base = {layer: [*compile_flags(BUILD, layer), "-O1", "-w"] for layer in LAYERS}
     folder.mkdir(parents=True, exist_ok=True)
@@ -111,4 +111,5 @@ def layer_target(folder, layers, jobs):
                  for layer in LAYERS}
         return link(BUILD, lines[program], words, output)
 
-    return Target(SOURCE, [file for file in every if file.split("/")[1] in layers], flags, objects, {}, linked, stages)
+    return Target(SOURCE, [file for file in every if file.split("/")[1] in layers], flags, linked,
+                  lambda file: stages(file, own))

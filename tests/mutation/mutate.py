@@ -38,18 +38,13 @@ class Stage:
 
 @dataclasses.dataclass
 class Target:
-    """What is mutated and how it is judged: a layer of the tree, or a toy of a test.
-
-    flags: compiler and flags, as of one source. link(program, objects, output) gives a finished process.
-    stages(file): those that judge a mutant of this source, the likeliest first."""
+    """What is mutated and how it is judged: layers of the tree, or a toy of a test."""
 
     root: pathlib.Path
     files: list
-    flags: dict  # file -> words
-    objects: dict  # file -> object of the unchanged source
-    neighbours: dict  # file -> objects of the other sources of its layer
-    link: object
-    stages: object
+    flags: dict  # file -> compiler and flags
+    link: object  # of (program, {file: its changed object}, output): a finished process
+    stages: object  # of a file: those that judge its mutants, the likeliest first
 
 
 def limits(cpu_s):

@@ -144,7 +144,7 @@ class Finder:
         kind, text = value.type.get_canonical().kind, self.text(value.extent)
         if kind == TypeKind.BOOL and text not in ("true", "false"):
             self.replace(value.extent, f"!({text})", "returns the contrary")
-        elif kind in FLOATING:
+        elif kind in FLOATING and text != "0.0":
             self.replace(value.extent, f"-({text})", "returns the negative")
         elif kind in (TypeKind.INT, TypeKind.LONG, TypeKind.LONGLONG):
             self.replace(value.extent, f"({text}) + 1", "returns one more")
