@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 
+import places
 from mutate import Stage, Target
 from programs import LAYERS, SOURCE, compile_flags, link, link_command, sources
 
@@ -97,19 +98,24 @@ def forget_old(folder, objects):
 
 
 def layer_target(folder, layers, jobs, own):
-    every = [str(path.relative_to(SOURCE)) for layer in LAYERS for path in sources(layer)]
-    base = {layer: [*compile_flags(BUILD, layer), "-O1", "-w"] for layer in LAYERS}
+    every = [str(path.relative_to(SOURCE)) for layer in layers for path in sources(layer)]
+    base = {layer: [*compile_flags(BUILD, layer), "-O1", "-w"] for layer in layers}
     folder.mkdir(parents=True, exist_ok=True)
-    header = precompiled(folder, base["control"])
+    header = precompiled(folder, base[layers[0]])
     flags = {file: [*base[file.split("/")[1]], *header] for file in every}
+    read = folder / "precompiled.ast"
+    if not read.exists():
+        places.precompile(folder / "precompiled.h", base[layers[0]][1:], read)
+    clang_flags = {file: [*base[file.split("/")[1]][1:], "-include-pch", str(read)] for file in every}
     objects = compiled(folder, every, flags, jobs)
     lines = {program: link_command(BUILD, program) for program in PROGRAMS}
     forget_old(folder, objects)
 
     def linked(program, replaced, output):
+        changed = {file.split("/")[1] for file in replaced}
         words = {layer: [str(replaced.get(file, objects[file])) for file in every if file.split("/")[1] == layer]
-                 for layer in LAYERS}
+                 for layer in changed}
         return link(BUILD, lines[program], words, output)
 
-    return Target(SOURCE, [file for file in every if file.split("/")[1] in layers], flags, linked,
+    return Target(SOURCE, every, flags, clang_flags, linked,
                   lambda file: stages(file, own))

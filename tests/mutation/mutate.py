@@ -43,6 +43,7 @@ class Target:
     root: pathlib.Path
     files: list
     flags: dict  # file -> compiler and flags
+    clang_flags: dict  # file -> those of clang's reading
     link: object  # of (program, {file: its changed object}, output): a finished process
     stages: object  # of a file: those that judge its mutants, the likeliest first
 
@@ -194,10 +195,24 @@ def chosen(mutants, sample, seed):
     return order[:sample] if sample else order
 
 
+def places_of(target, file, folder):
+    """Remembered for this version of the source, as clang reads headers for seconds."""
+    known = folder / "places" / f"{file.replace('/', '_')}.{version(target, file)}.json"
+    if known.exists():
+        return [places.Mutant(*fields) for fields in json.loads(known.read_text())]
+    found = places.mutants(target.root / file, target.clang_flags[file], file)
+    known.parent.mkdir(exist_ok=True)
+    part = known.with_suffix(".part")
+    part.write_text(json.dumps([dataclasses.astuple(mutant) for mutant in found]))
+    part.rename(known)
+    return found
+
+
 def run(target, folder, options, listed):
     folder.mkdir(parents=True, exist_ok=True)
-    every = [mutant for file in target.files
-             for mutant in places.mutants(target.root / file, [*target.flags[file][1:], "-w"], file)]
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        found = pool.map(lambda file: places_of(target, file, folder), target.files)
+        every = [mutant for of_file in found for mutant in of_file]
     stale = [entry for entry in listed if not any(reason_for(target, mutant, [entry]) for mutant in every
                                                   if mutant.file == entry["file"])
              and entry["file"] in target.files]

@@ -71,7 +71,7 @@ class Toy(unittest.TestCase):
                                    str(replaced.get(FILE, self.object(FILE))), "-o", str(output)],
                                   capture_output=True, text=True)
 
-        return mutate.Target(self.root, [FILE], {FILE: COMPILER}, link, lambda file: [mutate.Stage("toy", "toy")])
+        return mutate.Target(self.root, [FILE], {FILE: COMPILER}, {FILE: []}, link, lambda file: [mutate.Stage("toy", "toy")])
 
     def run_all(self, sample=0, seed=1, listed=()):
         options = argparse.Namespace(sample=sample, seed=seed, jobs=2, again=False)

@@ -6,7 +6,7 @@ import dataclasses
 import pathlib
 
 from clang.cindex import CursorKind as Kind
-from clang.cindex import Index, TokenKind, TypeKind
+from clang.cindex import Index, TokenKind, TranslationUnit, TypeKind
 
 OPERATORS = {
     "<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"),
@@ -19,6 +19,7 @@ OPERATORS = {
 OVERLOADED = {"+", "-", "+=", "-=", "==", "!=", "<", "<=", ">", ">="}
 NAMES = {"min": "max", "max": "min", "cwiseMin": "cwiseMax", "cwiseMax": "cwiseMin", "minCoeff": "maxCoeff",
          "maxCoeff": "minCoeff", "any_of": "all_of", "all_of": "any_of", "front": "back", "back": "front"}
+FOR_SERIALIZATION = 0x10  # of clang-c/Index.h, which the bindings do not name
 COMPARISONS = {"<", "<=", ">", ">=", "==", "!="}
 FLOATING = {TypeKind.DOUBLE, TypeKind.FLOAT}
 ACTIONS = {Kind.CALL_EXPR, Kind.BINARY_OPERATOR, Kind.COMPOUND_ASSIGNMENT_OPERATOR, Kind.UNARY_OPERATOR,
@@ -170,6 +171,13 @@ class Finder:
             if child.kind != Kind.COMPOUND_STMT and (child.kind in ACTIONS or child.kind == Kind.UNEXPOSED_EXPR
                                                      or child.kind == Kind.RETURN_STMT):
                 self.deleted(child)
+
+
+def precompile(header, flags, output):
+    """For clang's own reading, which knows no header that GCC has precompiled."""
+    unit = Index.create().parse(str(header), args=["-x", "c++-header", *flags],
+                                options=TranslationUnit.PARSE_INCOMPLETE | FOR_SERIALIZATION)
+    unit.save(str(output))
 
 
 def mutants(path, flags, file):
