@@ -8,6 +8,7 @@
 #include "support/scripted_drive.h"
 #include "tactus/canopen/can_robot.h"
 #include "tactus/canopen/cia402.h"
+#include "tactus/canopen/sdo_abort.h"
 
 namespace tactus {
 namespace {
@@ -32,6 +33,26 @@ TEST(CanFrame, StatesOfDrivesHaveNamesOfTheirOwn) {
     names.insert(driveStateName(static_cast<DriveState>(state)));
   EXPECT_EQ(names.size(), 8u);
   EXPECT_FALSE(names.contains(""));
+}
+
+/// All codes of CiA 301 (table 22), each by a name of its own.
+TEST(CanFrame, AbortCodesAreThoseOfTheStandard) {
+  std::set<std::uint32_t> standard{0x05030000, 0x06010000, 0x06010001, 0x06010002, 0x06020000,
+                                   0x06040041, 0x06040042, 0x06040043, 0x06040047, 0x06060000,
+                                   0x06070010, 0x06070012, 0x06070013, 0x06090011, 0x06090030,
+                                   0x06090031, 0x06090032, 0x06090036, 0x060A0023, 0x08000000};
+  for (std::uint32_t i = 0; i <= 5; ++i) standard.insert(0x05040000 + i);
+  for (std::uint32_t i = 0; i <= 4; ++i) standard.insert(0x08000020 + i);
+  std::set<std::uint32_t> codes;
+  std::set<std::string> names;
+  for (const SdoAbortRow& row : sdoAbortTable()) {
+    codes.insert(row.code);
+    names.insert(sdoAbortName(row.code));
+    EXPECT_STREQ(sdoAbortName(row.code), row.name);
+  }
+  EXPECT_EQ(codes, standard);
+  EXPECT_EQ(names.size(), standard.size());
+  EXPECT_FALSE(names.contains(sdoAbortName(1)));
 }
 
 TEST(CanFrame, ARobotCountsTheMalformedOnesOfAllItsDrives) {

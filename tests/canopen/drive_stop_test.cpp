@@ -221,5 +221,22 @@ TEST(DriveStop, OneThatHasToRestartIsNotToldInSilence) {
   EXPECT_TRUE(isAmong(kResetNode, rig.cycle(DriveGoal::kQuickStop)));
 }
 
+/// A frame may be lost: one that is cut off is told so several times before its bus falls silent.
+TEST(DriveStop, OneThatIsCutOffIsToldAgainAndAgain) {
+  DriveRig rig;
+  rig.enable();
+  rig.slave.ignores_commands = rig.slave.ignores_nmt = true;
+  rig.cycles(kDeadlineCycles, DriveGoal::kQuickStop);
+  int told = 0, cycles_between = 0, longest = 0;
+  while (!rig.drive.needsSilence()) {
+    const bool is_told = isAmong(kNmtStop, rig.cycle(DriveGoal::kQuickStop));
+    told += is_told ? 1 : 0;
+    cycles_between = is_told ? 0 : cycles_between + 1;
+    longest = std::max(longest, cycles_between);
+  }
+  EXPECT_GE(told, 4);
+  EXPECT_LT(longest, 5);
+}
+
 }  // namespace
 }  // namespace tactus

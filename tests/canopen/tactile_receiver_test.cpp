@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -129,6 +130,19 @@ TEST(TactileReceiver, DropsASampleOneFrameOfWhichComesInTwoVersions) {
   EXPECT_EQ(receiver.sample().sequence, 0u) << "its number is used up";
   receive(receiver, tactileFrames(2, kTouch));
   EXPECT_EQ(receiver.sample().sequence, 1u);
+}
+
+TEST(TactileReceiver, KnowsEachOfTheFramesThatComesTwice) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
+    TactileFrames frames = tactileFrames(1, kTouch);
+    std::swap(frames[k], frames[0]);  // the order is free
+    CanFrame other = frames[0];
+    other.data[4] ^= 1;
+    receive(receiver, std::vector{frames[0], other, frames[1], frames[2], frames[3]});
+    EXPECT_EQ(receiver.sample().sequence, 0u) << k;
+    EXPECT_EQ(receiver.counters().repeated, 1u) << k;
+  }
 }
 
 TEST(TactileReceiver, DropsFramesOfWrongSizeOrKindButIgnoresOthersIds) {
