@@ -89,5 +89,19 @@ TEST(SetupSteps, HaveTheSizesOfTheStandards) {
   EXPECT_GT(steps, 25);
 }
 
+/// The load of a bus is calculated without what drives send by default; not all of them have it.
+TEST(SetupSteps, StopTheOtherPdosThatADriveMayHave) {
+  for (const int index : {0x1801, 0x1802, 0x1803}) {
+    int stops = 0;
+    for (const SetupStep& step : setupSteps({}, {}, 0.001)) {
+      if (step.entry.index != index) continue;
+      EXPECT_EQ(step.kind, SetupStep::Kind::kStopPdo);
+      EXPECT_TRUE(step.is_optional);
+      ++stops;
+    }
+    EXPECT_EQ(stops, 1) << std::hex << index;
+  }
+}
+
 }  // namespace
 }  // namespace tactus

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <utility>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "canopen/tactile_frames.h"
@@ -142,6 +142,19 @@ TEST(TactileReceiver, KnowsEachOfTheFramesThatComesTwice) {
     receive(receiver, std::vector{frames[0], other, frames[1], frames[2], frames[3]});
     EXPECT_EQ(receiver.sample().sequence, 0u) << k;
     EXPECT_EQ(receiver.counters().repeated, 1u) << k;
+  }
+}
+
+/// What has the next identifier on either side, with the same number, is another's.
+TEST(TactileReceiver, TakesNoFrameBesideItsFour) {
+  for (const std::uint32_t id : {0x0FFu, 0x104u}) {
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
+    const TactileFrames frames = tactileFrames(1, kTouch);
+    CanFrame other = frames[0];
+    other.id = id;
+    receive(receiver, std::vector{frames[0], other, frames[1], frames[2], other, frames[3]});
+    EXPECT_EQ(receiver.sample().sequence, 1u) << id;
+    EXPECT_EQ(receiver.counters().repeated, 0u) << id;
   }
 }
 
