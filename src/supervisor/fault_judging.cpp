@@ -22,10 +22,10 @@ void ControlCycle::noteCulprit() noexcept {
 Fault ControlCycle::judge(const CycleInput& input) noexcept {
   judged_ = {};
   const auto found = [this](Fault fault) { return (judged_.fault = fault) != Fault::kNone; };
-  if (input.lines.emergency_stop && found(Fault::kEmergencyStop)) return judged_.fault;
-  if (input.are_lines_lost && found(Fault::kGpioLost)) return judged_.fault;
+  if (input.lines.emergency_stop) return judged_.fault = Fault::kEmergencyStop;
+  if (input.are_lines_lost) return judged_.fault = Fault::kGpioLost;
   if (found(judgeBuses(input)) || found(judgeDrives())) return judged_.fault;
-  if (input.has_forbidden_call && found(Fault::kForbiddenSystemCall)) return judged_.fault;
+  if (input.has_forbidden_call) return judged_.fault = Fault::kForbiddenSystemCall;
   if (mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_) {
     judged_.detail = {static_cast<double>(input.late_in_a_row),
                       static_cast<double>(max_late_cycles_), "cycles"};

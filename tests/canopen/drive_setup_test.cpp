@@ -322,5 +322,19 @@ TEST(DriveSetup, StopsADriveThatStillMovesForAMasterThatHasGone) {
   EXPECT_EQ(rig.report().state, DriveState::kSwitchOnDisabled);
 }
 
+/// What it was told before is gone; waiting for an answer to that would take its time-out.
+TEST(DriveSetup, BeginsAnewAtOnceWhenTheDriveBoots) {
+  DriveRig rig;
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.cycles(10, DriveGoal::kConfigure);
+  rig.slave.say(0x700, {0});
+  bool is_told = false;
+  for (int i = 0; i < 3; ++i)
+    for (const CanFrame& frame : rig.cycle(DriveGoal::kConfigure))
+      is_told |= frame == test::rawFrame(0, {0x80, kNode});
+  EXPECT_TRUE(is_told);
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
+}
+
 }  // namespace
 }  // namespace tactus

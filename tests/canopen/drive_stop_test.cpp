@@ -211,5 +211,32 @@ TEST(DriveStop, FeedbackIsJudgedInTheCycleInWhichItComes) {
   EXPECT_EQ(rig.report().fault, Fault::kDriveFault) << "before anything is sent";
 }
 
+/// Buses that are told nothing are told nothing of a restart either; it is made up for afterwards.
+TEST(DriveStop, OneThatHasToRestartIsNotToldInSilence) {
+  DriveRig rig = deafDrive(0.1);
+  rig.slave.ignores_nmt = true;
+  rig.slave.say(0x700, {0});
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(rig.cycle(DriveGoal::kSilent).empty()) << i;
+  EXPECT_TRUE(rig.report().is_restarting);
+  EXPECT_TRUE(isAmong(kResetNode, rig.cycle(DriveGoal::kQuickStop)));
+}
+
+/// A frame may be lost: one that is cut off is told so several times before its bus falls silent.
+TEST(DriveStop, OneThatIsCutOffIsToldAgainAndAgain) {
+  DriveRig rig;
+  rig.enable();
+  rig.slave.ignores_commands = rig.slave.ignores_nmt = true;
+  rig.cycles(kDeadlineCycles, DriveGoal::kQuickStop);
+  int told = 0, cycles_between = 0, longest = 0;
+  while (!rig.drive.needsSilence()) {
+    const bool is_told = isAmong(kNmtStop, rig.cycle(DriveGoal::kQuickStop));
+    told += is_told ? 1 : 0;
+    cycles_between = is_told ? 0 : cycles_between + 1;
+    longest = std::max(longest, cycles_between);
+  }
+  EXPECT_GE(told, 4);
+  EXPECT_LT(longest, 5);
+}
+
 }  // namespace
 }  // namespace tactus

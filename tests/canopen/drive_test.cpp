@@ -240,5 +240,11 @@ TEST(Drive, DoesNotResetAgainAndAgainWhenGoalsChange) {
   EXPECT_EQ(rig.slave.resets, 1);
 }
 
+TEST(Drive, IsSetUpByItselfWhereNothingWasSaidBefore) {
+  DriveRig rig;
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
+  EXPECT_EQ(rig.report().fault, Fault::kNone);
+}
+
 }  // namespace
 }  // namespace tactus

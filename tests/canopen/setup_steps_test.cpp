@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ios>
 #include <optional>
 #include <stdexcept>
 
@@ -57,6 +58,49 @@ TEST(SetupSteps, GiveSetpointsADeadlineBeforeTheyAreValid) {
     EXPECT_TRUE(step.is_optional && step.may_be_read_only);
   }
   EXPECT_EQ(found, 1);
+}
+
+/// Bytes of an object by CiA 301 and CiA 402: a drive refuses any other number.
+int bytesOf(const ObjectEntry& entry) {
+  const bool is_mapping = (entry.index & 0xFE00) == 0x1600 || (entry.index & 0xFE00) == 0x1A00;
+  if (is_mapping) return entry.subindex == 0 ? 1 : 4;
+  const bool is_pdo = (entry.index & 0xFE00) == 0x1400 || (entry.index & 0xFE00) == 0x1800;
+  if (is_pdo) return entry.subindex == 1 ? 4 : entry.subindex == 2 ? 1 : 2;
+  switch (entry.index) {
+    case 0x1000:  // device type, consumer heartbeat time
+    case 0x1016:
+      return 4;
+    case 0x6060:  // modes of operation, and its display
+    case 0x6061:
+    case 0x60C2:  // interpolation time period
+      return 1;
+    default:  // heartbeat time, control word, option codes
+      return 2;
+  }
+}
+
+TEST(SetupSteps, HaveTheSizesOfTheStandards) {
+  int steps = 0;
+  for (const SetupStep& step : setupSteps({}, {}, 0.001)) {
+    EXPECT_EQ(step.entry.size, bytesOf(step.entry))
+        << std::hex << step.entry.index << ":" << int{step.entry.subindex};
+    ++steps;
+  }
+  EXPECT_GT(steps, 25);
+}
+
+/// The load of a bus is calculated without what drives send by default; not all of them have it.
+TEST(SetupSteps, StopTheOtherPdosThatADriveMayHave) {
+  for (const int index : {0x1801, 0x1802, 0x1803}) {
+    int stops = 0;
+    for (const SetupStep& step : setupSteps({}, {}, 0.001)) {
+      if (step.entry.index != index) continue;
+      EXPECT_EQ(step.kind, SetupStep::Kind::kStopPdo);
+      EXPECT_TRUE(step.is_optional);
+      ++stops;
+    }
+    EXPECT_EQ(stops, 1) << std::hex << index;
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "canopen/tactile_frames.h"
@@ -129,6 +130,32 @@ TEST(TactileReceiver, DropsASampleOneFrameOfWhichComesInTwoVersions) {
   EXPECT_EQ(receiver.sample().sequence, 0u) << "its number is used up";
   receive(receiver, tactileFrames(2, kTouch));
   EXPECT_EQ(receiver.sample().sequence, 1u);
+}
+
+TEST(TactileReceiver, KnowsEachOfTheFramesThatComesTwice) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
+    TactileFrames frames = tactileFrames(1, kTouch);
+    std::swap(frames[k], frames[0]);  // the order is free
+    CanFrame other = frames[0];
+    other.data[4] ^= 1;
+    receive(receiver, std::vector{frames[0], other, frames[1], frames[2], frames[3]});
+    EXPECT_EQ(receiver.sample().sequence, 0u) << k;
+    EXPECT_EQ(receiver.counters().repeated, 1u) << k;
+  }
+}
+
+/// What has the next identifier on either side, with the same number, is another's.
+TEST(TactileReceiver, TakesNoFrameBesideItsFour) {
+  for (const std::uint32_t id : {0x0FFu, 0x104u}) {
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
+    const TactileFrames frames = tactileFrames(1, kTouch);
+    CanFrame other = frames[0];
+    other.id = id;
+    receive(receiver, std::vector{frames[0], other, frames[1], frames[2], other, frames[3]});
+    EXPECT_EQ(receiver.sample().sequence, 1u) << id;
+    EXPECT_EQ(receiver.counters().repeated, 0u) << id;
+  }
 }
 
 TEST(TactileReceiver, DropsFramesOfWrongSizeOrKindButIgnoresOthersIds) {

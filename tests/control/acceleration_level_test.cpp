@@ -150,5 +150,30 @@ TEST(AccelerationLevel, RemembersNothingOfAContactAfterAHold) {
   }
 }
 
+/// With what the reference accelerates by, a tool that is told where to go does not lag behind it.
+TEST(AccelerationLevel, FollowsAToolThatIsToldWhereToGo) {
+  test::Random random(505);
+  for (int i = 0; i < 10; ++i) {
+    ControllerConfig config = accelerationController(random, 7, 3, Variant::kNullSpace);
+    config.task.components = {0, 1, 2};
+    config.task.commands.emplace();
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    Pose target = tipPose(config.chain, config.q_start);
+    target.p_AB += random.vector<Vector3>(3, -0.05, 0.05);
+    state.tool_motion = state.tool_motion->to(0.0, target, {});
+    ControllerOutput output;
+    double fastest_m_per_s = 0.0;
+    for (int cycle = 0; cycle < 3000; ++cycle) {
+      controller.update({state.q_desired, {test::touchAt(0.2, 0.0, 0.0, cycle / 4 + 1)}},
+                        controller.initialGains(), cycle * kCycle_s, kCycle_s, state, output);
+      fastest_m_per_s = std::max(fastest_m_per_s, output.w_d_dot.head<3>().norm());
+      ASSERT_LT(output.error.norm(), 3e-4) << i << " " << cycle;
+    }
+    EXPECT_GT(fastest_m_per_s, 0.01);
+    EXPECT_LT((tipPose(config.chain, state.q_desired).p_AB - target.p_AB).norm(), 1e-4);
+  }
+}
+
 }  // namespace
 }  // namespace tactus

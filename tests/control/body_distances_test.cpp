@@ -143,5 +143,35 @@ TEST(BodyDistances, RefuseWhatDoesNotMove) {
   EXPECT_THROW(BodyDistances(chain, config), std::invalid_argument);
 }
 
+TEST(BodyDistances, DoNotDependOnWhichOfTwoIsNamedFirst) {
+  test::Random random(405);
+  for (int i = 0; i < 200; ++i) {
+    const BodiesCase c(random);
+    ClearanceConfig swapped = c.config;
+    for (CapsulePair& pair : swapped.pairs) std::swap(pair.capsule, pair.other);
+    const BodyDistances others(c.chain, swapped);
+    for (int index = 0; index < c.distances.size(); ++index)
+      ASSERT_EQ(others.distance_m(c.pose, index), c.distances.distance_m(c.pose, index));
+  }
+}
+
+TEST(BodyDistances, RefuseMoreThanTheyHavePlaceFor) {
+  test::Random random(406);
+  const SerialChain chain = test::randomChain(random, 3);
+  const auto withCapsules = [&](int moving, int fixed) {
+    ClearanceConfig config;
+    for (int i = 0; i < moving; ++i) config.capsules.push_back(test::randomCapsule(random, 1));
+    for (int i = 0; i < fixed; ++i) config.capsules.push_back(test::randomCapsule(random, -1));
+    for (int i = 0; i < fixed; ++i) config.pairs.push_back({0, moving + i});
+    for (int i = 1; i < moving; ++i) config.pairs.push_back({i, moving});
+    return config;
+  };
+  EXPECT_NO_THROW(BodyDistances(chain, withCapsules(kMaxMovingCapsules, 1)));
+  EXPECT_THROW(BodyDistances(chain, withCapsules(kMaxMovingCapsules + 1, 1)),
+               std::invalid_argument);
+  EXPECT_NO_THROW(BodyDistances(chain, withCapsules(1, kMaxCapsules - 1)));
+  EXPECT_THROW(BodyDistances(chain, withCapsules(1, kMaxCapsules)), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace tactus

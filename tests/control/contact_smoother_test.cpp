@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/random.h"
@@ -281,6 +282,23 @@ TEST_F(Smoother, StaysAUnitVectorOnTheCoverWhateverComes) {
     }
     ASSERT_GE(state_.significant_N, kMin_N);
     ASSERT_LE(state_.significant_N, 10.0 * kMin_N);
+  }
+}
+
+/// Squares of such forces are zero, and a ratio of them is none.
+TEST_F(Smoother, StaysANumberWhereSquaresOfTheForceVanish) {
+  Gains none;
+  none.force.contact_threshold_N = 0.0;
+  for (const double force_N : {1e-300, 1e-200, 1e-170, 1e-160}) {
+    sensor_.force_N = force_N;
+    sensor_.direction = Vector3::UnitZ();
+    sensor_.position_m = 0.1;
+    sensor_.interval_s = kSample_s;
+    for (int i = 0; i < 3; ++i) smoother_.update(none.force, sensor_, X_BaseModule_, state_);
+    ASSERT_TRUE(std::isfinite(state_.contact.position_m)) << force_N;
+    // Learnt, or as it was before the first touch.
+    const double length = state_.contact.direction.norm();
+    ASSERT_LT(std::min(std::abs(length - 1.0), length), 1e-12) << force_N;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <limits>
+#include <stdexcept>
 
 #include "support/controller_run.h"
 #include "support/period.h"
@@ -186,6 +187,52 @@ TEST(ControllerFaults, TimeThatIsNoNumberMovesNothing) {
                     kNaN, kPeriod_s, state, output);
   EXPECT_EQ(output.fault, Fault::kCommandNotFinite);
   EXPECT_EQ(output.velocity.norm(), 0.0);
+}
+
+TEST(ControllerFaults, NoNumberIsToldWithTheUnitOfItsJoint) {
+  for (const JointType type : {JointType::kPrismatic, JointType::kRevolute}) {
+    std::vector<Joint> joints(2);
+    joints[0].type = type;
+    joints[0].axis = Vector3::UnitY();
+    joints[1].type = JointType::kPrismatic;
+    joints[1].axis = Vector3::UnitX();
+    ControllerConfig config{.chain = SerialChain(joints, {1, {}})};
+    config.q_start = JointVector::Zero(2);
+    config.limits = test::noLimits(2);
+    config.limits.max_velocity << 3.0, 5.0;
+    config.task.components = {2};
+    config.task.size = 1;
+    config.weights = JointVector::Ones(2);
+    config.has_joint_limit_avoidance = true;
+    config.limits.lower = JointVector::Constant(2, -1.0);
+    config.limits.upper = JointVector::Constant(2, 1.0);
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    state.q_desired[1] = kNaN;
+    ControllerOutput output;
+    controller.update({state.q_desired, {}}, config.gains, 0.0, kPeriod_s, state, output);
+    ASSERT_EQ(output.fault, Fault::kCommandNotFinite);
+    const int joint = output.fault_detail.joint;
+    ASSERT_GE(joint, 0);
+    EXPECT_EQ(output.fault_detail.limit, config.limits.max_velocity[joint]);
+    const bool is_prismatic = config.chain.type(joint) == JointType::kPrismatic;
+    EXPECT_STREQ(output.fault_detail.unit, is_prismatic ? "m/s" : "rad/s");
+  }
+}
+
+TEST(ControllerFaults, SeveralModulesAreRefusedByLawsOfOne) {
+  for (const Variant variant : test::kAllVariants) {
+    test::Random random(198);
+    ControllerConfig config = test::fullController(random, 6, variant);
+    config.tactile_modules.push_back(config.tactile_modules.front());
+    if (variant == Variant::kNullLimit) {
+      EXPECT_NO_THROW(Controller{config});
+    } else {
+      EXPECT_THROW(Controller{config}, std::invalid_argument);
+    }
+    config.tactile_modules.clear();
+    EXPECT_THROW(Controller{config}, std::invalid_argument);
+  }
 }
 
 }  // namespace

@@ -177,5 +177,38 @@ TEST(CoverCompensation, BeginsAnewAfterARestart) {
       << "a log from here on has all that counts";
 }
 
+/// The cover is where the link is: of stiff gears where the motor is, of soft ones elsewhere.
+TEST(CoverCompensation, FollowsLinksBehindTheirGears) {
+  test::Random random(906);
+  double elsewhere_N = 0.0;
+  for (int i = 0; i < 10; ++i) {
+    const ControllerConfig rigid = coveredRobot(random);
+    const auto n = static_cast<int>(rigid.q_start.size());
+    ControllerConfig stiff = rigid;
+    stiff.geared_links = GearedLinks{std::vector<BodyInertia>(n, BodyInertia{2.0}),
+                                     JointVector::Constant(n, 1e12), JointVector::Zero(n)};
+    ControllerConfig soft = stiff;
+    soft.geared_links->gear_stiffness.setConstant(500.0);
+    soft.geared_links->gear_damping.setConstant(5.0);
+    const std::vector<const ControllerConfig*> configs{&rigid, &stiff, &soft};
+    std::vector<TactileSample> relieved(3);
+    std::vector<CoverCompensationState> states(3);
+    const Swinging swinging{rigid.q_start, random.vector(n, 0.01, 0.1), random.vector(n, 0.2, 1.0)};
+    for (std::uint32_t cycle = 1; cycle < 400; ++cycle) {
+      int k = 0;
+      for (const ControllerConfig* config : configs) {
+        const CoverCompensation compensation(*config, config->tactile_modules.front());
+        relieved[k] = compensation.relieve(sampleOf(Wrench5(Wrench5::Zero()), cycle),
+                                           swinging.at(cycle * kPeriod_s), kPeriod_s, states[k]);
+        ++k;
+      }
+      ASSERT_LT((wrenchOf(relieved[1]) - wrenchOf(relieved[0])).norm(), 1e-3) << i << " " << cycle;
+      elsewhere_N =
+          std::max(elsewhere_N, (wrenchOf(relieved[2]) - wrenchOf(relieved[0])).head<2>().norm());
+    }
+  }
+  EXPECT_GT(elsewhere_N, 0.01);
+}
+
 }  // namespace
 }  // namespace tactus

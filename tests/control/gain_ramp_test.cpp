@@ -57,5 +57,14 @@ TEST(GainRamp, TakesFiveTimeConstants) {
   EXPECT_EQ(gainRampDuration_s(quick, quick), 0.5);
 }
 
+/// There is no ratio to or from zero: it is gone through in equal steps.
+TEST(GainRamp, WhatMayBeZeroGoesInSteps) {
+  Gains none, some;
+  none.force.min_approach_stiffness_N_per_m = 0.0;
+  some.force.min_approach_stiffness_N_per_m = 800.0;
+  EXPECT_DOUBLE_EQ(gainsBetween(none, some, 0.25).force.min_approach_stiffness_N_per_m, 200.0);
+  EXPECT_DOUBLE_EQ(gainsBetween(some, none, 0.25).force.min_approach_stiffness_N_per_m, 600.0);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "support/expanded_pseudoinverse.h"
 #include "support/random_jacobian.h"
@@ -117,6 +118,39 @@ TEST(JointLimitRows, OfAJointBeyondItsLimitLetItOnlyBack) {
   ASSERT_EQ(c.rows.size, 1);
   EXPECT_EQ(c.rows.row[0].v_max_m_per_s, 0.0);
   EXPECT_LT(c.rows.row[0].a_scaled[0], 0.0);
+}
+
+/// What is asked without rows is what the rows say.
+TEST(JointLimitRows, AreKeptExactlyByWhatKeepsEachOfThem) {
+  test::Random random(335);
+  int kept = 0, broken = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const LimitedCase c(random);
+    const ScaledVector velocity =
+        scaled(JointVector(random.logUniform(1e-3, 1.0) * random.vector(c.n, -1.0, 1.0)),
+               ScaledVector::Ones());
+    double least = kNoLimit;  // speed left
+    for (int row = 0; row < c.rows.size; ++row) {
+      const SpeedRow& told = c.rows.row[row];
+      const JointVector v_scaled = velocity.head(c.n).cwiseQuotient(c.inv_sqrt.head(c.n));
+      least = std::min(least, told.a_scaled.head(c.n).dot(v_scaled) + told.v_max_m_per_s);
+    }
+    if (std::abs(least) < 1e-9) continue;
+    ASSERT_EQ(JointLimitRows(c.limits, false).isKept(c.q, velocity, c.share), least > 0.0) << i;
+    (least > 0.0 ? kept : broken) += c.rows.size > 0 ? 1 : 0;
+  }
+  EXPECT_GT(kept, 500);
+  EXPECT_GT(broken, 100);
+}
+
+TEST(JointLimitRows, AreNotKeptByAMotionThatIsNoNumber) {
+  test::Random random(336);
+  LimitedCase c(random);
+  c.q[0] = 0.99;
+  ScaledVector velocity = ScaledVector::Zero();
+  EXPECT_TRUE(JointLimitRows(c.limits, true).isKept(c.q, velocity, 1.0));
+  velocity[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(JointLimitRows(c.limits, true).isKept(c.q, velocity, 1.0));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "support/period.h"
 #include "support/random_robot.h"
 #include "tactus/control/control_law.h"
+#include "tactus/control/null_speed_limit.h"
 
 namespace tactus {
 namespace {
@@ -104,6 +105,31 @@ TEST(NullSpaceLimit, LeavesOtherSpacesAlone) {
     law.update(c.gains, c.input, c.space, kPeriod_s, state, u);
     EXPECT_GT(std::abs(u.u_j + u.u_t), 1e-3);
     EXPECT_GT(state.V_m_per_s, 0.0);
+  }
+}
+
+/// Gains may change while an arm runs: what is remembered of them is of these alone.
+TEST(NullSpaceLimit, FollowsEachOfItsGains) {
+  test::Random random(114);
+  for (int i = 0; i < 500; ++i) {
+    ContactCase c(random);
+    const NullSpeedLimit limit(c.chain, c.inv_sqrt);
+    const ScaledVector v =
+        scaled(JointVector(random.vector(c.n, -20.0, 20.0)), ScaledVector::Ones());
+    NullSpeedLimits remembered;
+    for (int change = 0; change < 6; ++change) {
+      (change % 2 ? c.gains.max_null_speed_m_per_s : c.gains.max_null_speed_rad_per_s) =
+          random.logUniform(0.1, 5.0);
+      NullSpeedLimits none;
+      const double share = limit.share(c.gains, v, remembered);
+      ASSERT_EQ(share, limit.share(c.gains, v, none));
+      for (int joint = 0; joint < c.n; ++joint) {
+        const double most = c.chain.type(joint) == JointType::kPrismatic
+                                ? c.gains.max_null_speed_m_per_s
+                                : c.gains.max_null_speed_rad_per_s;
+        ASSERT_LE(share * std::abs(c.inv_sqrt[joint] * v[joint]), most * (1.0 + 1e-12));
+      }
+    }
   }
 }
 

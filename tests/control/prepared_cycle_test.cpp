@@ -7,7 +7,7 @@
 namespace tactus {
 namespace {
 
-enum class Ahead { kRight, kNever, kWrongTime, kBeforeCoasting };
+enum class Ahead { kRight, kNever, kWrongTime, kBeforeCoasting, kOtherTask, kOtherLimits };
 
 /// The same run, where now and then cycles are missed.
 std::vector<ControllerOutput> runAhead(const Controller& controller, std::uint64_t seed,
@@ -25,6 +25,12 @@ std::vector<ControllerOutput> runAhead(const Controller& controller, std::uint64
       controller.prepare(controller.initialGains(), t_s + 0.001, state, prepared);
     if (ahead == Ahead::kBeforeCoasting)
       controller.prepare(controller.initialGains(), t_s, state, prepared);
+    if (ahead == Ahead::kOtherTask || ahead == Ahead::kOtherLimits) {
+      Gains others = controller.initialGains();
+      if (ahead == Ahead::kOtherTask) others.task.drift_gain_per_s *= 0.5;
+      if (ahead == Ahead::kOtherLimits) others.joint_limit_avoidance.gain *= 3.0;
+      controller.prepare(others, t_s, state, prepared);
+    }
     if (cycle % 50 == 49) controller.coast(2, 0.001, state);
     const RobotInput input = touches.next(state.q_desired);
     if (ahead == Ahead::kNever) {
@@ -40,7 +46,8 @@ std::vector<ControllerOutput> runAhead(const Controller& controller, std::uint64
 void expectNoBitChanged(const ControllerConfig& config) {
   const Controller controller(config);
   const std::vector<ControllerOutput> expected = runAhead(controller, 7, Ahead::kNever);
-  for (const Ahead ahead : {Ahead::kRight, Ahead::kWrongTime, Ahead::kBeforeCoasting}) {
+  for (const Ahead ahead : {Ahead::kRight, Ahead::kWrongTime, Ahead::kBeforeCoasting,
+                            Ahead::kOtherTask, Ahead::kOtherLimits}) {
     const std::vector<ControllerOutput> outputs = runAhead(controller, 7, ahead);
     for (std::size_t i = 0; i < outputs.size(); ++i) test::expectSame(outputs[i], expected[i]);
   }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "support/random.h"
@@ -170,6 +171,41 @@ TEST(CommandedCycle, RestsWhereAStopHasLeftIt) {
     EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kArrived);
     EXPECT_LT((toolPose(cell, scene).p_AB - target.p_AB).norm(), 2e-3);
   }
+}
+
+/// Who tells a tool where to go sees whether it would be heard.
+TEST(CommandedCycle, SaysWhetherItRuns) {
+  VirtualRobotCell cell(toldScene());
+  ToolSight sight;
+  cell.cycle.fill(sight);
+  EXPECT_FALSE(sight.is_running);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  cell.cycle.fill(sight);
+  EXPECT_TRUE(sight.is_running);
+  cell.input.lines.enable = false;
+  for (int i = 0; i < 10; ++i) cell.step();
+  cell.cycle.fill(sight);
+  EXPECT_FALSE(sight.is_running);
+}
+
+/// And turns it, where its orientation is of the task.
+TEST(CommandedCycle, TurnsTheTool) {
+  const Scene scene = toldScene({{"simulation.obstacles", "[]"},
+                                 {"task.components", "[x, y, z, rx, ry, rz]"},
+                                 {"task.max_return_speed_rad_per_s", "0.2"}});
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  for (int i = 0; i < 500; ++i) stepPrepared(cell);
+  Pose target = toolPose(cell, scene);
+  target.R_AB = Eigen::AngleAxisd(0.3, Vector3::UnitZ()).toRotationMatrix() * target.R_AB;
+  tell(cell, target, 1);
+  for (int i = 0; i < 5000; ++i) stepPrepared(cell);
+  EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kArrived);
+  const Matrix3 left = toolPose(cell, scene).R_AB.transpose() * target.R_AB;
+  EXPECT_LT(Eigen::AngleAxisd(left).angle(), 2e-3);
+  ToolSight sight;
+  cell.cycle.fill(sight);
+  EXPECT_LT((Eigen::Map<const Matrix3>(sight.R_BaseTool) - target.R_AB).norm(), 1e-2);
 }
 
 }  // namespace

@@ -134,5 +134,17 @@ TEST(FaultDetails, AreGoneOnceItIsCleared) {
   EXPECT_TRUE(std::isnan(cell.cycle.report().time_s));
 }
 
+/// Drives that never hear a control word: time is over, and no drive has said anything wrong.
+TEST(FaultDetails, OfATimeLimitSpeakOfNoDrive) {
+  VirtualRobotCell cell(test::shippedScene("scenario1_multi_space"));
+  cell.on_send = [](int, CanFrame& frame) { return frame.id < 0x200 || frame.id >= 0x280; };
+  for (int i = 0; i < 20000 && cell.cycle.report().fault == Fault::kNone; ++i) cell.step();
+  const ModeReport report = cell.cycle.report();
+  EXPECT_EQ(report.fault, Fault::kDriveStateLost);
+  EXPECT_EQ(report.joint, -1);
+  EXPECT_EQ(report.bus, -1);
+  EXPECT_EQ(report.detail.joint, -1);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -79,5 +79,16 @@ TEST(SeveralModules, AllHaveToBeTaredBeforeTheArmMoves) {
   EXPECT_EQ(cell.cycle.report().detail.module, 1);
 }
 
+/// The first one is tared and fresh: it is not the one that is missed.
+TEST(SeveralModules, OneThatNeverSpeaksIsMissedByItsNumber) {
+  VirtualRobotCell cell(twoModules());
+  cell.on_frame = [](int bus, CanFrame& frame) {
+    if (isOfSecond(bus, frame)) frame.id = 0x7FF;
+  };
+  EXPECT_FALSE(cell.runUntil(Mode::kRunning, 8000));
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kTactileStale);
+  EXPECT_EQ(cell.cycle.report().detail.module, 1);
+}
+
 }  // namespace
 }  // namespace tactus

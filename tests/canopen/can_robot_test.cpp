@@ -1,0 +1,88 @@
+#include "tactus/canopen/can_robot.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/period.h"
+#include "support/scripted_drive.h"
+#include "tactus/canopen/canopen.h"
+
+/// What a robot says of its drives, where they do not all do the same.
+namespace tactus {
+namespace {
+
+using test::ScriptedDrive;
+
+struct RobotRig {
+  RobotRig() : robot(hardware(), test::kPeriod_s) {}
+
+  static HardwareConfig hardware() {
+    HardwareConfig config;
+    config.buses.resize(1);
+    for (int i = 0; i < 2; ++i) {
+      config.drives.emplace_back();
+      config.drives.back().joint = i;
+      config.drives.back().node_id = i + 1;
+    }
+    return config;
+  }
+
+  void cycle(DriveGoal goal, bool is_restart = false) {
+    for (ScriptedDrive& slave : slaves) robot.receive(0, slave.take());
+    RobotInput input;
+    robot.read(input);
+    robot.command(goal, is_restart, input.q_measured);
+    robot.write(JointVector::Zero(2));
+    for (const CanFrame& frame : robot.outbox(0))
+      for (ScriptedDrive& slave : slaves) slave.hear(frame);
+  }
+  void cycles(int count, DriveGoal goal) {
+    for (int i = 0; i < count; ++i) cycle(goal);
+  }
+  /// Both enabled.
+  void enable() {
+    cycle(DriveGoal::kConfigure, true);
+    for (int i = 0; i < 500 && !robot.drives().are_configured; ++i) cycle(DriveGoal::kConfigure);
+    for (int i = 0; i < 100 && !robot.drives().are_enabled; ++i) cycle(DriveGoal::kEnabled);
+  }
+
+  CanRobot robot;
+  ScriptedDrive slaves[2] = {ScriptedDrive(1), ScriptedDrive(2)};
+};
+
+TEST(CanRobot, IsNotOffWhileOneOfItsDrivesHasPower) {
+  for (const int deaf : {0, 1}) {
+    RobotRig rig;
+    rig.enable();
+    EXPECT_TRUE(rig.robot.drives().are_enabled);
+    EXPECT_FALSE(rig.robot.drives().are_disabled);
+    rig.slaves[deaf].ignores_commands = true;
+    rig.cycles(20, DriveGoal::kDisabled);
+    ASSERT_EQ(rig.slaves[1 - deaf].power, ScriptedDrive::kDisabled);
+    EXPECT_FALSE(rig.robot.drives().are_disabled) << deaf;
+    EXPECT_FALSE(rig.robot.drives().are_enabled) << deaf;
+    EXPECT_TRUE(rig.robot.drives().is_any_holding) << deaf;
+    EXPECT_TRUE(rig.robot.isHolding(deaf));
+    EXPECT_FALSE(rig.robot.isHolding(1 - deaf));
+    rig.slaves[deaf].ignores_commands = false;
+    rig.cycles(20, DriveGoal::kDisabled);
+    EXPECT_TRUE(rig.robot.drives().are_disabled) << deaf;
+    EXPECT_FALSE(rig.robot.drives().is_any_holding) << deaf;
+    EXPECT_FALSE(rig.robot.isHolding(deaf));
+  }
+}
+
+/// It says that it boots: whatever it said of its power is of before.
+TEST(CanRobot, IsNotHeldByADriveThatHasBooted) {
+  RobotRig rig;
+  rig.enable();
+  EXPECT_TRUE(rig.robot.isHolding(0));
+  rig.slaves[0].powerUp();
+  rig.cycles(10, DriveGoal::kQuickStop);
+  EXPECT_FALSE(rig.robot.isHolding(0));
+  EXPECT_EQ(rig.robot.drives().joint, 0);
+}
+
+}  // namespace
+}  // namespace tactus
