@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -9,11 +8,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
+#include "campaign/exhaustive.h"
 #include "campaign/run.h"
 #include "campaign/self_test.h"
+#include "campaign/share.h"
 
 /// Tries to break "rest is rest": troubles by chance, alone and together, and what must hold in
 /// every cycle of stopping and going on.
@@ -26,6 +26,9 @@ struct Options {
   int jobs = 1;
   std::optional<int> only;  ///< this run, with a trace
   bool is_self_test = false;
+  bool is_list = false;
+  bool is_exhaustive = false;
+  ExhaustiveOptions all;
 };
 
 std::optional<Options> parse(int count, char** arguments) {
@@ -36,7 +39,16 @@ std::optional<Options> parse(int count, char** arguments) {
       options.is_self_test = true;
       continue;
     }
+    if (key == "--list") {
+      options.is_list = true;
+      continue;
+    }
     if (i + 1 == count) return std::nullopt;
+    if (key == "--all" || key == "--case") {
+      options.is_exhaustive = true;
+      (key == "--all" ? options.all.results : options.all.only.emplace()) = arguments[++i];
+      continue;
+    }
     char* end = nullptr;
     const long value = std::strtol(arguments[++i], &end, 10);
     if (*end != 0 || value < 0) return std::nullopt;
@@ -45,25 +57,15 @@ std::optional<Options> parse(int count, char** arguments) {
     else if (key == "--runs")
       options.runs = static_cast<int>(value);
     else if (key == "--jobs")
-      options.jobs = std::max(1, static_cast<int>(value));
+      options.all.jobs = options.jobs = std::max(1, static_cast<int>(value));
+    else if (key == "--first")
+      options.all.first = static_cast<int>(value);
     else if (key == "--run")
       options.only = static_cast<int>(value);
     else
       return std::nullopt;
   }
   return options;
-}
-
-/// Work for as many threads as there are jobs; `work` gets every number below count once.
-template <typename Work>
-void share(int jobs, int count, const Work& work) {
-  std::atomic<int> next{0};
-  std::vector<std::thread> threads;
-  for (int job = 0; job < jobs; ++job)
-    threads.emplace_back([&] {
-      for (int i = next++; i < count; i = next++) work(i);
-    });
-  for (std::thread& thread : threads) thread.join();
 }
 
 int runOne(const Options& options) {
@@ -152,11 +154,18 @@ int main(int count, char** arguments) {
         "usage: tactus_campaign [--seed S] [--runs N] [--jobs N]   a campaign\n"
         "       tactus_campaign [--seed S] --run I                 one run of it, with what "
         "happens\n"
+        "       tactus_campaign --all FILE [--first N] [--jobs N]  every case, or the first N, "
+        "into "
+        "FILE\n"
+        "       tactus_campaign --case NAME                        one of them, with what happens\n"
+        "       tactus_campaign --list                             their names\n"
         "       tactus_campaign --self-test                        that every judge sees its "
         "harm\n",
         stderr);
     return 2;
   }
   if (options->is_self_test) return selfTest();
+  if (options->is_list) return listCases();
+  if (options->is_exhaustive) return runExhaustive(options->all);
   return options->only ? runOne(*options) : runAll(*options);
 }

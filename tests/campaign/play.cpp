@@ -23,8 +23,13 @@ Play::Play(const Stage& stage, const Plan& plan)
     : stage_(stage),
       cell_(stage.moments[static_cast<int>(plan.moment)]),
       start_ns_(cell_.t_ns),
-      injections_(plan.injections) {
+      injections_(plan.injections),
+      gate_(plan.frame),
+      reversed_from_ms_(plan.reversed_from_ms),
+      reversed_until_ms_(plan.reversed_until_ms) {
   cell_.on_frame = [this](int bus, CanFrame& frame) { changeReceived(bus, frame); };
+  if (reversed_until_ms_ > 0)
+    cell_.on_batch = [this](int, FrameBatch& frames) { changeOrder(frames); };
   cell_.on_send = [this](int bus, CanFrame& frame) { return changeSent(bus, frame); };
   cell_.on_bus = [this](int bus, BusMonitor& monitor) { changeBus(bus, monitor); };
   cell_.plant.play(script(), cell_.t_ns);
@@ -49,17 +54,39 @@ void Play::act() {
 
 void Play::changeReceived(int bus, CanFrame& frame) {
   if (frame.kind != FrameKind::kData) return;
+  const int copies = gate_.pass({false, bus, frame.id, now_ms()}, frame).copies;
+  if (copies == 2) cell_.cycle.receive(bus, {&frame, 1});
+  if (copies == 0) frame.id = kNobody;
   forActive([&](Injection& x) {
     if (x.kind->receive) x.kind->receive(x, bus, frame);
   });
 }
 
 bool Play::changeSent(int bus, CanFrame& frame) {
-  bool arrives = true;
+  const int copies = gate_.pass({true, bus, frame.id, now_ms()}, frame).copies;
+  if (copies == 2) cell_.plant.send(bus, frame, cell_.t_ns);
+  bool arrives = copies > 0;
   forActive([&](Injection& x) {
     if (x.kind->send) arrives = x.kind->send(x, bus, frame) && arrives;
   });
   return arrives;
+}
+
+void Play::changeOrder(FrameBatch& frames) const {
+  const int t_ms = now_ms();
+  if (t_ms < reversed_from_ms_ || t_ms >= reversed_until_ms_) return;
+  const FrameBatch inOrder = frames;
+  frames.clear();
+  for (std::size_t i = inOrder.size(); i > 0; --i) frames.push(inOrder.begin()[i - 1]);
+}
+
+void Play::deliverHeld() {
+  const auto held = gate_.takeHeld();
+  if (!held) return;
+  if (held->seen.is_sent)
+    cell_.plant.send(held->seen.bus, held->frame, cell_.t_ns);
+  else
+    cell_.cycle.receive(held->seen.bus, {&held->frame, 1});
 }
 
 void Play::changeBus(int bus, BusMonitor& monitor) {
@@ -98,6 +125,7 @@ void Play::step(CycleInput input) {
   cell_.t_ns += input.missed_cycles * kMillisecond_ns;
   cell_.plant.advance(cell_.t_ns);
   act();
+  deliverHeld();
   cell_.input = input;
   cell_.step();
   cell_.cycle.prepare();
@@ -181,7 +209,7 @@ void Play::observeInjections() {
   const int t_ms = now_ms() - 1;  // when it was done
   now_.is_calm = now_.is_free = true;
   now_.has_hand = false;
-  now_.is_late_frame = false;
+  now_.is_late_frame = gate_.troubled_ms() >= 0 && t_ms < gate_.troubled_ms() + kLateFrame_ms;
   now_.hidden_cause = nullptr;
   now_.pushed = 0.0;
   for (const Injection& x : injections_) {

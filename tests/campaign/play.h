@@ -20,6 +20,7 @@ class Play {
   CycleInput input();           ///< what injections tell the daemon by its inputs
   void step(CycleInput input);  ///< a cycle, and those that are missed before it
   void stepAlone();             ///< a ms of the plant; the daemon has gone
+  const std::vector<SeenFrame>& seenFrames() const { return gate_.seen(); }
   void setForces(bool are_there) { are_forces_there_ = are_there; }
 
  private:
@@ -28,6 +29,8 @@ class Play {
   void act();
   void changeReceived(int bus, CanFrame& frame);
   bool changeSent(int bus, CanFrame& frame);
+  void changeOrder(FrameBatch& frames) const;
+  void deliverHeld();
   void changeBus(int bus, BusMonitor& monitor);
   std::vector<Trouble> script() const;
   void observe();
@@ -40,6 +43,8 @@ class Play {
   VirtualRobotCell cell_;
   std::int64_t start_ns_;
   std::vector<Injection> injections_;
+  FrameGate gate_;
+  int reversed_from_ms_, reversed_until_ms_;
   Observation now_;
   bool are_forces_there_ = true;
   bool has_stopped_ = false, has_forbidden_ = false;

@@ -8,6 +8,7 @@
 
 #include "campaign/going_on.h"
 #include "campaign/play.h"
+#include "campaign/rest_meter.h"
 #include "campaign/user.h"
 
 namespace tactus::campaign {
@@ -31,12 +32,14 @@ Result simulate(const Stage& stage, const Plan& plan, bool is_traced) {
   User user(plan);
   Judges judges;
   GoingOnJudge going_on;
+  RestMeter rest(plan);
   Result result;
   Observation before = play.now();
   const auto judge = [&] {
     const Look look{stage.promise, before, play.now(), result.violations};
     judges.look(look);
     going_on.look(look);
+    rest.look(look);
     if (is_traced) trace(before, play.now());
     before = play.now();
     ++result.cycles;
@@ -54,6 +57,9 @@ Result simulate(const Stage& stage, const Plan& plan, bool is_traced) {
   }
   compareGoingOn(stage, plan, going_on, result.violations, result.cycles);
   result.peak = going_on.peak();
+  result.rest_mode = rest.mode();
+  result.rest_fault = rest.fault();
+  result.rest_ms = rest.rest_ms();
   result.mode = play.now().mode;
   result.fault = play.now().fault;
   return result;

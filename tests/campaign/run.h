@@ -12,6 +12,9 @@ struct Result {
   std::vector<Violation> violations;
   Mode mode = Mode::kOff;  ///< at the end
   Fault fault = Fault::kNone;
+  Mode rest_mode = Mode::kOff;  ///< when the user comes
+  Fault rest_fault = Fault::kNone;
+  int rest_ms = 0;       ///< RestMeter
   double peak = 0.0;     ///< joint speed in the seconds after a return to running, m/s or rad/s
   long long cycles = 0;  ///< simulated
 };

@@ -17,6 +17,20 @@ Scene campaignScene(const std::string& variant) {
   return scene;
 }
 
+namespace {
+
+/// Configured, and not enabled.
+VirtualRobotCell readyCell(VirtualRobotCell cell) {
+  cell.input.lines.enable = false;
+  for (int i = 0; i < 5000 && cell.cycle.report().mode != Mode::kReady; ++i) {
+    cell.step();
+    cell.cycle.prepare();
+  }
+  return cell;
+}
+
+}  // namespace
+
 Stage bootStage(const std::string& variant) {
   Stage stage{campaignScene(variant), {}, {}};
   const HardwareConfig& hardware = *stage.scene.hardware;
@@ -29,6 +43,7 @@ Stage bootStage(const std::string& variant) {
     stage.promise.counts_per_unit[drive.joint] = drive.counts_per_unit;
 
   VirtualRobotCell cell(stage.scene);
+  const VirtualRobotCell boot = cell;
   stage.promise.quick_stop = stage.promise.counts_per_unit;
   for (int i = 0; i < stage.promise.quick_stop.size(); ++i)
     stage.promise.quick_stop[i] =
@@ -48,6 +63,8 @@ Stage bootStage(const std::string& variant) {
   stage.moments.push_back(cell);
   steps(2500);
   stage.moments.push_back(cell);
+  stage.moments.push_back(boot);
+  stage.moments.push_back(readyCell(boot));
   return stage;
 }
 

@@ -19,6 +19,8 @@ class User {
       return true;
     }
     if (is_over_) return false;
+    const bool is_mended = plan_.ending == Ending::kMendStop && on_ms_ < 0 && !is_off_;
+    if (is_mended && mode == Mode::kRunning) return false;
     return plan_.ending == Ending::kLeave  ? wait(now_ms, kLeft_ms)
            : plan_.ending == Ending::kStop ? stop(now_ms)
                                            : goOn(now_ms, mode, input);
@@ -45,21 +47,19 @@ class User {
       is_off_ = false;
       on_ms_ = now_ms;
     } else if (on_ms_ < 0 || (mode != Mode::kRunning && now_ms > on_ms_ + kAttempt_ms)) {
-      if (attempts_++ == kAttempts) return stop(now_ms);
+      if (attempts_++ == plan_.attempts) return stop(now_ms);
       is_off_ = true;
       input.lines.enable = false;
       next_ms_ = now_ms + plan_.off_ms;
     } else if (mode == Mode::kRunning && now_ms > on_ms_) {
-      if (has_gone_on_) return plan_.ending == Ending::kGoOnStop ? stop(now_ms) : false;
+      if (has_gone_on_) return plan_.ending != Ending::kGoOn && stop(now_ms);
       has_gone_on_ = true;
-      next_ms_ = now_ms + kGoOn_ms;
+      next_ms_ = now_ms + plan_.go_on_ms;
     }
     return true;
   }
 
   static constexpr int kLeft_ms = 10'000;  ///< that nobody does anything
-  static constexpr int kGoOn_ms = 5500;
-  static constexpr int kAttempts = 3;  ///< of the user to go on
   static constexpr int kAttempt_ms = 3500;
   static constexpr int kStopWait_ms = 9000;  ///< after a stop request
 

@@ -103,9 +103,10 @@ class VirtualRobotCell {
 
   ControlCycle cycle;
   Plant plant;
-  std::function<void(int bus, CanFrame& frame)> on_frame;    ///< may change what the daemon gets
-  std::function<bool(int bus, CanFrame& frame)> on_send;     ///< and what it sends; false: lost
-  std::function<void(int bus, BusMonitor& monitor)> on_bus;  ///< may add to what a bus meets
+  std::function<void(int bus, CanFrame& frame)> on_frame;     ///< may change what the daemon gets
+  std::function<void(int bus, FrameBatch& frames)> on_batch;  ///< and in which order
+  std::function<bool(int bus, CanFrame& frame)> on_send;      ///< and what it sends; false: lost
+  std::function<void(int bus, BusMonitor& monitor)> on_bus;   ///< may add to what a bus meets
   std::vector<BusMonitor> monitors;
   CycleInput input;
   std::int64_t t_ns = 0;
@@ -125,6 +126,7 @@ class VirtualRobotCell {
         data.push(frame);
       }
     }
+    if (on_batch) on_batch(bus, data);
     monitor.onReceived(static_cast<int>(data.size()), false);
     if (on_bus) on_bus(bus, monitor);
     monitor.update();

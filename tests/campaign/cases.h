@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "campaign/plan.h"
+#include "campaign/stage.h"
+
+namespace tactus::campaign {
+
+/// One run of the exhaustive campaign.
+struct Case {
+  std::string name;  ///< "mode fault_kind mode phase", "pair first second distance_ms",
+                     ///< "frame run stream trouble ordinal"; words have no blanks
+  Plan plan;
+};
+
+inline constexpr const char* kVariantOfAll = kVariants[0];
+
+/// Every kind of trouble in every mode at 20 phases; phases of the last five with frames that
+/// arrive in reverse order. All ordered pairs of kinds at two distances. Every frame of three short
+/// runs lost, doubled, delayed by a cycle, and with a bit flipped. The three take
+/// turns, each in a mixed order: the first cases are a sample of all.
+std::vector<Case> allCases(const Stage& stage);
+
+}  // namespace tactus::campaign
