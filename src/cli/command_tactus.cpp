@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
@@ -61,9 +62,7 @@ RunError fileError(const std::filesystem::filesystem_error& error) {
   return RunError(path + ": " + error.code().message());
 }
 
-}  // namespace
-
-int tactusProgram(int argc, char** argv) {
+int runCommand(int argc, char** argv) {
   CLI::App app{"Tactile feedback control of redundant robot arms: the engineer's tool", "tactus"};
   app.set_version_flag("--version", TACTUS_VERSION);
   app.require_subcommand(1);
@@ -110,10 +109,23 @@ int tactusProgram(int argc, char** argv) {
   } catch (const std::system_error& error) {  // of fmt::print
     std::fprintf(stderr, "standard output: %s\n", error.what());
     return kExitFault;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     return refuse(error, as_json, kExitBadInput);
   }
   return exitCodeAfterFlush(exit_code);
+}
+
+}  // namespace
+
+int tactusProgram(int argc, char** argv) {
+  try {
+    return runCommand(argc, argv);
+  } catch (const std::bad_alloc&) {  // also while options are set up
+    std::fputs("tactus: out of memory\n", stderr);
+    return kExitFault;
+  }
 }
 
 }  // namespace tactus

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -47,9 +48,7 @@ int reload() {
   return answer.at("trouble").get<std::string>().empty() ? kExitDone : kExitFault;
 }
 
-}  // namespace
-
-int tactusdProgram(int argc, char** argv) {
+int runArguments(int argc, char** argv) {
   DaemonArguments options;
   CLI::App app{"Tactile feedback control of redundant robot arms: the daemon", "tactusd"};
   app.set_version_flag("--version", TACTUS_VERSION);
@@ -74,8 +73,21 @@ int tactusdProgram(int argc, char** argv) {
   } catch (const InputError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return kExitBadInput;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "tactusd: %s\n", error.what());
+    return kExitFault;
+  }
+}
+
+}  // namespace
+
+int tactusdProgram(int argc, char** argv) {
+  try {
+    return runArguments(argc, argv);
+  } catch (const std::bad_alloc&) {  // also while options are set up
+    std::fputs("tactusd: out of memory\n", stderr);
     return kExitFault;
   }
 }
