@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <utility>
 
 #include "campaign/frame_cases.h"
 #include "campaign/mode_cases.h"
@@ -15,6 +17,22 @@ void mix(std::vector<Case>& cases) {
     std::swap(cases[i - 1], cases[static_cast<std::size_t>(random.index(static_cast<int>(i)))]);
 }
 
+/// The line of docs/campaign.md to which a case adds.
+std::string rowOf(const std::string& name) {
+  const bool is_pair = name.starts_with("pair");
+  return name.substr(0, is_pair ? name.find(' ', name.find(' ') + 1) : name.rfind(' '));
+}
+
+/// One case of each row, then a second one of each, and so on.
+void takeTurns(std::vector<Case>& cases) {
+  std::map<std::string, int> counts;
+  std::vector<std::pair<int, Case>> turns;
+  for (Case& one : cases) turns.emplace_back(counts[rowOf(one.name)]++, std::move(one));
+  std::stable_sort(turns.begin(), turns.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < cases.size(); ++i) cases[i] = std::move(turns[i].second);
+}
+
 }  // namespace
 
 std::vector<Case> allCases(const Stage& stage) {
@@ -25,6 +43,7 @@ std::vector<Case> allCases(const Stage& stage) {
   std::size_t longest = 0;
   for (std::vector<Case>& group : groups) {
     mix(group);
+    takeTurns(group);
     longest = std::max(longest, group.size());
   }
   std::vector<Case> cases;
