@@ -30,6 +30,7 @@ Plan shortPlan(const Stage& stage, const ShortRun& run) {
   Plan plan;
   plan.moment = run.moment;
   plan.ending = Ending::kMendStop;
+  plan.comes_late = true;
   plan.attempts = 2;
   plan.go_on_ms = 700;
   if (run.kind == nullptr) return plan;

@@ -45,6 +45,7 @@ Plan stancePlan(const Stage& stage, const Stance& stance, int until_ms) {
   Plan plan;
   plan.moment = stance.moment;
   plan.ending = Ending::kGoOnStop;
+  plan.comes_late = true;
   plan.attempts = 2;
   plan.go_on_ms = 700;
   if (stance.kind == nullptr) return plan;

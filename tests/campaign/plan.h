@@ -37,11 +37,12 @@ struct Plan {
   Moment moment = Moment::kFree;
   std::vector<Injection> injections;
   Ending ending = Ending::kGoOn;
-  int clear_ms = 0;     ///< when the user begins: when all is over and quiet, or before that
-  int off_ms = 50;      ///< for which the user switches the enable line off
-  int bounce_ms = 0;    ///< for which the line bounces when it is switched on
-  int attempts = 3;     ///< of the user to go on
-  int go_on_ms = 5500;  ///< for which the arm then runs
+  int clear_ms = 0;         ///< when the user begins: when all is over and quiet, or before that
+  bool comes_late = false;  ///< the user, when what went wrong has had its time to come to rest
+  int off_ms = 50;          ///< for which the user switches the enable line off
+  int bounce_ms = 0;        ///< for which the line bounces when it is switched on
+  int attempts = 3;         ///< of the user to go on
+  int go_on_ms = 5500;      ///< for which the arm then runs
   std::optional<FrameTrouble> frame{};
   int reversed_from_ms = 0, reversed_until_ms = 0;  ///< a bus's frames arrive in reverse order
   std::string text() const;

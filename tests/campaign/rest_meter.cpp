@@ -26,7 +26,8 @@ void RestMeter::look(const Look& look) {
   if (!mayRun(now.mode) && stop_ms_ < 0) stop_ms_ = now.t_ms;
   const double speed = now.velocity.cwiseAbs().maxCoeff();
   if (stop_ms_ >= 0 && speed > kStandstill) rest_ms_ = std::max(rest_ms_, now.t_ms - stop_ms_);
-  if (now.t_ms == plan_.clear_ms) judgeRest(look);
+  // Who comes by chance may come in the middle of a stop.
+  if (now.t_ms == plan_.clear_ms && plan_.comes_late) judgeRest(look);
 }
 
 void RestMeter::judgeRest(const Look& look) const {

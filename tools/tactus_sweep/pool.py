@@ -121,11 +121,11 @@ class Pool:
         """Of one that has ended: what it was at may be the reason. Rows of runs that have failed."""
         self.forget(worker)
         worker.end()
-        if worker.identity is None:
+        if worker.identity is None and not any(other.identity for other in self.workers):
             raise PoolError("a worker process ends before its first run; its own lines above say why", 3)
         left = [run for batch in worker.batches for run in batch]
         failed = []
-        if left:
+        if left and worker.identity is not None:  # else it had not begun one
             self.deaths[left[0]] = self.deaths.get(left[0], 0) + 1
             if self.deaths[left[0]] >= DEATHS:
                 reason = f"its worker ended with {worker.process.returncode}, {DEATHS} times"
