@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "tactus/canopen/canopen.h"
+#include "tactus/canopen/visit_kind.h"
 
 namespace tactus {
 namespace {
@@ -24,11 +25,11 @@ bool mayHold(const DriveReport& report) noexcept {
 }
 
 const DriveReport& reportOf(const AnyDrive& drive) noexcept {
-  return std::visit([](const auto& it) -> const DriveReport& { return it.report(); }, drive);
+  return visitKind([](const auto& it) -> const DriveReport& { return it.report(); }, drive);
 }
 
 int busOf(const AnyDrive& drive) noexcept {
-  return std::visit([](const auto& it) { return it.bus(); }, drive);
+  return visitKind([](const auto& it) { return it.bus(); }, drive);
 }
 
 }  // namespace
@@ -52,7 +53,7 @@ CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
 void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
   for (const CanFrame& frame : frames) {
     for (AnyDrive& drive : drives_) {
-      if (busOf(drive) == bus) std::visit([&](auto& it) { it.receive(frame); }, drive);
+      if (busOf(drive) == bus) visitKind([&](auto& it) { it.receive(frame); }, drive);
     }
     for (TactileReceiver& module : tactile_modules_) {
       if (module.bus() == bus) module.receive(frame);
@@ -61,14 +62,14 @@ void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
 }
 
 void CanRobot::coast(int missed_cycles) noexcept {
-  for (AnyDrive& drive : drives_) std::visit([&](auto& it) { it.coast(missed_cycles); }, drive);
+  for (AnyDrive& drive : drives_) visitKind([&](auto& it) { it.coast(missed_cycles); }, drive);
 }
 
 void CanRobot::read(RobotInput& input) noexcept {
   input.q_measured.resize(static_cast<int>(drives_.size()));
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const int joint = static_cast<int>(i);
-    std::visit([&](auto& it) { it.observe(q_commanded_[joint]); }, drives_[i]);
+    visitKind([&](auto& it) { it.observe(q_commanded_[joint]); }, drives_[i]);
     input.q_measured[joint] = drive(joint).position;
   }
   for (std::size_t i = 0; i < tactile_modules_.size(); ++i) {
@@ -95,7 +96,7 @@ void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const int joint = static_cast<int>(i);
     FrameBatch& outbox = outboxes_[busOf(drives_[i])];
-    std::visit(
+    visitKind(
         [&](auto& it) {
           it.update(goal_, is_restart_, velocity_setpoint[joint], q_commanded_[joint], outbox);
         },
@@ -105,7 +106,7 @@ void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
     if (has_canopen_[bus]) outboxes_[bus].push(syncFrame());
   }
   for (const AnyDrive& drive : drives_) {
-    const bool needs_silence = std::visit([](const auto& it) { return it.needsSilence(); }, drive);
+    const bool needs_silence = visitKind([](const auto& it) { return it.needsSilence(); }, drive);
     if (needs_silence) outboxes_[busOf(drive)].clear();
   }
 }
@@ -113,7 +114,7 @@ void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
 void CanRobot::release() noexcept {
   for (FrameBatch& outbox : outboxes_) outbox.clear();
   for (const AnyDrive& drive : drives_)
-    std::visit([&](const auto& it) { it.release(outboxes_[it.bus()]); }, drive);
+    visitKind([&](const auto& it) { it.release(outboxes_[it.bus()]); }, drive);
 }
 
 const DriveReport& CanRobot::drive(int joint) const noexcept { return reportOf(drives_[joint]); }
@@ -151,7 +152,7 @@ bool CanRobot::hasPositions() const noexcept {
 long long CanRobot::malformedFrames() const noexcept {
   long long frames = 0;
   for (const AnyDrive& drive : drives_)
-    frames += std::visit([](const auto& it) { return it.malformedFrames(); }, drive);
+    frames += visitKind([](const auto& it) { return it.malformedFrames(); }, drive);
   return frames;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tactus/canopen/visit_kind.h"
 #include "tactus/plant/module_frames.h"
 
 namespace tactus {
@@ -21,7 +22,7 @@ constexpr std::int64_t kLongSilence_periods = 100;
 /// Calls a function with the drive, whatever its kind.
 template <class Node, class Function>
 decltype(auto) with(Node& node, Function function) noexcept {
-  return std::visit(function, node.drive);
+  return visitKind(function, node.drive);
 }
 
 /// A module on a bus has 24 bits, filters only if nobody behind it does, and is tared there.
@@ -54,7 +55,7 @@ Plant::Plant(const ControllerConfig& robot, const PlantConfig& plant,
     Node node{SlaveDrive(config, period_s), config.bus, nodes[config.bus]++,
               static_cast<std::uint32_t>(config.node_id)};
     if (config.kind == DriveKind::kMoteus) node.drive = MoteusSlave(config, period_s);
-    drives_.push_back(std::move(node));
+    drives_.push_back(node);
   }
   for (const CanTactileConfig& config : hardware_.tactile_modules)
     modules_.push_back({config.bus, config.first_id, nodes[config.bus]++});

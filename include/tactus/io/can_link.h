@@ -10,7 +10,7 @@ namespace tactus {
 struct CanLink {
   std::string kind;         ///< "can": a controller; "vcan", "vxcan": none; "slcan": a serial line
   long bit_rate_per_s = 0;  ///< 0: not set, or no controller
-  long restart_ms = 0;           ///< after bus-off; 0: never by itself
+  long restart_ms = 0;      ///< after bus-off; 0: never by itself
   long data_bit_rate_per_s = 0;  ///< of CAN FD; 0: not set
 };
 
