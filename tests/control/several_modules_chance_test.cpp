@@ -41,7 +41,9 @@ class PushedModule {
  public:
   TactileSample next(test::Random& random, int cycle) {
     if (cycle % 4 != 0) return sample_;
-    if (random.chance(0.01)) is_silent_ = !is_silent_ && sample_.force_y_N == 0.0;
+    // Often, while nothing is felt, and for long.
+    if (random.chance(is_silent_ ? 0.002 : 0.05))
+      is_silent_ = !is_silent_ && sample_.force_y_N == 0.0;
     if (is_silent_) return sample_;
     const double swell = std::sin(0.02 * cycle + phase_) + random.uniform(-0.1, 0.1);
     sample_ = test::touchAt(random.uniform(0.1, 0.3), std::clamp(30.0 * swell, 0.0, 25.0),
