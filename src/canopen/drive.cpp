@@ -5,6 +5,7 @@
 
 #include "tactus/canopen/canopen.h"
 #include "tactus/canopen/cycle_count.h"
+#include "tactus/canopen/joint_tracking.h"
 
 namespace tactus {
 namespace {
@@ -33,10 +34,9 @@ Drive::Drive(const DriveConfig& config, const CanopenConfig& canopen, double per
     : config_(config),
       heartbeat_timeout_cycles_(cyclesLasting(canopen.heartbeat_timeout_s, period_s)),
       answer_timeout_cycles_(cyclesLasting(canopen.sdo_timeout_s, period_s)),
-      stop_deadline_cycles_(cyclesLasting(canopen.stop_deadline_s, period_s)),
       setup_(config, canopen, period_s),
       velocity_counts_(config.sign * config.counts_per_unit),
-      rest_watch_(period_s) {}
+      stop_watch_(cyclesLasting(canopen.stop_deadline_s, period_s), period_s) {}
 
 void Drive::receive(const CanFrame& frame) noexcept {
   if (frame.kind != FrameKind::kData || frame.extended || frame.is_fd) return;
@@ -110,7 +110,7 @@ void Drive::observe(double position) noexcept {
     watchSilence();
     watchFault();
     watchOperation();
-    if (isRunning(goal_)) watchPosition(position);
+    if (isRunning(goal_)) judgePosition(config_, position, feedback_.has_value(), report_);
   }
   feedback_.reset();
 }
@@ -214,13 +214,6 @@ void Drive::watchOperation() noexcept {
   enabled_cycles_ = is_running ? std::min(enabled_cycles_ + 1, kSettledCycles) : 0;
 }
 
-void Drive::watchPosition(double position) noexcept {
-  if (!std::isfinite(position)) return fail(Fault::kCommandNotFinite);
-  const double distance = std::abs(position - report_.position);
-  const double limit = config_.max_following_error;
-  if (feedback_ && distance > limit) fail(Fault::kFollowingError, {distance, limit, "m or rad"});
-}
-
 bool Drive::isRunning(DriveGoal goal) const noexcept {
   return goal == DriveGoal::kEnabled && report_.fault == Fault::kNone &&
          state_ == DriveState::kOperationEnabled;
@@ -239,17 +232,10 @@ std::int32_t Drive::velocityCounts(DriveGoal goal, double velocity, double posit
     velocity_counts_.reset();
     return 0;
   }
-  const double limit = config_.max_following_error;  // also where the measured position is old
-  const double lag = std::clamp(position - report_.position, -limit, limit);
-  const double tracking = velocity + config_.tracking_gain_per_s * lag;
-  return velocity_counts_.next(std::clamp(tracking, -config_.max_velocity, config_.max_velocity));
+  return velocity_counts_.next(trackingVelocity(config_, velocity, position, report_.position));
 }
 
-void Drive::fail(Fault fault, const FaultDetail& detail) noexcept {
-  if (report_.fault != Fault::kNone) return;
-  report_.fault = fault;
-  report_.detail = detail;
-}
+void Drive::fail(Fault fault, const FaultDetail& detail) noexcept { latch(fault, detail, report_); }
 
 /// Nothing without an EMCY: the status word tells no reason.
 FaultDetail Drive::emergencyDetail() const noexcept {

@@ -10,21 +10,10 @@ namespace tactus {
 namespace {
 
 constexpr int kStopPeriod_cycles = 5;  ///< between NMT stop commands
-constexpr int kHearing_cycles = 3;     ///< until feedback tells of a command
 
 }  // namespace
 
-/// What it did meanwhile is heard in the next cycles, which therefore remain.
-void Drive::coast(int missed_cycles) noexcept {
-  const auto pass = [&](int& cycles) {
-    const long long passed = static_cast<long long>(cycles) + missed_cycles;
-    const long long latest = stop_deadline_cycles_ - kHearing_cycles;
-    if (cycles > 0) cycles = std::max(cycles, static_cast<int>(std::min(passed, latest)));
-  };
-  pass(quick_stop_cycles_);
-  pass(ignored_cycles_);
-  rest_watch_.restart();  // nobody knows how far it has come in which time
-}
+void Drive::coast(int missed_cycles) noexcept { stop_watch_.coast(missed_cycles); }
 
 void Drive::release(FrameBatch& out) const noexcept {
   const NmtCommand command =
@@ -64,22 +53,9 @@ void Drive::makeRestart(FrameBatch& out) noexcept {
 void Drive::watchStop(DriveGoal goal) noexcept {
   const bool ignores = goal == DriveGoal::kDisabled && phase_ == Phase::kConfigured &&
                        state_ == DriveState::kOperationEnabled;
-  ignored_cycles_ = ignores ? std::min(ignored_cycles_, stop_deadline_cycles_) + 1 : 0;
-  if (ignored_cycles_ > stop_deadline_cycles_) fail(Fault::kDriveStateLost);
-  const int periods = std::exchange(periods_heard_, 0);
-  if (goal != DriveGoal::kQuickStop) {
-    rest_watch_.restart();
-    quick_stop_cycles_ = cut_off_cycles_ = 0;
-    report_.is_moving_on = report_.is_cut_off = false;
-    return;
-  }
-  // What it did while nobody heard of it shows as a jump, which is no motion on.
   const bool is_unheard = cycles_without_feedback_ > kMaxSilentCycles || !report_.has_position;
-  if (is_unheard) rest_watch_.restart();
-  if (!is_unheard && rest_watch_.update(report_.position, periods)) report_.is_moving_on = true;
-  quick_stop_cycles_ = std::min(quick_stop_cycles_, stop_deadline_cycles_) + 1;
-  const bool is_late = quick_stop_cycles_ > stop_deadline_cycles_ || report_.is_moving_on;
-  if (is_late && !report_.is_off) report_.is_cut_off = true;
+  stop_watch_.update(goal, ignores, is_unheard, std::exchange(periods_heard_, 0), report_);
+  if (goal != DriveGoal::kQuickStop) cut_off_cycles_ = 0;
 }
 
 void Drive::cutOff(FrameBatch& out) noexcept {

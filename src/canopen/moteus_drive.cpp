@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tactus/canopen/cycle_count.h"
+#include "tactus/canopen/joint_tracking.h"
 
 namespace tactus {
 namespace {
@@ -46,8 +47,7 @@ MoteusDrive::MoteusDrive(const DriveConfig& config, const CanopenConfig& canopen
     : config_(config),
       watchdog_s_(static_cast<float>(canopen.heartbeat_timeout_s)),
       boot_timeout_cycles_(cyclesLasting(canopen.boot_timeout_s, period_s)),
-      stop_deadline_cycles_(cyclesLasting(canopen.stop_deadline_s, period_s)),
-      rest_watch_(period_s) {
+      stop_watch_(cyclesLasting(canopen.stop_deadline_s, period_s), period_s) {
   if (!(watchdog_s_ > 0.0F))
     throw std::invalid_argument("heartbeat_timeout_s: the drive's watchdog needs a time above 0");
 }
@@ -63,16 +63,7 @@ void MoteusDrive::receive(const CanFrame& frame) noexcept {
   periods_heard_ = std::min(periods_heard_ + 1, kMostReplies);
 }
 
-void MoteusDrive::coast(int missed_cycles) noexcept {
-  const auto pass = [&](int& cycles) {
-    const long long passed = static_cast<long long>(cycles) + missed_cycles;
-    const long long latest = stop_deadline_cycles_ - kSettledAfter_cycles;
-    if (cycles > 0) cycles = std::max(cycles, static_cast<int>(std::min(passed, latest)));
-  };
-  pass(quick_stop_cycles_);
-  pass(ignored_cycles_);
-  rest_watch_.restart();
-}
+void MoteusDrive::coast(int missed_cycles) noexcept { stop_watch_.coast(missed_cycles); }
 
 void MoteusDrive::observe(double position) noexcept {
   countSilence();
@@ -182,31 +173,14 @@ void MoteusDrive::judgeOperation(double position) noexcept {
   if (goal_ == DriveGoal::kEnabled && !is_running && enabled_cycles_ >= kSettledAfter_cycles)
     fail(Fault::kDriveStateLost);
   enabled_cycles_ = is_running ? std::min(enabled_cycles_ + 1, kSettledAfter_cycles) : 0;
-  if (!is_running) return;
-  if (!std::isfinite(position)) return fail(Fault::kCommandNotFinite);
-  const double distance = std::abs(position - report_.position);
-  const double limit = config_.max_following_error;
-  if (reply_ && distance > limit) fail(Fault::kFollowingError, {distance, limit, "m or rad"});
+  if (is_running) judgePosition(config_, position, reply_.has_value(), report_);
 }
 
 void MoteusDrive::watchStop(DriveGoal goal) noexcept {
   const bool ignores = goal == DriveGoal::kDisabled && phase_ == Phase::kConfigured &&
                        report_.state == DriveState::kOperationEnabled;
-  ignored_cycles_ = ignores ? std::min(ignored_cycles_, stop_deadline_cycles_) + 1 : 0;
-  if (ignored_cycles_ > stop_deadline_cycles_) fail(Fault::kDriveStateLost);
-  const int periods = std::exchange(periods_heard_, 0);
-  if (goal != DriveGoal::kQuickStop) {
-    rest_watch_.restart();
-    quick_stop_cycles_ = 0;
-    report_.is_moving_on = report_.is_cut_off = false;
-    return;
-  }
   const bool is_unheard = silent_cycles_ > kMaxSilentCycles || !report_.has_position;
-  if (is_unheard) rest_watch_.restart();
-  if (!is_unheard && rest_watch_.update(report_.position, periods)) report_.is_moving_on = true;
-  quick_stop_cycles_ = std::min(quick_stop_cycles_, stop_deadline_cycles_) + 1;
-  const bool is_late = quick_stop_cycles_ > stop_deadline_cycles_ || report_.is_moving_on;
-  if (is_late && !report_.is_off) report_.is_cut_off = true;
+  stop_watch_.update(goal, ignores, is_unheard, std::exchange(periods_heard_, 0), report_);
 }
 
 bool MoteusDrive::isRunning(DriveGoal goal) const noexcept {
@@ -234,17 +208,12 @@ MoteusCommand::Kind MoteusDrive::stopping() const noexcept {
 }
 
 float MoteusDrive::turnsPerSecond(double velocity, double position) const noexcept {
-  const double limit = config_.max_following_error;
-  const double lag = std::clamp(position - report_.position, -limit, limit);
-  const double tracking = std::clamp(velocity + config_.tracking_gain_per_s * lag,
-                                     -config_.max_velocity, config_.max_velocity);
+  const double tracking = trackingVelocity(config_, velocity, position, report_.position);
   return static_cast<float>(config_.sign * config_.counts_per_unit * tracking);
 }
 
 void MoteusDrive::fail(Fault fault, const FaultDetail& detail) noexcept {
-  if (report_.fault != Fault::kNone) return;
-  report_.fault = fault;
-  report_.detail = detail;
+  latch(fault, detail, report_);
 }
 
 }  // namespace tactus

@@ -188,7 +188,7 @@ EdsFile parseEds(const SourceFile& file) {
     addEdsValue(*section, line, lines.at());
   }
   std::set<std::int64_t> objects;
-  for (const char* const list : {"MandatoryObjects", "OptionalObjects", "ManufacturerObjects"})
+  for (const char* const list : kEdsObjectLists)
     if (const EdsSection* const found = eds.find(list)) checkObjectList(*found, objects);
   if (objects.empty())
     failAt(eds.begin, "MandatoryObjects", "no list of objects", "expected an EDS of CiA 306");

@@ -34,7 +34,7 @@ std::int64_t objectType(const EdsSection& section) {
 }
 
 void requireListed(const EdsFile& eds, const EdsSection& section, std::uint16_t index) {
-  for (const char* const name : {"MandatoryObjects", "OptionalObjects", "ManufacturerObjects"}) {
+  for (const char* const name : kEdsObjectLists) {
     const EdsSection* const list = eds.find(name);
     if (!list) continue;
     for (const auto& [key, value] : list->values)

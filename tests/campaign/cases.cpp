@@ -35,6 +35,22 @@ void takeTurns(std::vector<Case>& cases) {
 
 }  // namespace
 
+Plan latePlan(const Stage& stage, Moment moment, Ending ending, const char* kind, int from_ms,
+              int until_ms) {
+  Plan plan;
+  plan.moment = moment;
+  plan.ending = ending;
+  plan.comes_late = true;
+  plan.attempts = 2;
+  plan.go_on_ms = 700;
+  if (kind == nullptr) return plan;
+  test::Random random(1);
+  Injection x = drawInjection(random, stage.scene, kindOf(kind), from_ms);
+  x.until_ms = until_ms;
+  plan.injections.push_back(x);
+  return plan;
+}
+
 std::vector<Case> allCases(const Stage& stage) {
   std::array<std::vector<Case>, 3> groups;
   addModeCases(stage, groups[0]);

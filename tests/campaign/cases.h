@@ -15,6 +15,11 @@ struct Case {
   Plan plan;
 };
 
+/// Of a case: the user comes when all has to be at rest, and lets the arm go on for a moment. kind:
+/// of a trouble that is there anyway, for so long; nullptr: none.
+Plan latePlan(const Stage& stage, Moment moment, Ending ending, const char* kind, int from_ms,
+              int until_ms);
+
 inline constexpr const char* kVariantOfAll = kVariants[0];
 
 /// Every kind of trouble in every mode at 20 phases; phases of the last five with frames that

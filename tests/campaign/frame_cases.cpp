@@ -27,18 +27,7 @@ constexpr std::array<ShortRun, 3> kShortRuns = {{
 }};
 
 Plan shortPlan(const Stage& stage, const ShortRun& run) {
-  Plan plan;
-  plan.moment = run.moment;
-  plan.ending = Ending::kMendStop;
-  plan.comes_late = true;
-  plan.attempts = 2;
-  plan.go_on_ms = 700;
-  if (run.kind == nullptr) return plan;
-  test::Random random(1);
-  Injection x = drawInjection(random, stage.scene, kindOf(run.kind), 5);
-  x.until_ms = 100;
-  plan.injections.push_back(x);
-  return plan;
+  return latePlan(stage, run.moment, Ending::kMendStop, run.kind, 5, 100);
 }
 
 std::vector<SeenFrame> framesOf(const Stage& stage, const ShortRun& run, int& end_ms) {

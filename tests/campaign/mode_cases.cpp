@@ -42,18 +42,8 @@ struct Span {
 };
 
 Plan stancePlan(const Stage& stage, const Stance& stance, int until_ms) {
-  Plan plan;
-  plan.moment = stance.moment;
-  plan.ending = Ending::kGoOnStop;
-  plan.comes_late = true;
-  plan.attempts = 2;
-  plan.go_on_ms = 700;
-  if (stance.kind == nullptr) return plan;
-  Random random(1);
-  Injection x = drawInjection(random, stage.scene, kindOf(stance.kind), stance.from_ms);
-  x.until_ms = stance.until_ms >= 0 ? stance.until_ms : until_ms;
-  plan.injections.push_back(x);
-  return plan;
+  return latePlan(stage, stance.moment, Ending::kGoOnStop, stance.kind, stance.from_ms,
+                  stance.until_ms >= 0 ? stance.until_ms : until_ms);
 }
 
 /// When the mode begins, and for how long it lasts, undisturbed.

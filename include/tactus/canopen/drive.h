@@ -8,7 +8,7 @@
 #include "tactus/canopen/drive_setup.h"
 #include "tactus/canopen/hardware_config.h"
 #include "tactus/canopen/pdo.h"
-#include "tactus/canopen/rest_watch.h"
+#include "tactus/canopen/stop_watch.h"
 #include "tactus/canopen/velocity_counts.h"
 
 namespace tactus {
@@ -95,7 +95,6 @@ class Drive {
   void watchSilence() noexcept;
   void watchFault() noexcept;
   void watchOperation() noexcept;
-  void watchPosition(double position) noexcept;
   bool isRunning(DriveGoal goal) const noexcept;
   std::uint16_t controlWord(DriveGoal goal) const noexcept;
   std::int32_t velocityCounts(DriveGoal goal, double velocity, double position) noexcept;
@@ -105,10 +104,9 @@ class Drive {
   DriveConfig config_;
   int heartbeat_timeout_cycles_;
   int answer_timeout_cycles_;
-  int stop_deadline_cycles_;
   DriveSetup setup_;
   VelocityCounts velocity_counts_;
-  RestWatch rest_watch_;
+  StopWatch stop_watch_;
   DriveGoal goal_ = DriveGoal::kSilent;  ///< of the last update()
   DriveReport report_;
   Phase phase_ = Phase::kUnconfigured;
@@ -123,8 +121,6 @@ class Drive {
   int reset_cycles_ = 0;        ///< since the reset of an old fault began
   int enabled_cycles_ = 0;      ///< in a row, counted up to where operation is settled
   int restart_cycles_ = 0;      ///< since NMT reset node was sent; 0: it has to be
-  int ignored_cycles_ = 0;      ///< in a row enabled though kDisabled, counted up to the deadline
-  int quick_stop_cycles_ = 0;   ///< in a row, likewise
   int cut_off_cycles_ = 0;      ///< up to silence
   std::uint32_t malformed_frames_ = 0;
 };

@@ -42,4 +42,11 @@ struct DriveReport {
   SetupFailure setup_failure;
 };
 
+/// Only the first fault counts.
+inline void latch(Fault fault, const FaultDetail& detail, DriveReport& report) noexcept {
+  if (report.fault != Fault::kNone) return;
+  report.fault = fault;
+  report.detail = detail;
+}
+
 }  // namespace tactus

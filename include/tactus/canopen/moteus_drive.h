@@ -7,7 +7,7 @@
 #include "tactus/canopen/drive_report.h"
 #include "tactus/canopen/hardware_config.h"
 #include "tactus/canopen/moteus_frames.h"
-#include "tactus/canopen/rest_watch.h"
+#include "tactus/canopen/stop_watch.h"
 
 namespace tactus {
 
@@ -60,8 +60,7 @@ class MoteusDrive {
   DriveConfig config_;
   float watchdog_s_;
   int boot_timeout_cycles_;
-  int stop_deadline_cycles_;
-  RestWatch rest_watch_;
+  StopWatch stop_watch_;
   DriveReport report_;
   DriveGoal goal_ = DriveGoal::kSilent;  ///< of the last update()
   Phase phase_ = Phase::kUnconfigured;
@@ -72,8 +71,6 @@ class MoteusDrive {
   int silent_cycles_ = 0;
   int resting_cycles_ = 0;  ///< in a row
   int enabled_cycles_ = 0;  ///< in a row, counted up to where operation is settled
-  int ignored_cycles_ = 0;  ///< in a row following though kDisabled
-  int quick_stop_cycles_ = 0;
   int periods_heard_ = 0;
   std::uint32_t malformed_frames_ = 0;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -42,6 +43,10 @@ struct EdsSection {
 /// The name under which a section is found: lower case, and of an object without leading zeros:
 /// "1018sub1" of [1018SUB01].
 std::string edsSectionKey(std::string_view name);
+
+/// The sections that list the objects.
+inline constexpr std::array<const char*, 3> kEdsObjectLists = {
+    "MandatoryObjects", "OptionalObjects", "ManufacturerObjects"};
 
 struct EdsFile {
   SourcePosition begin;

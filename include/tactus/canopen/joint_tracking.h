@@ -1,0 +1,19 @@
+#pragma once
+
+#include "tactus/canopen/drive_report.h"
+#include "tactus/canopen/hardware_config.h"
+
+/// How a drive of any kind is kept to where its joint is commanded to be.
+namespace tactus {
+
+/// velocity, m/s or rad/s, and what leads from where the drive was measured to `position`, m or
+/// rad: tracking_gain_per_s times the difference, of which no more than max_following_error counts,
+/// also where the measured position is old. Within max_velocity.
+double trackingVelocity(const DriveConfig& config, double velocity, double position,
+                        double measured) noexcept;
+
+/// Latches kFollowingError, or kCommandNotFinite. is_new: the report's position came in this cycle.
+void judgePosition(const DriveConfig& config, double position, bool is_new,
+                   DriveReport& report) noexcept;
+
+}  // namespace tactus

@@ -1,0 +1,25 @@
+#include "tactus/canopen/joint_tracking.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+
+double trackingVelocity(const DriveConfig& config, double velocity, double position,
+                        double measured) noexcept {
+  const double limit = config.max_following_error;
+  const double lag = std::clamp(position - measured, -limit, limit);
+  const double tracking = velocity + config.tracking_gain_per_s * lag;
+  return std::clamp(tracking, -config.max_velocity, config.max_velocity);
+}
+
+void judgePosition(const DriveConfig& config, double position, bool is_new,
+                   DriveReport& report) noexcept {
+  if (!std::isfinite(position)) return latch(Fault::kCommandNotFinite, {}, report);
+  const double distance = std::abs(position - report.position);
+  const double limit = config.max_following_error;
+  if (is_new && distance > limit)
+    latch(Fault::kFollowingError, {distance, limit, "m or rad"}, report);
+}
+
+}  // namespace tactus
