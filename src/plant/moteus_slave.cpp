@@ -11,6 +11,7 @@ namespace {
 // Modes and faults of github.com/mjbots/moteus, docs/protocol/registers.md.
 constexpr int kStopped = 0, kFaulted = 1, kEnablingMode = 2, kPositionMode = 10;
 constexpr int kTimeoutMode = 11, kZeroVelocityMode = 12;
+constexpr double kModes = 256.0;
 constexpr int kMotorDriverFault = 33;
 constexpr double kMapVersion = 5.0;
 constexpr double kDefaultWatchdog_s = 0.1;
@@ -165,7 +166,8 @@ bool MoteusSlave::obeyFrame(const CanFrame& frame, CanFrame& reply) noexcept {
       }
       continue;
     }
-    if (reply.size + 4 + static_cast<int>(count) * valueBytes(type) > kMaxFdBytes) return false;
+    const std::uint32_t room = kMaxFdBytes - std::min(reply.size + 4U, std::uint32_t{kMaxFdBytes});
+    if (count > room / static_cast<std::uint32_t>(valueBytes(type))) return false;
     reply.data[reply.size++] = static_cast<std::uint8_t>(0x20 | type << 2 | (count & 3));
     if (first > 0x7F) reply.data[reply.size++] = static_cast<std::uint8_t>(0x80 | (first & 0x7F));
     reply.data[reply.size++] = static_cast<std::uint8_t>(first > 0x7F ? first >> 7 : first);
@@ -176,7 +178,7 @@ bool MoteusSlave::obeyFrame(const CanFrame& frame, CanFrame& reply) noexcept {
 
 void MoteusSlave::write(std::uint32_t number, double value) noexcept {
   if (troubles_.ignores_commands) return;
-  if (number == 0x000) command(static_cast<int>(value));
+  if (number == 0x000 && std::abs(value) < kModes) command(static_cast<int>(value));
   if (number == 0x021) commanded_turns_per_s_ = std::isfinite(value) ? value : 0.0;
   if (number != 0x027 || (mode_ != kPositionMode && mode_ != kEnablingMode)) return;
   const double watchdog_s = value > 0.0 ? value : kDefaultWatchdog_s;

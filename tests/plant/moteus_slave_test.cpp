@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "tactus/canopen/moteus_frames.h"
@@ -47,6 +48,23 @@ class MoteusOfNode3 : public testing::Test {
   MoteusSlave slave_{config(), 0.001};
   std::int64_t t_ns_ = 0;
 };
+
+/// Counts up to 2^32 are a few bytes, and any number may stand in for a mode.
+TEST_F(MoteusOfNode3, DoesNotAnswerBeyondAFrameWhateverIsAsked) {
+  CanFrame frame = moteusCommandFrame(3, {});
+  for (const std::uint8_t last : std::to_array<std::uint8_t>({1, 4, 7, 8, 12, 15})) {
+    for (const std::uint8_t type : std::to_array<std::uint8_t>({0x10, 0x14, 0x18, 0x1C})) {
+      frame.data = {type, 0x80, 0x80, 0x80, 0x80, last, 0x00};
+      frame.size = 7;
+      slave_.receive({frame, t_ns_}, t_ns_);
+      EXPECT_TRUE(slave_.outbox().empty()) << int{type} << " " << int{last};
+    }
+  }
+  frame.data = {0x0D, 0x00, 0x00, 0x00, 0xC0, 0x7F};  // mode: a float that is NaN
+  frame.size = 6;
+  slave_.receive({frame, t_ns_}, t_ns_);
+  EXPECT_EQ(slave_.mode(), 0);
+}
 
 TEST_F(MoteusOfNode3, TellsWhereItIsAndWhatItIs) {
   slave_.setPosition(2.5);
