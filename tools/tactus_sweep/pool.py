@@ -1,5 +1,6 @@
 """Worker processes of this machine."""
 
+import contextlib
 import json
 import os
 import pathlib
@@ -66,7 +67,8 @@ class Worker:
         """Ends the run that it is at, too."""
         self.process.kill()
         self.process.wait()
-        self.process.stdin.close()
+        with contextlib.suppress(BrokenPipeError):  # what it has not read any more
+            self.process.stdin.close()
         self.process.stdout.close()
 
 
