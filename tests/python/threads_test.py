@@ -66,11 +66,12 @@ class Threads(unittest.TestCase):
                            ("read", lambda: tactus.read_log(self.log)),
                            ("replay", lambda: tactus.replay(self.log))):
             with self.subTest(name):
-                self.assertTrue(self.goes_on_during(work))
+                # Short work may be over before a busy machine has run this thread at all.
+                self.assertTrue(any(self.goes_on_during(work) for _ in range(100)))
 
     def test_do_not_go_on_while_another_one_keeps_the_lock(self):
         """The test can fail."""
-        self.assertFalse(self.goes_on_during(lambda: sum(range(3_000_000))))
+        self.assertFalse(any(self.goes_on_during(lambda: sum(range(300_000))) for _ in range(100)))
 
     def test_simulate_the_same_beside_each_other(self):
         alone = tactus.simulate(self.scene)["dq"].tobytes()
