@@ -8,9 +8,12 @@
 namespace tactus {
 namespace {
 
-constexpr double kSmoothing_s = 1.0;  ///< T_s
-constexpr double kTurn = 0.05;        ///< theta_s, rad
-constexpr double kLearning = 0.01;    ///< a sample: settles within half a second at 4 ms
+/// T_s. One of several contacts holds F_th by motions of the null space that can be a hundred times
+/// as large as what they move it by: it needs its direction better.
+constexpr double kSmoothing_s = 1.0;
+constexpr double kSmoothingOfSeveral_s = 4.0;
+constexpr double kTurn = 0.05;      ///< theta_s, rad
+constexpr double kLearning = 0.01;  ///< a sample: settles within half a second at 4 ms
 /// The peak is remembered for kRinging / f_c; of what is left of it the filter shows 0.175 from the
 /// other side after the shortest blow, less after others. Samples miss some of the peak, the more
 /// the rarer they are: hence twice that, which does for periods up to 0.3 / f_c.
@@ -103,9 +106,9 @@ void ContactSmoother::update(const ForceGains& gains, const ContactPointState& s
   const bool grows = isImpact(sensor.force_N, state);
   learnNoise(gains.estimator.min_force_change_N, sensor.force_N * sensor.direction, state);
   const double weight = sensor.force_N * sensor.force_N;
-  state.weight =
-      flushed(state.weight * (1.0 - state.smoothing.of(sensor.interval_s, kSmoothing_s)) /
-              (1.0 + axis_turn / kTurn));
+  const double smoothing_s = is_one_of_several_ ? kSmoothingOfSeveral_s : kSmoothing_s;
+  state.weight = flushed(state.weight * (1.0 - state.smoothing.of(sensor.interval_s, smoothing_s)) /
+                         (1.0 + axis_turn / kTurn));
   if (is_rebound || sensor.force_N <= leastForce_N(gains, is_one_of_several_) || weight == 0.0)
     return;
   if (isOfBlow(sensor, state)) return;

@@ -202,7 +202,7 @@ double SeveralContacts::holdInNullSpace(const ForceGains& gains, const SpeedRows
   push.y.setZero();
   push.v_scaled.setZero();
   tactus::addRows(rows, l, kNullSpaceAlone, push);
-  const double share = null_speed_limit_.share(gains, push.v_scaled, limits);
+  const double share = null_speed_limit_.shareOnTop(gains, motion.v_scaled, push.v_scaled, limits);
   motion.v_scaled += share * push.v_scaled;
   motion.y += share * push.y;
   return share * l.head(contacts).sum();

@@ -7,7 +7,6 @@ namespace tactus {
 namespace {
 
 constexpr double kYielding_N_s_m = 1.5;  ///< delta_0
-constexpr double kProximal = 1e-6;
 constexpr int kRepetitions = 4;
 /// Of the largest speed that lacks: what a repetition changes less than this is found.
 constexpr double kFound = 1e-11;
@@ -76,7 +75,7 @@ void RowProblem::respond(const RowSpace& space, RowMatrix& K, RowVector& delta) 
   }
   delta.resize(rows_.size);
   for (int i = 0; i < rows_.size; ++i) {
-    delta[i] = kProximal * K(i, i);
+    delta[i] = space.proximal * K(i, i);
     if (opposition[i] == 0.0) continue;
     const double most =
         std::min(kYielding_N_s_m / rows_.row[i].damping_N_s_per_m, space.max_yielding * K(i, i));

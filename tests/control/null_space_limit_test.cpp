@@ -133,5 +133,45 @@ TEST(NullSpaceLimit, FollowsEachOfItsGains) {
   }
 }
 
+/// A push on top of another velocity: as much of it as the sum bears, which may be as fast as what
+/// was there before.
+TEST(NullSpaceLimit, OfAPushOnTopIsOfTheSum) {
+  test::Random random(115);
+  int whole = 0, cut = 0;
+  for (int i = 0; i < 3000; ++i) {
+    ContactCase c(random);
+    const NullSpeedLimit limit(c.chain, c.inv_sqrt);
+    c.gains.max_null_speed_m_per_s = random.logUniform(0.1, 5.0);
+    c.gains.max_null_speed_rad_per_s = random.logUniform(0.1, 5.0);
+    const auto draw = [&](double most) {
+      return scaled(JointVector(random.vector(c.n, -most, most)), ScaledVector::Ones());
+    };
+    const ScaledVector v = draw(random.logUniform(0.01, 10.0));
+    const ScaledVector push = random.chance(0.3) ? ScaledVector(-random.uniform(0.0, 2.0) * v)
+                                                 : draw(random.logUniform(0.01, 1e4));
+    NullSpeedLimits limits;
+    const double share = limit.shareOnTop(c.gains, v, push, limits);
+    ASSERT_GE(share, 0.0);
+    ASSERT_LE(share, 1.0);
+    double fullest = 0.0;
+    for (int joint = 0; joint < c.n; ++joint) {
+      const double before = std::abs(c.inv_sqrt[joint] * v[joint]);
+      const double most = std::max(before, c.chain.type(joint) == JointType::kPrismatic
+                                               ? c.gains.max_null_speed_m_per_s
+                                               : c.gains.max_null_speed_rad_per_s);
+      const double after = std::abs(c.inv_sqrt[joint] * (v[joint] + share * push[joint]));
+      ASSERT_LE(after, most * (1.0 + 1e-9)) << i;
+      if (push[joint] * (v[joint] + share * push[joint]) > 0.0)
+        fullest = std::max(fullest, after / most);
+    }
+    if (share < 1.0) {
+      ASSERT_NEAR(fullest, 1.0, 1e-9) << i;  // no more would do
+    }
+    (share < 1.0 ? cut : whole) += 1;
+  }
+  EXPECT_GT(whole, 300);
+  EXPECT_GT(cut, 300);
+}
+
 }  // namespace
 }  // namespace tactus

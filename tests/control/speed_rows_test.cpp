@@ -121,7 +121,7 @@ TEST(SpeedRows, OfOneContactAloneAreItsLaw) {
     const double v_res = dot(row.a_scaled, c.motion.v_scaled) + dot(row.a_task, c.motion.y, c.m);
     const double u_t = std::min(0.0, v_res + row.v_max_m_per_s) * invertRegularised(k_t, k_j);
     const RowMultipliers found =
-        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), {1.0, 0.0, kNoLimit}, c.motion);
+        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), {1.0, 0.0, kNoLimit, 1e-6}, c.motion);
     ASSERT_TRUE(found.is_whole);
     ASSERT_NEAR(found.l[0], -u_t, 1e-12 * (1.0 + std::abs(u_t))) << i;
     active += u_t < 0.0 ? 1 : 0;
@@ -140,6 +140,35 @@ TEST(SpeedRows, InTheNullSpaceAloneLeaveTheTask) {
     const Eigen::VectorXd change = c.joints(c.motion) - before;
     ASSERT_LT((change - c.inverse.N * change).norm(), 1e-9 * (1.0 + change.norm())) << i;
   }
+}
+
+/// Of rows that a null space cannot keep at once. Each of four repetitions adds at most what lacks
+/// over rho K, in the norm of rho K: however singular they are, pushes have a bound.
+TEST(SpeedRows, InTheNullSpaceAloneAskForNoMoreThanWhatLacksOverRho) {
+  test::Random random(320);
+  int singular = 0;
+  for (int i = 0; i < 2000; ++i) {
+    RowsCase c(random, random.integer(2, 6));
+    const JointVector last = c.A.row(0);
+    for (int row = 1; row < c.rows.size; ++row) {  // all but opposed to each other, or alike
+      const double sign = random.chance(0.5) ? -1.0 : 1.0;
+      c.setRow(row, sign * last + random.logUniform(1e-6, 1.0) * random.vector(c.n, -1.0, 1.0));
+    }
+    const RowVector l =
+        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), kNullSpaceAlone, c.motion).l;
+    double pushed = 0.0, lacks = 0.0;
+    for (int row = 0; row < c.rows.size; ++row) {
+      const SpeedRow& one = c.rows.row[row];
+      const double all = dot(one.a_scaled, one.a_scaled);
+      const double K = std::max({all - dot(one.a_task, one.a_task, c.m), 1e-3 * all, 1e-4});
+      const double d = std::max(0.0, -one.v_max_m_per_s - speedAlong(one, c.m, c.motion));
+      pushed += kNullSpaceAlone.proximal * K * l[row] * l[row];
+      lacks += d * d / (kNullSpaceAlone.proximal * K);
+    }
+    ASSERT_LE(pushed, 16.0 * lacks * (1.0 + 1e-9)) << i;
+    singular += pushed > lacks ? 1 : 0;
+  }
+  EXPECT_GT(singular, 10);
 }
 
 /// Whatever the solver has no time for: the arm stops before it breaks a row that standing keeps.

@@ -25,7 +25,13 @@ class NullSpeedLimit {
   double share(const ForceGains& gains, const ScaledVector& v_scaled,
                NullSpeedLimits& limits) const noexcept;
 
+  /// Likewise, of a push on top of another velocity, for their sum. A component that is beyond its
+  /// limit without the push may be as large as it was.
+  double shareOnTop(const ForceGains& gains, const ScaledVector& v_scaled,
+                    const ScaledVector& push_scaled, NullSpeedLimits& limits) const noexcept;
+
  private:
+  void renew(const ForceGains& gains, NullSpeedLimits& limits) const noexcept;
   NullSpeedLimits limits(const ForceGains& gains) const noexcept;
 
   ScaledVector inv_sqrt_weights_;

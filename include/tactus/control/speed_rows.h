@@ -35,13 +35,16 @@ struct SpeedRows {
 struct RowSpace {
   double task, null_space;
   double max_yielding;  ///< of delta_i, as a share of K_ii
+  double proximal;      ///< rho: of delta_i in any case, likewise
 };
 
 /// Yielding in proportion to forces would be most of what a null space that hardly moves the
-/// contact can do; the other level has that.
-inline constexpr RowSpace kNullSpaceAlone{0.0, 1.0, 0.1};
+/// contact can do; the other level has that. What three rows or more make ill-conditioned, though
+/// no two of them oppose each other, moves by rho as little as helps, where exact solutions would
+/// be as large as sensitive. A row by itself is kept to rho^4.
+inline constexpr RowSpace kNullSpaceAlone{0.0, 1.0, 0.1, 0.03};
 /// The null space, being cheap, does most, and stopping all is within reach.
-inline constexpr RowSpace kBothSpaces{1.0, 30.0, kNoLimit};
+inline constexpr RowSpace kBothSpaces{1.0, 30.0, kNoLimit, 1e-6};
 
 // clang-format off: equations
 /// The least change of a motion q_1 that keeps all rows:
@@ -51,7 +54,7 @@ inline constexpr RowSpace kBothSpaces{1.0, 30.0, kNoLimit};
 /// l_i with delta_i in proportion to 1 / D_i, which is an equilibrium of forces; rows without
 /// opponents are exact. From l = 0 four times, or until nothing changes,
 ///   l <- LCP(K + diag(delta), d + delta l),
-///   delta_i = delta_0 / D_i min(1, sum_j o_ij) + 1e-6 K_ii
+///   delta_i = delta_0 / D_i min(1, sum_j o_ij) + rho K_ii
 ///   o_ij = p_i p_j min(0, K_ij)^2 / (K_ii K_jj)
 /// with delta_0 = 1.5 N s m and K_ii at least max(1e-3 |W^-1/2 a_i|^2, 1e-4). Derived in
 /// docs/gate.md.
