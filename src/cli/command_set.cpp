@@ -94,6 +94,8 @@ int save(bool as_json) {
     fmt::print("{} written, as it was is {}~\n", escaped(saved.path), escaped(saved.path));
   else
     fmt::print("{} has all that runs\n", escaped(saved.path));
+  if (!as_json && !saved.is_kept)
+    fmt::print("these gains are still on trial: `tactus diff` shows whether they go back\n");
   return kExitDone;
 }
 

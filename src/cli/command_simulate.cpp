@@ -73,11 +73,12 @@ void printHeading() {
   fmt::print("{:<28} {:>9} {:>9} {:>10} {:>10} {:>8}\n", "", "N", "N", "mm", "mm", "than real");
 }
 
-void printRow(const Scene& scene, const SimulationResult& result) {
+/// name: of the run, as several may be of one scene.
+void printRow(const std::string& name, const Scene& scene, const SimulationResult& result) {
   const RunFigures& figures = result.figures;
-  fmt::print("{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", scene.name,
-             figures.peak_force_N, figures.final_force_N, 1e3 * figures.tcp_error_max_m,
-             1e3 * figures.tcp_error_final_m, result.real_time_factor,
+  fmt::print("{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", name, figures.peak_force_N,
+             figures.final_force_N, 1e3 * figures.tcp_error_max_m, 1e3 * figures.tcp_error_final_m,
+             result.real_time_factor,
              figures.end.fault == Fault::kNone ? "completed" : faultEvent(figures.end, scene));
   if (figures.unsensed && figures.unsensed->force_N > 0.0)
     fmt::print("{:<28} {}\n", "", unsensedText(*figures.unsensed, scene));
@@ -105,7 +106,7 @@ int simulateScenes(const SimulateOptions& options) {
     if (options.json) {
       json.push_back(summaryJson(scenes[i], result.figures, result.real_time_factor));
     } else {
-      printRow(scenes[i], result);
+      printRow(folders[i].filename().string(), scenes[i], result);
       std::fflush(stdout);
     }
   }

@@ -36,9 +36,7 @@ struct StatusOptions {
 std::string readStatus(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    const char* reason = errno == ENOENT ? "no service is running; `journalctl -u tactusd` says "
-                                           "how it ended"
-                                         : std::strerror(errno);
+    const char* reason = errno == ENOENT ? kNoDaemon : std::strerror(errno);
     const char* help = errno == EACCES ? "; it is for root and the group tactus" : "";
     throw RunError(fmt::format("{}: {}{}", escaped(path), reason, help));
   }

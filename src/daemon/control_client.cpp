@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "tactus/daemon/run_status.h"
 #include "tactus/record/run_error.h"
 #include "tactus/scene/input_error.h"
 #include "tactus/scene/located_error.h"
@@ -26,7 +27,7 @@ const char* reasonText(int reason) {
   switch (reason) {
     case ENOENT:
     case ECONNREFUSED:
-      return "no daemon is running; `journalctl -u tactusd` says how it ended";
+      return kNoDaemon;
     case EACCES:
       return "may not be written; it is for root and the group tactus-control";
     default:

@@ -104,7 +104,11 @@ std::string compact(const Json& json) {
 }  // namespace
 
 ControlRequests::ControlRequests(const Scene& scene, LoopLink& link)
-    : link_(link), started_(scene), tool_(started_, link), kept_(scene) {}
+    : link_(link),
+      started_(scene),
+      tool_(started_, link),
+      read_hash_(sourceHash(scene.sources.front().text)),
+      kept_(scene) {}
 
 std::string ControlRequests::answer(std::string_view request) {
   try {
@@ -148,6 +152,7 @@ Json ControlRequests::set(const Json& request) {
 
 Json ControlRequests::reload(const Json& request) {
   GainPlan plan = planReload(newest(), started_.overrides, leastMargin());
+  read_hash_ = sourceHash(plan.scene.sources.front().text);
   if (!plan.keys.empty()) return order(std::move(plan), request, false);
   (trial_ ? trial_->scene : kept_) = std::move(plan.scene);  // comments may differ
   Json json = showGains();
@@ -178,7 +183,7 @@ Json ControlRequests::showGains() const {
           {"state", stateName(report_.state)},
           {"trouble", troubleText(report_)},
           {"scene", newest().sources.front().path},
-          {"scene_hash", fmt::format("{:016x}", sourceHash(newest().sources.front().text))},
+          {"scene_hash", fmt::format("{:016x}", read_hash_)},
           {"kept", gainsJson(kept_.controller.gains)},
           {"ordered", gainsJson(newest().controller.gains)}};
 }

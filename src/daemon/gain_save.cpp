@@ -56,12 +56,13 @@ SavedGains saveGains(const ControlClient& daemon) {
         fmt::format("{}: was changed since the daemon read it, expected no change; "
                     "`tactus diff` shows what differs, `tactus reload` takes it",
                     escaped(path)));
+  const bool is_kept = answer.at("state") == "kept";
   const std::string changed = withGains(path, text, answer.at("ordered"));
-  if (changed == text) return {path, false};
+  if (changed == text) return {path, false, is_kept};
   replaceFile(path, changed,
               [&](const std::string& next) { checkGains(next, answer.at("ordered")); });
   daemon.ask({{"do", "reload"}});  // it has read what is there now
-  return {path, true};
+  return {path, true, is_kept};
 }
 
 }  // namespace tactus

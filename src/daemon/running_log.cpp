@@ -33,7 +33,7 @@ std::string logOf(const Json& status) {
 std::string runningLog() {
   const std::string path = runtimePath(kStatusName);
   if (!std::filesystem::exists(path))
-    throw RunError(fmt::format("{}: no daemon is running, or a log is to be named", escaped(path)));
+    throw RunError(fmt::format("{}: {}; a log may be named, too", escaped(path), kNoDaemon));
   const std::string log = logOf(readRunStatus());
   if (log.empty()) throw RunError(fmt::format("{}: the daemon writes no log", escaped(path)));
   return log;

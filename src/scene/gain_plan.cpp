@@ -81,10 +81,11 @@ bool isRaised(const Gains& from, const Gains& to) {
          to.task.max_return_speed_rad_per_s > from.task.max_return_speed_rad_per_s;
 }
 
+/// From its end, which is what was asked for, so that a refusal names that.
 void checkRamp(const Scene& running, const Scene& changed, double least_deg) {
   const Gains& from = running.controller.gains;
   Scene point = changed;
-  for (int i = 1; i <= kPointsOfTheRamp; ++i) {
+  for (int i = kPointsOfTheRamp; i > 0; --i) {
     point.controller.gains =
         gainsBetween(from, changed.controller.gains, static_cast<double>(i) / kPointsOfTheRamp);
     requirePhaseMargin(point, least_deg);

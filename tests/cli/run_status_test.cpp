@@ -82,8 +82,7 @@ TEST_F(RunStatusFile, ShowsTheRunningDaemonUntilItEnds) {
     EXPECT_EQ(json["pid"].as<int>(), getpid());
   }
   EXPECT_FALSE(std::filesystem::exists(path()));
-  EXPECT_EQ(errorOfRun(),
-            path() + ": no service is running; `journalctl -u tactusd` says how it ended");
+  EXPECT_EQ(errorOfRun(), path() + ": " + kNoDaemon);
 }
 
 TEST_F(RunStatusFile, NamesAFaultAndEndsSo) {

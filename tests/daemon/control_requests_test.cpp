@@ -1,12 +1,17 @@
 #include "tactus/daemon/control_requests.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "support/random.h"
 #include "support/shipped_scene.h"
+#include "tactus/scene/scene_loader.h"
+#include "tactus/scene/source_hash.h"
 
 namespace tactus {
 namespace {
@@ -146,6 +151,34 @@ TEST_F(ControlRequestsTest, SurvivesDamage) {
     const Json answer = Json::parse(requests_.answer(text), nullptr, false);
     ASSERT_TRUE(answer.is_object() && answer.contains("done")) << text;
   }
+}
+
+/// What `tactus save` wrote, and the daemon has read, is no change of somebody else's, whatever
+/// gains come after.
+TEST(SavedSceneFile, IsTheOneThatWasReadAfterAnUndoToo) {
+  const std::string folder = testing::TempDir() + "tactus_saved_scene";
+  std::filesystem::create_directories(folder);
+  const std::string path = folder + "/scene.yaml";
+  const auto write = [&](double damping) {
+    const std::string text =
+        fmt::format("extends: {}/config/scenes/scenario2_tactus.yaml\ncontroller:\n  damping: {}\n",
+                    TACTUS_SOURCE_DIR, damping);
+    std::ofstream(path) << text;
+    return fmt::format("{:016x}", sourceHash(text));
+  };
+  const std::string first = write(0.7);
+  const auto link = std::make_unique<LoopLink>();
+  ControlRequests requests(loadScene(path, {}), *link);
+  const auto ask = [&](const char* request) { return Json::parse(requests.answer(request)); };
+  ask(R"({"do": "set", "values": {"controller.damping": 0.8}})");
+  EXPECT_EQ(ask(R"({"do": "show"})").at("scene_hash"), first);
+  const std::string saved = write(0.8);
+  EXPECT_EQ(ask(R"({"do": "reload"})").at("scene_hash"), saved);
+  EXPECT_EQ(ask(R"({"do": "undo"})").at("scene_hash"), saved);
+  EXPECT_EQ(ask(R"({"do": "set", "values": {"controller.damping": 0.9}})").at("scene_hash"), saved);
+  std::ofstream(path) << "controller: [";
+  EXPECT_EQ(ask(R"({"do": "reload"})").at("done"), false);
+  EXPECT_EQ(ask(R"({"do": "show"})").at("scene_hash"), saved);
 }
 
 }  // namespace

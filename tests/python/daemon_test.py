@@ -125,7 +125,7 @@ class NoDaemon(unittest.TestCase):
         self.addCleanup(release.set)
 
     def test_is_said(self):
-        with self.assertRaisesRegex(tactus.RunError, "no daemon is running"):
+        with self.assertRaisesRegex(tactus.RunError, "no daemon is running here"):
             tactus.Daemon(self.path)
         self.path.write_text("no socket")
         with self.assertRaises(tactus.RunError):

@@ -100,6 +100,9 @@ TEST(GainPlan, RefusesGainsWithoutMargin) {
   ASSERT_EQ(std::sscanf(text.c_str() + text.find("at least "), "at least %lf s", &T_s), 1) << text;
   EXPECT_EQ(refusal(running, {{"controller.time_constant_s", std::to_string(T_s)}}), "");
   EXPECT_NE(refusal(running, {{"controller.time_constant_s", std::to_string(0.95 * T_s)}}), "");
+  // It speaks of what was asked for, not of the way there.
+  const std::string near = refusal(running, {{"controller.time_constant_s", "0.07"}});
+  EXPECT_NE(near.find("controller.time_constant_s: 0.07 s leaves"), std::string::npos) << near;
 }
 
 /// A scene that has less from the start may be changed for the better.

@@ -50,6 +50,7 @@ class ControlRequests {
   const Scene started_;
   std::optional<double> least_margin_deg_;  ///< takes a while to know
   ToolRequests tool_;
+  std::uint64_t read_hash_;  ///< of the scene file as it was last read
   Scene kept_;
   std::optional<Trial> trial_;
   std::vector<Scene> before_;  ///< what was kept, the newest last

@@ -52,6 +52,12 @@ std::string runtimePath(const char* name);
 /// Name of the file in that folder.
 inline constexpr const char* kStatusName = "status.json";
 
+/// Where there is none.
+inline constexpr const char* kNoDaemon =
+    "no daemon is running here; `journalctl -u tactusd` says how a service ended, "
+    "RUNTIME_DIRECTORY "
+    "leads to any other";
+
 /// CLOCK_MONOTONIC, s.
 double monotonicTime_s() noexcept;
 

@@ -38,8 +38,8 @@ class Daemon:
             self._socket.connect(self.path)
         except (FileNotFoundError, ConnectionRefusedError) as error:
             self.close()
-            raise RunError(f"{self.path}: no daemon is running; `journalctl -u tactusd` says how it "
-                           "ended") from error
+            raise RunError(f"{self.path}: no daemon is running here; `journalctl -u tactusd` says how "
+                           "a service ended, RUNTIME_DIRECTORY leads to any other") from error
         except OSError as error:
             self.close()
             raise RunError(f"{self.path}: {error.strerror or error}") from error
