@@ -21,10 +21,12 @@ class Build:
         parser.add_argument("--tactusd", type=Path, required=True)
         parser.add_argument("--out", type=Path, required=True, help="made anew by each run")
         parser.add_argument("--program", type=Path, action="append", default=[])
+        parser.add_argument("--folder", action="append", default=[], metavar="PATH=SOURCE")
         parser.add_argument("--keep", action="store_true", help="judge the results of the last run")
         options = parser.parse_args()
         self.tactus = options.tactus
         self.programs = [options.tactus, options.tactusd, *options.program]
+        self.folders = options.folder
         self.out = options.out
         self.keep = options.keep
 
@@ -37,6 +39,8 @@ class Build:
                 command += ["--program", program]
             for path in ["config", "tests/hil/scenes"]:  # the same place as in the repository
                 command += ["--folder", f"{path}={REPOSITORY / path}"]
+            for folder in self.folders:
+                command += ["--folder", folder]
             status = subprocess.run(command, check=False).returncode
             if status != 0:
                 sys.exit(f"{test}: the guest's script ended with status {status}; see {out}")

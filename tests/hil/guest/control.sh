@@ -1,10 +1,12 @@
-# Gains set, undone and reloaded while the arm moves in contact, beside clients that mean harm.
+# Gains set, undone and reloaded while the arm moves in contact, beside all who look on, and clients
+# that mean harm.
 . "$ROOT/guest/common.sh"
 . "$ROOT/guest/daemon.sh"
 . "$ROOT/guest/asking.sh"
 
 export RUNTIME_DIRECTORY=/tmp/run
 out=$ROOT/out/control
+. "$ROOT/guest/watching.sh"
 scene=/tmp/control.yaml
 
 # write_scene DAMPING
@@ -19,11 +21,14 @@ start_plant control $scene
 permit_motion
 tactusd $scene -o "$ROOT/out" 2>"$out/tactusd.txt" & daemon=$!
 wait_for running "$out/tactusd.txt"
+start_watching
 sleep 0.5
 
 told watched tactus set controller.damping=0.7 task.drift_gain_per_s=4
 told 'damping.*0.7 running' tactus diff
 told '0.7 -> 0.5' tactus undo
+see_stream
+if command -v tactus-panel >/dev/null; then work_at_panel; fi  # the build may be without it
 refused restart tactus set controller.damping=0.8 controller.order=1
 refused 'phase margin\|unstable' tactus set controller.time_constant_s=0.002
 refused 'damping' tactus set controller.dampin=1
@@ -49,6 +54,7 @@ told state tactus set controller.damping=0.6 --json
 
 kill $daemon
 wait $daemon || fail "tactusd exits with $?"
+stop_watching
 stop_plant
 tactus set controller.damping=0.5 2>>"$out/told.txt"
 equal "exit status without a daemon" $? 3
