@@ -10,9 +10,7 @@ namespace {
 constexpr double kLeastTrial_s = 4.0;  ///< of contact
 constexpr double kTrialTimeConstants = 10.0;
 constexpr double kBack_s = 0.1;  ///< faster, a link that swings is slower stopped
-constexpr double kForce = 1.3;   ///< of F_act + F_th
-constexpr double kBackFromForce_s = 0.01;
-constexpr double kSwing = 0.1;  ///< of F_act
+constexpr double kSwing = 0.1;   ///< of F_act
 constexpr double kLosses_per_s = 4.0;
 constexpr double kAtLimit = 0.5;
 constexpr double kWindow_s = 1.0;   ///< of the figures

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 #include "support/random.h"
@@ -62,6 +63,41 @@ TEST(SwingWatch, FindsOneThatGrows) {
     EXPECT_GT(watch.swing_N(), 0.0) << hz;
     EXPECT_LT(amplitude, 1.0) << hz;
   }
+}
+
+/// To and fro between numbers that have no rounding.
+double leastOfSteps(std::initializer_list<double> forces_N, double least_N, double step_s = 0.125) {
+  SwingWatch watch;
+  for (const double force_N : forces_N)
+    for (int i = 0; i < std::lround(step_s / kPeriod_s); ++i)
+      watch.update(force_N, least_N, kPeriod_s);
+  return watch.swing_N();
+}
+
+/// A swing is over, and counts, once the force has come back from its end by half of what counts.
+TEST(SwingWatch, JudgesTheLastThreeByTheLeastOfThem) {
+  EXPECT_EQ(leastOfSteps({2, 3, 2, 3, 2, 3}, 1.0), 1.0) << "just as large as what counts";
+  EXPECT_EQ(leastOfSteps({2, 3, 2, 3, 2, 3}, 1.01), 0.0);
+  EXPECT_EQ(leastOfSteps({2, 3, 2, 3, 2, 2.5}, 1.0), 0.0) << "the third is not yet over";
+  EXPECT_EQ(leastOfSteps({2, 3, 2, 3, 2, 2.5625}, 1.0), 1.0);
+  EXPECT_EQ(leastOfSteps({0, 4, 0.75, 3.5, 1}, 1.0), 2.75) << "they shrink slowly";
+  EXPECT_EQ(leastOfSteps({0, 5, 1, 5, 1}, 1.0), 4.0) << "to just eight tenths";
+  EXPECT_EQ(leastOfSteps({0, 4, 1, 4, 1}, 1.0), 0.0) << "to less";
+  EXPECT_EQ(leastOfSteps({0, 4, 0, 3, 0}, 1.0), 0.0) << "so does the newest";
+  EXPECT_EQ(leastOfSteps({0, 2, 1, 3.5, 1}, 1.0), 0.0) << "and the one between";
+  EXPECT_EQ(leastOfSteps({0, 2, 0, 4, 0}, 1.0), 2.0) << "they may grow";
+}
+
+/// A force that only falls, or steps once, does not swing.
+TEST(SwingWatch, WantsThreeSwings) {
+  EXPECT_EQ(leastOfSteps({5, 0}, 1.0), 0.0);
+  EXPECT_EQ(leastOfSteps({5, 0, 5}, 1.0), 0.0) << "a blow, to and fro";
+  EXPECT_EQ(leastOfSteps({0, 5, 0}, 1.0), 0.0);
+}
+
+TEST(SwingWatch, ForgetsAfterASecondWithoutATurn) {
+  EXPECT_EQ(leastOfSteps({2, 3, 2, 3, 2, 3}, 1.0, 0.95), 1.0);
+  EXPECT_EQ(leastOfSteps({2, 3, 2, 3, 2, 3}, 1.0, 1.05), 0.0);
 }
 
 /// As a moving obstacle leaves it.
