@@ -109,6 +109,14 @@ TEST(PowerTable, LeavesNoChoice) {
   }
 }
 
+/// It is left there, and its reaction is waited for, whatever is wanted of it.
+TEST(PowerTable, LeadsNowhereFromAFault) {
+  for (PowerGoal goal : {PowerGoal::kDisabled, PowerGoal::kEnabled, PowerGoal::kQuickStop}) {
+    EXPECT_EQ(nextTransition(DriveState::kFault, goal), nullptr);
+    EXPECT_EQ(nextTransition(DriveState::kFaultReactionActive, goal), nullptr);
+  }
+}
+
 TEST(ControlWord, IsNeverAFaultResetNorAnUndefinedCommand) {
   for (DriveState state : kAllStates) {
     for (PowerGoal goal : {PowerGoal::kDisabled, PowerGoal::kEnabled, PowerGoal::kQuickStop}) {

@@ -185,6 +185,20 @@ TEST(DriveFaults, LosingOperationSoonAfterItWasGivenIsOneToo) {
   EXPECT_EQ(rig.report().fault, Fault::kDriveStateLost);
 }
 
+/// What a drive shows on its way counts once it was seen for three cycles.
+TEST(DriveFaults, LosingOperationAtOnceIsNone) {
+  for (const int more : {0, 1}) {
+    DriveRig rig;
+    rig.configure();
+    rig.until([&] { return rig.report().state == DriveState::kOperationEnabled; },
+              DriveGoal::kEnabled);
+    rig.cycles(more, DriveGoal::kEnabled);
+    rig.slave.power = ScriptedDrive::kOn;
+    rig.cycles(3, DriveGoal::kEnabled);
+    EXPECT_EQ(rig.report().fault, more == 0 ? Fault::kNone : Fault::kDriveStateLost);
+  }
+}
+
 TEST(DriveFaults, NewFaultWhileDisabledIsOneToo) {
   DriveRig rig;
   rig.configure();

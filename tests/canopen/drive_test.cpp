@@ -222,9 +222,21 @@ TEST(Drive, IsFaultyIfAnOldFaultDoesNotGo) {
   rig.configure();
   rig.cycles(90, DriveGoal::kEnabled);
   EXPECT_EQ(rig.report().fault, Fault::kNone);
-  rig.until([&] { return rig.report().fault == Fault::kDriveFault; }, DriveGoal::kEnabled, 20);
+  const int more =
+      rig.until([&] { return rig.report().fault == Fault::kDriveFault; }, DriveGoal::kEnabled, 20);
+  EXPECT_EQ(90 + more, 102) << "0.1 s from the cycle after the reset was sent";
   rig.cycles(500, DriveGoal::kEnabled);
   EXPECT_EQ(rig.slave.resets, 1);
+}
+
+TEST(Drive, IsFaultyIfTheResetOfAnOldFaultIsBrokenOff) {
+  DriveRig rig;
+  rig.slave.power = ScriptedDrive::kFault;
+  rig.slave.resets_refused = 1000;
+  rig.configure();
+  rig.cycle(DriveGoal::kEnabled);
+  rig.cycles(3, DriveGoal::kDisabled);
+  EXPECT_EQ(rig.report().fault, Fault::kDriveFault);
 }
 
 TEST(Drive, DoesNotResetAgainAndAgainWhenGoalsChange) {

@@ -85,6 +85,19 @@ TEST_F(ApproachEstimate, ASlowWayCountsAsLongerWhileTheArmIsHeldBack) {
   EXPECT_NEAR(c(), 4.0 / 2.4e-4, 1e-8);
 }
 
+/// 4 N over 2 mm are 2000 N/m, whatever a way four times as long would say: that is harmless.
+TEST_F(ApproachEstimate, ASlowWayRaisesNoLessThanToWhatIsHarmless) {
+  state_.stiffness_N_per_m = 1000.0;
+  is_limiting_ = true;
+  for (int i = 0; i < 200; ++i) touch(3.0, 0.0);
+  push(2e-4);
+  EXPECT_NEAR(c(), 2000.0, 1e-8);
+  state_.stiffness_N_per_m = 1000.0;
+  for (int i = 0; i < 200; ++i) touch(3.0, 0.0);
+  push(1e-4);  // 4000 N/m, or 1000
+  EXPECT_NEAR(c(), 2500.0, 1e-8);
+}
+
 TEST_F(ApproachEstimate, AFastWayIsTakenAsItIs) {
   is_limiting_ = true;
   push(4.4e-5);  // 11 mm/s

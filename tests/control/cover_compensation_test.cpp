@@ -144,6 +144,40 @@ TEST(CoverCompensation, MissedCyclesAreNoAcceleration) {
   EXPECT_LT(most_N, 1e-3) << "what is left of the start; a false acceleration is 240 m/s^2";
 }
 
+/// A carriage that is at its speed from one cycle to the next: one cycle of acceleration, through
+/// the filter with the cut-off that the module has.
+TEST(CoverCompensation, FiltersAsTheModuleDoes) {
+  test::Random random(907);
+  ControllerConfig config = coveredRobot(random);
+  Joint rail;
+  rail.type = JointType::kPrismatic;
+  config.chain = SerialChain({rail, rail}, {1, {}});
+  config.q_start = JointVector::Zero(2);
+  TactileModuleConfig& module = config.tactile_modules.front();
+  module.link.joint = 0;
+  for (const double cutoff_hz : {15.0, 40.0}) {
+    module.filter_cutoff_hz = cutoff_hz;
+    const CoverCompensation compensation(config, module);
+    std::vector<ButterworthLowPass> filters(5, ButterworthLowPass(cutoff_hz, 1.0 / kPeriod_s));
+    CoverCompensationState state;
+    const Wrench5 rest = feltAt(config, config.q_start, Vector3::Zero());
+    double largest_N = 0.0, off_N = 0.0;
+    for (int cycle = 0; cycle < 200; ++cycle) {
+      const JointVector q{{0.3 * kPeriod_s * std::max(0, cycle - 20), 0.0}};
+      const double a = cycle == 21 ? 0.3 / kPeriod_s : 0.0;
+      Wrench5 left = wrenchOf(compensation.relieve({}, q, kPeriod_s, state));
+      const Wrench5 felt = feltAt(config, q, a * rail.axis) - rest;
+      for (int i = 0; i < 5; ++i) {
+        const double filtered = filters[i].update(felt[i]);
+        largest_N = std::max(largest_N, std::abs(filtered));
+        off_N = std::max(off_N, std::abs(left[i] + filtered));
+      }
+    }
+    EXPECT_GT(largest_N, 0.1);
+    EXPECT_LT(off_N, 1e-4 * largest_N) << cutoff_hz;
+  }
+}
+
 TEST(CoverCompensation, AModuleWithoutACoverIsReadAsItIs) {
   test::Random random(904);
   ControllerConfig config = coveredRobot(random);

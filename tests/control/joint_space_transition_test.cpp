@@ -119,6 +119,40 @@ TEST_F(JointSpace, PullComesWithTheFeedforwardAndGoesGently) {
   EXPECT_NEAR(state_.kappa, kappa * std::exp(-0.1), 1e-9) << "with T_t,max";
 }
 
+/// After a rest it comes with T_t,max, until it has regained 0.95 of what it shall be.
+TEST_F(JointSpace, PullComesGentlyAfterARest) {
+  updateFor(2.0, 3.0);
+  restTransition(state_);
+  EXPECT_EQ(state_.kappa, 0.0);
+  updateFor(1.0, 3.0);
+  EXPECT_NEAR(state_.kappa, 1.0 - std::exp(-1.0), 1e-6);
+  updateFor(1.9, 3.0);
+  EXPECT_NEAR(state_.kappa, 1.0 - std::exp(-2.9), 1e-6) << "0.945";
+  updateFor(0.2, 3.0);
+  EXPECT_NEAR(state_.kappa, 1.0 - 0.05 * std::exp(-1.04), 1e-3) << "with T from 0.95 on, at 3 s";
+}
+
+TEST_F(JointSpace, AFeedforwardThatIsNextToNothingIsNone) {
+  for (const double gamma : {0.9e-6, 1.1e-6}) {
+    state_ = {};
+    state_.gamma = gamma;
+    state_.p_BaseLost = kPoint;
+    update(0.0, 0.0, -0.05);
+    EXPECT_EQ(state_.gamma, gamma < 1e-6 ? 0.0 : gamma);
+  }
+}
+
+/// Its contact is lost below F_rel alone, and felt above it alone.
+TEST_F(JointSpace, IsTouchingAtTheReleaseForce) {
+  updateFor(0.1, 3.0);
+  update(0.3);
+  EXPECT_TRUE(state_.touching);
+  followContact(gains_, {0.3, 0.35, Vector3::UnitZ()}, false, kPeriod_s, state_);
+  EXPECT_EQ(state_.contact.position_m, 0.2) << "that says nothing of the place";
+  followContact(gains_, {0.31, 0.35, Vector3::UnitZ()}, false, kPeriod_s, state_);
+  EXPECT_EQ(state_.contact.position_m, 0.35) << "at once, as the arm rests";
+}
+
 TEST_F(JointSpace, PullFadesToZeroAndNotToSubnormalNumbers) {
   state_.kappa = 1e-90;  // 1e-100 after 23 s
   updateFor(20.0, 0.0);

@@ -41,6 +41,15 @@ TEST(ObstacleSpeed, IsTheWayThatTheForceDoesNotExplain) {
   EXPECT_NEAR(state.v_m_per_s, 0.5 * kComing_m_per_s * std::exp(-1.0), 3e-5);
 }
 
+/// Of the limit of 5 N a tenth, which is more than noise.
+TEST(ObstacleSpeed, IsLearntFromATenthOfTheLimitAboveTheActivationForce) {
+  for (const double F_p_N : {3.8 + 0.49, 3.8 + 0.51}) {
+    ObstacleSpeedState state;
+    rest(1.0, coming(F_p_N), state);
+    EXPECT_EQ(state.v_m_per_s > 0.0, F_p_N > 4.3);
+  }
+}
+
 TEST(ObstacleSpeed, TakesTheChangeOfForceForAWayToo) {
   // The arm stands still, and the force rises by 1 mm/s.
   ObstacleSpeedState state;

@@ -139,6 +139,37 @@ TEST(RetreatWay, GivesWayToWhatComesAfterIt) {
   }
 }
 
+/// An obstacle that comes on may be there again.
+TEST(RetreatWay, EndsOnceNothingPressedForAFifthOfASecond) {
+  Carriage carriage({50.0, 1000.0, 0.0, 0.0});
+  for (int i = 0; i < 50; ++i) carriage.step(felt(50.0 - 0.5 * i));
+  for (int i = 0; i < 199; ++i) carriage.step(felt(kThreshold_N));
+  EXPECT_FALSE(carriage.state.is_over);
+  for (int i = 0; i < 3; ++i) carriage.step(felt(kThreshold_N));
+  EXPECT_TRUE(carriage.state.is_over);
+}
+
+TEST(RetreatWay, GoesOnFromWhereTheForceFellByANewton) {
+  for (const bool answers : {false, true}) {
+    Carriage carriage({150.0, 1000.0, 0.0, 0.0});
+    const double later_N = answers ? 148.99 : 149.01;
+    carriage.run([&](int) { return felt(carriage.state.way < 0.02 ? 150.0 : later_N); });
+    EXPECT_NEAR(carriage.state.way, answers ? 0.05 : 0.03, 0.0015);
+  }
+}
+
+TEST(RetreatWay, IsAQuarterAsFastWhereNothingIsFelt) {
+  for (const bool is_felt : {false, true}) {
+    Carriage carriage({200.0, 100.0, 0.0, 0.0});
+    double fastest = 0.0;
+    carriage.run([&](int cycle) {
+      fastest = std::max(fastest, carriage.state.speed);
+      return is_felt ? felt(2000.0 - 1.5 * cycle) : silence();
+    });
+    EXPECT_EQ(fastest, is_felt ? 1.0 : 0.25);
+  }
+}
+
 TEST(RetreatWay, ThatIsOverStaysSo) {
   Carriage carriage({50.0, 1000.0, 0.0, 0.0});
   for (int i = 0; i < 250; ++i) carriage.step(felt(0.5));

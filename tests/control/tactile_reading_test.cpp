@@ -91,6 +91,28 @@ TEST(HardestPush, IsAtLeastTheNewestAndFades) {
   EXPECT_LE(reading.hardest.force_N, before_N * std::exp(-0.4 / kPushFades_s) * 1.01);
 }
 
+/// A reading that no arm or obstacle bears is none of a push.
+TEST(Excess, IsOfAReadingThatMayBeOne) {
+  const TactileModuleConfig module = moduleThatFilters(15.0);
+  TactileReading reading;
+  std::uint32_t sequence = 0;
+  const auto hasExcess = [&](double force_N) {
+    readSample(module, test::touchAt(kAt_m, force_N, 0.5, ++sequence), test::kPeriod_s, reading);
+    return reading.has_excess;
+  };
+  EXPECT_FALSE(hasExcess(999.0)) << "within the range";
+  EXPECT_TRUE(hasExcess(1001.0));
+  EXPECT_NEAR(reading.excess.force_N, 1001.0, 1e-9);
+  EXPECT_NEAR(reading.detail.value, 1001.0, 1e-9);
+  EXPECT_TRUE(hasExcess(0.999e6));
+  EXPECT_FALSE(hasExcess(1.001e6));
+  EXPECT_EQ(reading.fault, Fault::kTactileInvalid);
+  EXPECT_FALSE(hasExcess(std::nan("")));
+  EXPECT_FALSE(hasExcess(5.0));
+  EXPECT_EQ(reading.fault, Fault::kNone);
+  EXPECT_EQ(reading.contact.interval_s, test::kPeriod_s);
+}
+
 TEST(HardestPush, AnInvalidSampleLeavesItButForWhatFades) {
   const TactileModuleConfig module = moduleThatFilters(15.0);
   TactileReading reading;

@@ -155,6 +155,7 @@ TEST(CommandedCycle, RestsWhereAStopHasLeftIt) {
     tell(cell, target, 1);
     tell(cell, toolPose(cell, scene), 1, ToolOrder::Kind::kGoNext);
     for (int i = 0; i < 1000; ++i) stepPrepared(cell);
+    const auto plan = cell.record().tool_motion.number;
     (is_emergency ? cell.input.lines.emergency_stop : cell.input.lines.enable) = is_emergency;
     for (int i = 0; i < 1000; ++i) stepPrepared(cell);
     EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kStopped);
@@ -165,6 +166,8 @@ TEST(CommandedCycle, RestsWhereAStopHasLeftIt) {
     cell.input.lines.enable = true;
     ASSERT_TRUE(cell.runUntil(Mode::kRunning, 10000));
     for (int i = 0; i < 3000; ++i) stepPrepared(cell);
+    EXPECT_GT(cell.record().tool_motion.number, plan)
+        << "a plan that is another has another number";
     EXPECT_LT((toolPose(cell, scene).p_AB - rest).norm(), 1e-3) << is_emergency;
     tell(cell, target, 2);
     for (int i = 0; i < 6000; ++i) stepPrepared(cell);

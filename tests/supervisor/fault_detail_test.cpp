@@ -52,6 +52,34 @@ TEST(FaultDetails, OfAForceBeyondTheRange) {
       test::shippedScene("scenario1_multi_space").controller.tactile_modules.front().max_force_N);
   EXPECT_STREQ(report.detail.unit, "N");
   EXPECT_EQ(report.joint, -1);
+  EXPECT_EQ(report.drive.fault, Fault::kNone) << "it speaks of no drive";
+  EXPECT_EQ(report.q_measured, 0.0);
+  EXPECT_EQ(report.q_expected, 0.0);
+}
+
+/// Also of an arm at rest, where the controller does not answer it.
+TEST(FaultDetails, OfAForceAtRestNameItsModule) {
+  struct OnBus {
+    int bus;
+    std::uint32_t id;
+  };
+  int module = 0;
+  for (const OnBus& place : {OnBus{3, 0x100}, OnBus{3, 0x110}, OnBus{4, 0x100}}) {
+    Scene scene = test::shippedScene("whole_arm/crops9_skin_two_links");
+    scene.hardware->gpio.emplace().enable.emplace();
+    VirtualRobotCell cell(scene);
+    cell.input.lines.enable = false;
+    ASSERT_TRUE(cell.runUntil(Mode::kReady, 5000));
+    cell.on_frame = [place](int bus, CanFrame& frame) {
+      if (bus != place.bus || (frame.id != place.id && frame.id != place.id + 2)) return;
+      frame.data[2] = 0x00;
+      frame.data[3] = 0x12;
+      frame.data[4] = 0x7A;
+    };
+    for (int i = 0; i < 100 && cell.cycle.report().fault == Fault::kNone; ++i) cell.step();
+    EXPECT_EQ(cell.cycle.report().fault, Fault::kTactileInvalid);
+    EXPECT_EQ(cell.cycle.report().detail.module, module++);
+  }
 }
 
 TEST(FaultDetails, OfASampleTooOld) {
@@ -73,6 +101,22 @@ TEST(FaultDetails, OfAJointThatDoesNotFollow) {
   EXPECT_NEAR(report.detail.value, std::abs(report.q_measured - report.q_expected), 1e-3);
   EXPECT_GT(report.detail.value, report.detail.limit);
   EXPECT_STREQ(report.detail.unit, "rad");
+}
+
+TEST(FaultDetails, OfAJointThatIsNotAtItsStart) {
+  for (const int joint : {0, 8}) {
+    Scene scene = test::shippedScene("scenario1_multi_space");
+    VirtualRobotCell cell(scene);  // its plant stands where the scene starts
+    scene.controller.q_start[joint] += 0.03;
+    cell.cycle = ControlCycle(scene.controller, *scene.hardware, scene.period_s);
+    for (int i = 0; i < 5000 && cell.cycle.report().fault == Fault::kNone; ++i) cell.step();
+    const ModeReport& report = cell.cycle.report();
+    EXPECT_EQ(report.fault, Fault::kNotAtStart);
+    EXPECT_EQ(report.joint, joint);
+    EXPECT_NEAR(report.detail.value, 0.03, 1e-4);
+    EXPECT_EQ(report.detail.limit, scene.hardware->start_tolerance);
+    EXPECT_STREQ(report.detail.unit, unitOf(scene.controller.chain.type(joint)));
+  }
 }
 
 TEST(FaultDetails, OfALoopThatIsLate) {

@@ -1,0 +1,177 @@
+#include "tactus/control/several_contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/period.h"
+#include "support/rail_robot.h"
+
+/// Contacts with rows of their own, on a rail where all of it can be told by hand: nothing delays
+/// or filters, and c is known.
+namespace tactus {
+namespace {
+
+using test::kPeriod_s;
+constexpr double kRailT_s = 0.1;
+constexpr double kRailC_N_per_m = 1000.0;
+constexpr double kHold_N = 1.2;
+constexpr double kRailAct_N = 3.8;
+
+struct RowsOf {
+  LimitAt limit_at;
+  double friction_coefficient;
+};
+constexpr RowsOf kRowsOf[] = {{LimitAt::kStiffnessCentre, 0.0},
+                              {LimitAt::kModuleEnds, 0.0},
+                              {LimitAt::kStiffnessCentre, 0.5},
+                              {LimitAt::kModuleEnds, 0.5}};
+
+ControllerConfig rowsRail(const RowsOf& rows, double speed_m_per_s) {
+  ControllerConfig config = test::railController(Variant::kNullLimit);
+  config.force_control->limit_at = rows.limit_at;
+  config.force_control->friction_coefficient = rows.friction_coefficient;
+  config.drive_lag_s = 0.0;
+  config.tactile_modules.front().filter_cutoff_hz = 1e6;
+  config.gains.force.assumed_stiffness_N_per_m = kRailC_N_per_m;
+  config.gains.force.contact_threshold_N = kHold_N;
+  config.gains.force.activation_force_N = kRailAct_N;
+  Waypoint line;
+  line.displacement_m = Vector3(0.0, 10.0, 0.0);
+  line.speed_m_per_s = speed_m_per_s;
+  line.ramp_s = 0.0;
+  config.task.trajectory.waypoints = {line};
+  return config;
+}
+
+/// A controller and an obstacle at +y of its first carriage.
+struct RowsRun {
+  RowsRun(const ControllerConfig& c, double surface_m)
+      : config(c), world{kRailC_N_per_m, surface_m} {}
+  void step() {
+    controller.update(world.input(state), config.gains, cycle++ * kPeriod_s, kPeriod_s, state,
+                      output);
+  }
+  void run(int cycles) {
+    for (int i = 0; i < cycles; ++i) step();
+  }
+  double force_N() const { return world.force_N(state.q_desired); }
+  /// dF/dt = -(F - end_N) / T, one explicit step of it each cycle.
+  void expectDecay(double end_N, int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      const double before_N = force_N();
+      step();
+      const double expected_N = -kPeriod_s / kRailT_s * (before_N - end_N);
+      ASSERT_NEAR(force_N() - before_N, expected_N, 0.06 * std::abs(expected_N) + 1e-5) << i;
+    }
+  }
+  double memory() const { return state.several.modules[0].approach.memory_N_per_m; }
+
+  ControllerConfig config;
+  Controller controller{config};
+  test::RailWorld world;
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  int cycle = 0;
+};
+
+/// The null space holds a contact at F_th, and the tool does not notice.
+TEST(SeveralContacts, HoldTheThresholdInTheNullSpace) {
+  for (const RowsOf& rows : kRowsOf) {
+    RowsRun run(rowsRail(rows, 0.1), -0.01);
+    run.run(20);  // until it is felt
+    run.expectDecay(kHold_N, 800);
+    EXPECT_NEAR(run.force_N(), kHold_N, 0.01);
+    EXPECT_LT(std::abs(run.output.error[0]), 1e-9);
+    EXPECT_NEAR(run.output.contact.force_contact_N, std::max(0.0, run.force_N() - kHold_N), 0.01);
+    EXPECT_EQ(run.output.contact.stiffness_N_per_m, kRailC_N_per_m);
+    EXPECT_LT(run.output.contact.u_n, 0.0);
+    EXPECT_EQ(run.output.contact.u_t, 0.0);
+    EXPECT_FALSE(run.state.several.modules[0].approach.is_limiting);
+  }
+}
+
+/// From below, too: what is near its threshold is approached no faster than it can be held.
+TEST(SeveralContacts, AreMetNoFasterThanTheyAreHeld) {
+  for (const RowsOf& rows : kRowsOf) {
+    RowsRun run(rowsRail(rows, 0.5), 0.0);
+    double largest_N = 0.0;
+    for (int i = 0; i < 600; ++i) {
+      run.step();
+      largest_N = std::max(largest_N, run.force_N());
+    }
+    EXPECT_LT(largest_N, 2.5) << "what a cycle or two of the approach add";
+    EXPECT_NEAR(run.force_N(), kHold_N, 0.01);
+  }
+}
+
+/// Where the null space can do nothing, the tool stops at F_act + F_th.
+TEST(SeveralContacts, LimitTheToolWhereTheNullSpaceIsUsedUp) {
+  for (const RowsOf& rows : kRowsOf) {
+    ControllerConfig config = rowsRail(rows, 10.0);
+    config.gains.force.max_null_speed_m_per_s = 1e-12;
+    RowsRun run(config, -0.01);
+    run.run(20);
+    run.expectDecay(kRailAct_N + kHold_N, 800);
+    EXPECT_NEAR(run.force_N(), kRailAct_N + kHold_N, 0.01);
+    EXPECT_LT(run.output.contact.u_t, 0.0);
+    EXPECT_TRUE(run.state.several.modules[0].approach.is_limiting);
+  }
+}
+
+/// What was lost is forgotten with 5 T; what comes back where it was, half as fast each time.
+TEST(SeveralContacts, ForgetSlowlyAndSlowerWhatComesBack) {
+  RowsRun run(rowsRail(kRowsOf[0], 1e-9), -0.002);
+  run.run(10);
+  double rate = 0.2 / kRailT_s;
+  for (int times = 0; times < 8; ++times) {
+    ASSERT_EQ(run.memory(), kRailC_N_per_m) << times;
+    run.world.surface_m = 1.0;  // it is taken away
+    run.step();
+    const double first = run.memory();
+    run.run(200);
+    EXPECT_NEAR(std::log(first / run.memory()) / (200 * kPeriod_s), rate, 0.01 * rate) << times;
+    run.world.surface_m = run.state.q_desired[0] - 0.002;
+    run.run(2);
+    rate = std::max(0.5 * rate, 0.2 / kRailT_s / 64.0);
+  }
+}
+
+/// Between F_rel and F_th it is felt, and nothing is forgotten.
+TEST(SeveralContacts, RememberWhatIsStillFelt) {
+  RowsRun run(rowsRail(kRowsOf[0], 1e-9), -0.002);
+  run.run(10);
+  for (const double force_N : {1.1, 0.31, 0.29}) {
+    for (int i = 0; i < 100; ++i) {
+      run.world.surface_m = run.state.q_desired[0] - force_N / kRailC_N_per_m;
+      run.step();
+    }
+    EXPECT_EQ(run.memory() == kRailC_N_per_m, force_N > 0.3) << force_N;
+  }
+}
+
+/// It tells of the module that is pressed most, and each has its own.
+TEST(SeveralContacts, TellOfTheModuleThatIsPressedMost) {
+  for (const int most : {0, 1}) {
+    ControllerConfig config = rowsRail({LimitAt::kAuto, 0.0}, 1e-9);
+    config.tactile_modules.push_back(config.tactile_modules.front());
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    for (std::uint32_t i = 1; i < 5; ++i) {
+      RobotInput input{state.q_desired, {}};
+      for (int module = 0; module < 2; ++module)
+        input.tactile[module] = test::touchAt(0.5, module == most ? -4.0 : -2.0, 0.0, i);
+      controller.update(input, config.gains, 0.0, kPeriod_s, state, output);
+    }
+    EXPECT_NEAR(output.contact.force_contact_N, 4.0 - kHold_N, 1e-9);
+    EXPECT_EQ(output.contact.stiffness_raw_N_per_m, kRailC_N_per_m);
+    EXPECT_EQ(output.contact.gamma, 1.0);
+    for (int module = 0; module < 2; ++module)
+      EXPECT_NEAR(state.several.modules[module].approach.smoother.contact.force_N,
+                  module == most ? 4.0 : 2.0, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace tactus
