@@ -58,9 +58,8 @@ void ToolOrders::update(const ToolWatch& seen, ToolMotion& motion) noexcept {
   // Orders of before a stop may come late.
   if (!seen.is_running || (count_ > 0 && waiting_[first_].run != seen.run)) forget();
   if (seen.is_running) watch(seen, motion);
-  const bool is_next = count_ > 0 && waiting_[first_].kind == ToolOrder::Kind::kGoNext;
   const bool is_free = !isUnderWay(report_.state) && paused_s_ <= 0.0;
-  if (count_ > 0 && (!is_next || is_free)) {
+  if (count_ > 0 && (waiting_[first_].kind != ToolOrder::Kind::kGoNext || is_free)) {
     const ToolOrder order = waiting_[first_];
     first_ = (first_ + 1) % kMaxWaiting;
     --count_;

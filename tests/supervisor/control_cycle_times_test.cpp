@@ -44,13 +44,13 @@ TEST(ControlCycleTimes, DrivesHaveTwoSecondsToSwitchOn) {
 TEST(ControlCycleTimes, ModulesHaveTwoSecondsForTheirFirstSamples) {
   Scene scene = test::shippedScene("whole_arm/crops9_skin_two_links");
   auto& modules = scene.hardware->tactile_modules;
-  for (std::size_t i = 0; i < modules.size(); ++i) modules[i].tare_samples = i == 1 ? 300 : 100;
+  for (std::size_t i = 0; i < modules.size(); ++i) modules[i].tare_samples = i == 1 ? 150 : 50;
   VirtualRobotCell cell(scene);
   cell.on_frame = [](int bus, CanFrame& frame) {
     if (bus == 3) frame.id = 0x7FF;
   };
   const double most_s =
-      scene.hardware->canopen.boot_timeout_s + 2.0 + 300 * modules[1].channels.sample_period_s;
+      scene.hardware->canopen.boot_timeout_s + 2.0 + 150 * modules[1].channels.sample_period_s;
   EXPECT_NEAR(cyclesUntilFault(cell, Mode::kBoot) * scene.period_s, most_s, 0.003);
   EXPECT_EQ(cell.cycle.report().fault, Fault::kTactileStale);
 }
@@ -58,6 +58,7 @@ TEST(ControlCycleTimes, ModulesHaveTwoSecondsForTheirFirstSamples) {
 Scene slowScene() {
   Scene scene = bareScene();
   scene.controller.limits.max_acceleration.setConstant(0.02);
+  scene.controller.limits.max_acceleration[8] = 50.0;  // the slowest counts
   return scene;
 }
 
@@ -70,7 +71,7 @@ TEST(ControlCycleTimes, AStopMayTakeAsLongAsItsRamp) {
   int cycles = 0;
   for (; cycles < 20000 && !cell.cycle.isFinished(); ++cycles) cell.step();
   EXPECT_TRUE(cell.cycle.isFinished());
-  EXPECT_GT(cycles, 1000) << "it hardly moved: this test is blind";
+  EXPECT_GT(cycles, 2700) << "it hardly moved: this test is blind";
   EXPECT_EQ(cell.cycle.report().fault, Fault::kNone);
   EXPECT_TRUE(cell.areDrivesOff());
 }

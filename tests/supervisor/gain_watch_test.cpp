@@ -142,7 +142,8 @@ TEST(GainWatch, GoesBackInATenthOfASecond) {
   watch.pass(2.0, pressed);
   watch.change.update({.force_N = 5.0, .has_fault = true});
   EXPECT_EQ(watch.trouble(), GainTrouble::kFault);
-  EXPECT_GT(watch.figure(), watch.limit());
+  EXPECT_EQ(watch.figure(), 1.0) << "one fault, where none is borne";
+  EXPECT_EQ(watch.limit(), 0.0);
   watch.pass(0.095, pressed);
   EXPECT_EQ(watch.change.report().state, GainState::kGoingBack);
   EXPECT_NE(watch.change.gains().force.time_constant_s, 0.1);
@@ -165,6 +166,47 @@ TEST(GainWatch, GoesBackGentlyWhereItsTimeIsOver) {
   EXPECT_EQ(watch.change.report().state, GainState::kGoingBack);
   watch.pass(0.03, pressed);
   EXPECT_EQ(watch.change.report().state, GainState::kKept);
+}
+
+/// Just at a limit nothing is worse.
+TEST(GainWatch, AFigureThatIsItsLimitIsBorne) {
+  Gains gains = watchedGains();
+  gains.force.activation_force_N = 5.0;  // half a newton
+  GainWatch watch;
+  watch.change = GainChange(gains, kWatchPeriod_s);
+  watch.order();
+  watch.pass(5.0, toAndFro(0.5));
+  EXPECT_EQ(watch.trouble(), GainTrouble::kNone);
+}
+
+/// With a period whose sums have no rounding.
+TEST(GainWatch, KeepsToItsTimes) {
+  constexpr double kTick = 1.0 / 1024.0;
+  GainOrder order{.number = 1, .gains = watchedGains(), .for_s = 2.0};
+  for (const bool is_for_a_while : {true, false}) {
+    GainChange change(watchedGains(), kTick);
+    if (!is_for_a_while) order.for_s = kNoLimit;
+    change.order(order);
+    while (change.report().state != GainState::kOnTrial) change.update({.force_N = 5.0});
+    const int ticks = is_for_a_while ? 2048 : 4096;
+    for (int i = 0; i < ticks - 1; ++i) change.update({.force_N = 5.0});
+    EXPECT_EQ(change.report().state, GainState::kOnTrial);
+    change.update({.force_N = 5.0});
+    EXPECT_EQ(change.report().state, is_for_a_while ? GainState::kGoingBack : GainState::kKept);
+    EXPECT_EQ(change.report().figure, is_for_a_while ? 2.0 : 0.0);
+  }
+}
+
+/// What was watched of the gains before is no trial of those that come after them.
+TEST(GainWatch, EachTrialIsWhole) {
+  GainWatch watch;
+  for (int i = 0; i < 2; ++i) {
+    watch.order(0.05);
+    watch.pass(0.6 + 3.8, pressed);
+    EXPECT_EQ(watch.change.report().state, GainState::kOnTrial) << i;
+    watch.pass(0.3, pressed);
+    EXPECT_EQ(watch.change.report().state, GainState::kKept) << i;
+  }
 }
 
 /// Slow gains take longer to show what they do.

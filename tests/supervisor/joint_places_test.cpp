@@ -38,6 +38,15 @@ TEST(JointPlaces, FollowAJointAsLongAsItsDriveHoldsIt) {
   EXPECT_EQ(joints.outOfPlace(places(0.6, 0.5)), -1);
 }
 
+TEST(JointPlaces, AreAsWideAsTheirTolerance) {
+  JointPlaces joints(places(0, 0), twoDrives());
+  EXPECT_EQ(joints.outOfPlace(places(0.02, -0.02)), -1);
+  joints.command(places(0, 0), places(0.25, 0.25));
+  const double longest = CanopenConfig{}.stop_deadline_s * 0.25 + DriveConfig{}.max_following_error;
+  joints.observe(0, longest, true, false);
+  EXPECT_EQ(joints.outOfPlace(places(longest, 0.0)), -1) << "just as far as a stop may lead";
+}
+
 TEST(JointPlaces, EndWhereNoStopLeadsTo) {
   JointPlaces joints(places(0, 0), twoDrives());
   joints.command(places(0, 0), places(0.1, 0.1));

@@ -37,7 +37,7 @@ Scene sceneWith(const std::vector<Trouble>& troubles, bool has_enable_line) {
   return scene;
 }
 
-void step(VirtualRobotCell& cell, int cycles) {
+void passCycles(VirtualRobotCell& cell, int cycles) {
   for (int i = 0; i < cycles; ++i) cell.step();
 }
 
@@ -67,11 +67,11 @@ TEST(LyingDrive, DoesNotVouchForTheOthers) {
       VirtualRobotCell cell(sceneWith({troubleOf(kind, 6.0, 8.0, 0, 1)}, true));
       ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
       while (!cell.plant.wasEnabled()) cell.step();
-      step(cell, 6100);
+      passCycles(cell, 6100);
       cell.input.lines.emergency_stop = true;
-      step(cell, 700);
+      passCycles(cell, 700);
       pushJoint(cell, 1, 0x182, angle_rad);
-      step(cell, 2500);
+      passCycles(cell, 2500);
       cell.input.lines.emergency_stop = false;
       cell.switchEnable();
       for (int i = 0; i < 4000; ++i) {
@@ -94,7 +94,7 @@ TEST(LyingDrive, DoesNotVouchForTheOthers) {
 TEST(LyingDrive, ThatWentFurtherThanAnyStopIsNotInPlace) {
   VirtualRobotCell cell(sceneWith({}, true));
   ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
-  step(cell, 1000);
+  passCycles(cell, 1000);
   int spoilt = 0;
   cell.on_send = [&spoilt](int bus, CanFrame& frame) {
     if (bus == 1 && frame.id == 0x202 && spoilt < 100) {
@@ -104,7 +104,7 @@ TEST(LyingDrive, ThatWentFurtherThanAnyStopIsNotInPlace) {
     }
     return true;
   };
-  step(cell, 1500);
+  passCycles(cell, 1500);
   ASSERT_EQ(cell.cycle.report().fault, Fault::kFollowingError);
   cell.switchEnable();
   for (int i = 0; i < 3000; ++i) {
@@ -134,7 +134,7 @@ TEST(LyingDrive, WhosePositionStoodStillIsNotInPlaceThere) {
   };
   ASSERT_TRUE(cell.runUntil(Mode::kFault, 10000));
   ASSERT_EQ(cell.cycle.report().fault, Fault::kFollowingError);
-  step(cell, 1000);
+  passCycles(cell, 1000);
   cell.switchEnable();
   for (int i = 0; i < 1000; ++i) {
     cell.step();
@@ -161,7 +161,7 @@ TEST(LyingDrive, ThatMovesOnIsBrakedAndStoppedInTime) {
       ++brake_cycles;
     }
     EXPECT_LE(brake_cycles, speed > 0.025 ? 130 : kDeadline) << joint;  // 0.02 in two windows
-    step(cell, 250);
+    passCycles(cell, 250);
     EXPECT_LE(fastest(cell), kAtRest) << joint;
     for (int i = 0; i < 3000; ++i) {
       cell.step();
@@ -177,11 +177,11 @@ TEST(LyingDrive, ThatNeverSwitchesOffKeepsNoBrakeOpen) {
     VirtualRobotCell cell(
         sceneWith({troubleOf(Kind::kIgnoreCommands, 0.1, 1e3, 1, 2)}, has_enable_line));
     ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
-    step(cell, 200);
+    passCycles(cell, 200);
     cell.input.are_lines_lost = true;  // a quick stop
-    step(cell, kDeadline + 1);
+    passCycles(cell, kDeadline + 1);
     EXPECT_FALSE(cell.cycle.lines().release_brake);
-    step(cell, 200);
+    passCycles(cell, 200);
     EXPECT_LE(fastest(cell), kAtRest);
     EXPECT_NE(cell.plant.drive(4).powerState(), PowerState::kOperationEnabled) << "cut off";
     if (!has_enable_line) {
@@ -194,9 +194,9 @@ TEST(LyingDrive, ThatNeverSwitchesOffKeepsNoBrakeOpen) {
 TEST(LyingDrive, ThatNeverSwitchesOffIsCutOffInTimeThoughCyclesAreMissed) {
   VirtualRobotCell cell(sceneWith({troubleOf(Kind::kIgnoreCommands, 0.1, 1e3, 1, 2)}, true));
   ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
-  step(cell, 200);
+  passCycles(cell, 200);
   cell.input.are_lines_lost = true;
-  step(cell, 1);
+  passCycles(cell, 1);
   ASSERT_EQ(cell.cycle.report().mode, Mode::kFault);
   constexpr int kMissed = 4;  // each time, just before a cycle
   cell.input.missed_cycles = kMissed;
@@ -205,7 +205,7 @@ TEST(LyingDrive, ThatNeverSwitchesOffIsCutOffInTimeThoughCyclesAreMissed) {
     cell.step();
   }
   EXPECT_FALSE(cell.cycle.lines().release_brake);
-  step(cell, 40);
+  passCycles(cell, 40);
   EXPECT_NE(cell.plant.drive(4).powerState(), PowerState::kOperationEnabled) << "cut off";
 }
 
@@ -218,9 +218,9 @@ TEST(LyingDrive, ThatSaysItBootsIsResetAndDoesNotRunAgainstTheBrake) {
     ASSERT_TRUE(cell.runUntil(Mode::kFault, 6000));
     EXPECT_EQ(cell.cycle.report().fault, Fault::kDriveStateLost);
     EXPECT_EQ(cell.cycle.report().joint, joint);
-    step(cell, 5);
+    passCycles(cell, 5);
     EXPECT_NE(cell.plant.drive(joint).powerState(), PowerState::kOperationEnabled);
-    step(cell, 400);
+    passCycles(cell, 400);
     EXPECT_LE(fastest(cell), kAtRest);
     EXPECT_FALSE(cell.cycle.lines().release_brake);
     cell.switchEnable();
@@ -235,7 +235,7 @@ TEST(LyingDrive, KeepsItsOwnWatchBeyondTheEnd) {
                                      troubleOf(Kind::kHeartbeatOnly, 0.0, 1e3, 1, 2)},
                                     false));
     ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
-    step(cell, 5200);
+    passCycles(cell, 5200);
     ASSERT_GT(std::abs(cell.plant.drive(4).velocity()), 1e-3);
     bool is_disarmed = false;
     cell.on_send = [&is_disarmed](int bus, CanFrame& frame) {  // NMT does not get through

@@ -147,7 +147,9 @@ TEST(Mode, AHarsherFaultOverridesAMilderOneButNeverTheOtherWayRound) {
 TEST(Mode, TimeLimitsEndWhatNeverHappens) {
   ModeState state;
   ModeInput input;
-  for (int i = 0; i < 5001; ++i) updateMode({}, input, state);
+  for (int i = 0; i < 5000; ++i) updateMode({}, input, state);
+  EXPECT_EQ(state.mode, Mode::kBoot);
+  updateMode({}, input, state);
   EXPECT_EQ(state.mode, Mode::kFault);
   EXPECT_EQ(state.fault, Fault::kDriveSetupRefused);
 
@@ -195,6 +197,51 @@ TEST(Mode, MissedCyclesAreOfARetreatsTime) {
   input.missed_cycles = 1500;
   updateMode({}, input, state);
   EXPECT_EQ(state.mode, Mode::kHolding);
+}
+
+/// Stops have deadlines of time, also where the loop was late; all else waits for what is heard.
+TEST(Mode, MissedCyclesCountInStopsAlone) {
+  for (const Mode mode : {Mode::kBoot, Mode::kReady, Mode::kEnabling, Mode::kRunning,
+                          Mode::kHolding, Mode::kStopping, Mode::kFault, Mode::kRetreating}) {
+    ModeState state;
+    state.mode = mode;
+    ModeInput input;
+    input.has_enable_line = true;
+    input.enable = mode == Mode::kRunning || mode == Mode::kEnabling || mode == Mode::kRetreating;
+    input.is_at_rest = input.are_disabled = false;
+    input.missed_cycles = 7;
+    updateMode({}, input, state);
+    ASSERT_EQ(state.mode, mode);
+    const bool is_stop =
+        mode == Mode::kStopping || mode == Mode::kFault || mode == Mode::kRetreating;
+    EXPECT_EQ(state.cycles_in_mode, is_stop ? 8 : 1) << modeName(mode);
+  }
+}
+
+/// Every drive has to follow for as long as brakes take to open, without a break.
+TEST(Mode, WaitsForTheBrakesWhileAllDrivesFollow) {
+  ModeConfig config;
+  config.brake_cycles = 3;
+  const auto cyclesToRun = [&](ModeState state, std::vector<bool> follows) {
+    ModeInput input;
+    input.are_configured = true;
+    for (int cycles = 1; cycles < 20; ++cycles) {
+      if (state.mode == Mode::kEnabling && !follows.empty()) {
+        input.are_enabled = follows.front();
+        follows.erase(follows.begin());
+      } else {
+        input.are_enabled = true;
+      }
+      updateMode(config, input, state);
+      if (state.mode == Mode::kRunning) return cycles;
+    }
+    return 20;
+  };
+  ModeState enabling;
+  enabling.mode = Mode::kEnabling;
+  EXPECT_EQ(cyclesToRun(enabling, {}), 4);
+  EXPECT_EQ(cyclesToRun(enabling, {true, true, true, false}), 8) << "a break begins it anew";
+  EXPECT_EQ(cyclesToRun({}, {}), 2 + 4) << "through boot and ready";
 }
 
 ModeInput randomInput(test::Random& random) {
