@@ -70,6 +70,7 @@ Plant::Plant(const ControllerConfig& robot, const PlantConfig& plant,
       drive.setPosition(seen_.q_measured[hardware_.drives[i].joint]);
       drive.setPowered(true, 0);
     });
+    noteNextEvent(drives_[i]);
   }
 }
 
@@ -104,8 +105,7 @@ std::int64_t Plant::nextEvent_ns() const noexcept {
   std::int64_t next_ns = std::min(next_move_ns_, next_trouble_ns_);
   for (const Link& link : links_)
     next_ns = std::min({next_ns, link.bus.nextEvent_ns(), link.troubles.nextDelivery_ns()});
-  for (const Node& node : drives_)
-    next_ns = std::min(next_ns, with(node, [](const auto& drive) { return drive.nextEvent_ns(); }));
+  for (const Node& node : drives_) next_ns = std::min(next_ns, node.next_event_ns);
   return next_ns;
 }
 
@@ -131,12 +131,9 @@ void Plant::step(std::int64_t t_ns) noexcept {
   if (t_ns >= next_trouble_ns_) applyTroubles(t_ns);
   for (int bus = 0; bus < buses(); ++bus) moveBus(bus, t_ns);
   for (Node& node : drives_) {
-    const bool is_due = with(node, [t_ns](auto& drive) {
-      if (t_ns < drive.nextEvent_ns()) return false;
-      drive.update(t_ns);
-      return true;
-    });
-    if (is_due) collect(node, t_ns);
+    if (t_ns < node.next_event_ns) continue;
+    with(node, [t_ns](auto& drive) { drive.update(t_ns); });
+    collect(node, t_ns);
   }
   if (t_ns >= next_move_ns_) moveWorld(t_ns);
 }
@@ -210,7 +207,12 @@ void Plant::give(Link& link, const CanFrame& frame) noexcept {
   if (!link.inbox.push(frame)) ++frames_not_taken_;
 }
 
+void Plant::noteNextEvent(Node& node) noexcept {
+  node.next_event_ns = with(node, [](const auto& drive) { return drive.nextEvent_ns(); });
+}
+
 void Plant::collect(Node& node, std::int64_t t_ns) noexcept {
+  noteNextEvent(node);
   FrameBatch& outbox = with(node, [](auto& drive) -> FrameBatch& { return drive.outbox(); });
   for (const CanFrame& frame : outbox) links_[node.bus].bus.send(node.number, frame, t_ns);
   outbox.clear();

@@ -80,6 +80,7 @@ class Plant {
     int bus;
     int number;  ///< on the bus, from 1
     std::uint32_t id;
+    std::int64_t next_event_ns = 0;  ///< the drive's, since collect(): it takes a while to know
   };
 
   /// A tactile module on its bus.
@@ -98,6 +99,8 @@ class Plant {
   void deliver(int bus, const BusDelivery& delivery, std::int64_t t_ns) noexcept;
   void hearSync(std::int64_t t_ns) noexcept;
   void give(Link& link, const CanFrame& frame) noexcept;
+  static void noteNextEvent(Node& node) noexcept;
+  /// After all that was done to a drive.
   void collect(Node& node, std::int64_t t_ns) noexcept;
   void moveWorld(std::int64_t t_ns) noexcept;
   void sendSamples(std::int64_t t_ns) noexcept;
