@@ -59,8 +59,8 @@ void BusMonitor::onConfirmed(int frames) noexcept {
 }
 
 void BusMonitor::onSent(int accepted, int offered) noexcept {
-  counters_.sent += static_cast<std::uint32_t>(accepted);
-  counters_.refused += static_cast<std::uint32_t>(offered - accepted);
+  counters_.sent += static_cast<std::uint64_t>(accepted);
+  counters_.refused += static_cast<std::uint64_t>(offered - accepted);
   if (isDead()) noteProbe();
   unconfirmed_ += accepted;
   if (accepted < offered) was_refused_ = true;
@@ -78,7 +78,7 @@ void BusMonitor::onReceiveError(int error_number) noexcept {
 void BusMonitor::onForeignFrame() noexcept { ++counters_.foreign; }
 
 void BusMonitor::onReceived(int frames, bool batch_was_full) noexcept {
-  counters_.received += static_cast<std::uint32_t>(frames);
+  counters_.received += static_cast<std::uint64_t>(frames);
   full_batches_ = batch_was_full ? full_batches_ + 1 : 0;
 }
 

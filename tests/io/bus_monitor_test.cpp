@@ -62,6 +62,20 @@ TEST(BusMonitor, LetsFramesGoOnABusThatConfirmsThem) {
   EXPECT_EQ(monitor.counters().held_back, 0u);
 }
 
+/// Twelve days of a full bus.
+TEST(BusMonitor, CountsMoreFramesThan32BitsHold) {
+  BusMonitor monitor;
+  constexpr int kFrames = 1'500'000'000;
+  for (int i = 0; i < 4; ++i) {
+    monitor.onSent(kFrames, kFrames);
+    monitor.onConfirmed(kFrames);
+    monitor.onReceived(kFrames, false);
+    monitor.update();
+  }
+  EXPECT_EQ(monitor.counters().sent, 6'000'000'000u);
+  EXPECT_EQ(monitor.counters().received, 6'000'000'000u);
+}
+
 TEST(BusMonitor, HoldsFramesBackWhileSomeAreUnconfirmedAndTakesAPassingStallForNoFault) {
   for (int stall = 1; stall <= BusMonitor::kMaxUnconfirmedCycles; ++stall) {
     BusMonitor monitor;

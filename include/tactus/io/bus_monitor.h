@@ -7,13 +7,14 @@
 
 namespace tactus {
 
+/// An arm may run for months: 32 bits of frames would be full after twelve days.
 struct BusCounters {
-  std::uint32_t received = 0;
-  std::uint32_t sent = 0;
-  std::uint32_t refused = 0;    ///< frames that the kernel refused (ENOBUFS, EAGAIN), and dropped
-  std::uint32_t held_back = 0;  ///< cycles in which nothing was sent because of the bus's state
-  std::uint32_t error_frames = 0;
-  std::uint32_t foreign = 0;  ///< remote, extended or truncated frames: none of ours
+  std::uint64_t received = 0;
+  std::uint64_t sent = 0;
+  std::uint64_t refused = 0;    ///< frames that the kernel refused (ENOBUFS, EAGAIN), and dropped
+  std::uint64_t held_back = 0;  ///< cycles in which nothing was sent because of the bus's state
+  std::uint64_t error_frames = 0;
+  std::uint64_t foreign = 0;  ///< remote, extended or truncated frames: none of ours
 };
 
 /// Judges a bus by what its socket meets and decides whether frames may be sent. At most one
