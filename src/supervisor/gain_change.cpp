@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tactus/control/gain_ramp.h"
+#include "tactus/math/filter.h"
 
 namespace tactus {
 namespace {
@@ -107,14 +108,17 @@ void GainChange::observe(const GainWatchInput& seen) noexcept {
     is_in_contact_ = false;
   const double share = period_s_ / kWindow_s;
   figures_.swing_N = swings_.swing_N();
-  figures_.losses_per_s *= 1.0 - share;
+  figures_.losses_per_s = flushed((1.0 - share) * figures_.losses_per_s);
   if (was_in_contact && !is_in_contact_) figures_.losses_per_s += 1.0 / kWindow_s;
   const double at_limit = is_in_contact_ && seen.is_at_limit ? 1.0 : 0.0;
-  figures_.at_limit += share * (at_limit - figures_.at_limit);
+  figures_.at_limit = flushed(figures_.at_limit + share * (at_limit - figures_.at_limit));
   const double left = 1.0 - period_s_ / kMemory_s;
-  largest_.swing_N = std::max(left * largest_.swing_N, figures_.swing_N);
-  largest_.losses_per_s = std::max(left * largest_.losses_per_s, figures_.losses_per_s);
-  largest_.at_limit = std::max(left * largest_.at_limit, figures_.at_limit);
+  const auto remember = [left](double figure, double& largest) {
+    largest = std::max(flushed(left * largest), figure);
+  };
+  remember(figures_.swing_N, largest_.swing_N);
+  remember(figures_.losses_per_s, largest_.losses_per_s);
+  remember(figures_.at_limit, largest_.at_limit);
 }
 
 bool GainChange::exceeds(GainTrouble trouble, double figure, double limit) noexcept {

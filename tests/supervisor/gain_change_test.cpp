@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -185,6 +186,19 @@ TEST_F(GainChangeTest, StaysWhereContactIsLostOnceInAWhile) {
   passForce(10.0, every(0.5));
   EXPECT_EQ(change_.report().trouble, GainTrouble::kNone);
   EXPECT_EQ(T_s(), 0.05);
+}
+
+/// What is remembered of bounces and limits fades for hours.
+TEST_F(GainChangeTest, ForgetsDownToZeroAndNotToSubnormalNumbers) {
+  for (int i = 0; i < 3; ++i) {
+    pass(0.5, {.force_N = 5.0, .is_at_limit = true});
+    pass(0.5, {.force_N = 0.0});
+  }
+  constexpr double kFaded_s = 8000.0;
+  pass(kFaded_s, {.force_N = 0.0});
+  std::feclearexcept(FE_UNDERFLOW);
+  pass(1.0, {.force_N = 0.0});
+  EXPECT_EQ(std::fetestexcept(FE_UNDERFLOW), 0);
 }
 
 }  // namespace
