@@ -137,6 +137,10 @@ GainPlan planChange(const Scene& running, Scene changed, double least_deg) {
 GainPlan planSettings(const Scene& running, const std::vector<Override>& settings,
                       double least_deg) {
   std::vector<Override> overrides = running.overrides;
+  // Each key once, however often it is set.
+  std::erase_if(overrides, [&settings](const Override& old) {
+    return std::ranges::count(settings, old.key, &Override::key) > 0;
+  });
   overrides.insert(overrides.end(), settings.begin(), settings.end());
   return planChange(running, loadScene(running.sources, overrides), least_deg);
 }

@@ -48,6 +48,18 @@ TEST(GainPlan, LaysSettingsOverWhatRuns) {
   EXPECT_TRUE(next.waits_for_free);
 }
 
+/// A daemon may be told for months.
+TEST(GainPlan, DoesNotGrowWithTheNumberOfChanges) {
+  const Scene started = test::shippedScene("scenario2_tactus", {{"controller.damping", "0.9"}});
+  Scene running = started;
+  for (const char* T_s : {"0.15", "0.12", "0.11", "0.13"})
+    running =
+        plan(running, {{"controller.time_constant_s", T_s}, {"controller.damping", "0.8"}}).scene;
+  EXPECT_EQ(running.overrides.size(), 2u);
+  EXPECT_EQ(running.controller.gains.force.time_constant_s, 0.13);
+  EXPECT_EQ(running.controller.gains.force.damping, 0.8);
+}
+
 TEST(GainPlan, SpeedLimitsAreLoweredAtOnceAndRaisedWithoutContact) {
   const Scene running = test::shippedScene("scenario2_tactus");
   const auto waits = [&](const char* value) {
