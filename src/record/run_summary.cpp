@@ -18,6 +18,7 @@ constexpr double kLimitTolerance = 1e-4;  // m or rad
 
 /// So that memory stays bounded however long the run is: some 5 MB.
 constexpr std::size_t kMostContacts = 10000;
+constexpr std::size_t kMostLosses = 10000;
 
 double norm(const double (&vector)[3]) noexcept {
   return std::sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
@@ -53,6 +54,7 @@ void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
     contacts.push_back(contactJson(contact, scene.module_links));
   if (figures.further_contacts > 0) json["further_contacts"] = figures.further_contacts;
   if (scene.controller.module_loss) json["module_losses"] = lossesJson(figures, scene);
+  if (figures.further_losses > 0) json["further_module_losses"] = figures.further_losses;
   if (figures.unsensed) json["unsensed_contact"] = unsensedJson(*figures.unsensed, scene);
   json["step_time_ns"] = timesJson(figures.step_time_ns);
 }
@@ -100,7 +102,13 @@ void RunSummary::addLosses(const CycleRecord& record) {
   for (int i = 0; i < modules_; ++i) {
     const std::uint64_t bit = std::uint64_t{1} << i;
     if ((record.modules_lost & bit) == 0) continue;
-    if ((figures_.modules_lost & bit) == 0) losses.push_back({i, record.t_s, record.t_s});
+    if ((figures_.modules_lost & bit) == 0) {
+      const bool is_listed = losses.size() < kMostLosses;
+      if (is_listed) losses.push_back({i, record.t_s, record.t_s});
+      if (!is_listed) ++figures_.further_losses;
+      listed_losses_ = is_listed ? listed_losses_ | bit : listed_losses_ & ~bit;
+    }
+    if ((listed_losses_ & bit) == 0) continue;
     const auto last = std::find_if(losses.rbegin(), losses.rend(),
                                    [i](const ModuleLoss& loss) { return loss.module == i; });
     last->end_s = record.t_s;

@@ -40,6 +40,21 @@ TEST(ModuleLosses, AreListedFromWhenToWhen) {
   EXPECT_EQ(json[2], Json({{"tactile_module", "link6"}, {"start_s", 0.09}, {"end_s", 0.099}}));
 }
 
+/// However long a run is: what is behind the ten thousandth is counted, and prolongs no other.
+TEST(ModuleLosses, AreBounded) {
+  const Scene scene = lossScene("go_on_slowly");
+  constexpr int kLosses = 10007, kCyclesEach = 4;
+  std::vector<std::uint64_t> lost(kLosses * kCyclesEach, 0);
+  for (std::size_t i = 0; i < lost.size(); ++i) lost[i] = i % kCyclesEach < 2 ? 1 : 0;
+  const RunFigures figures = figuresOf(scene, lost);
+  ASSERT_EQ(figures.module_losses.size(), 10000u);
+  EXPECT_EQ(figures.further_losses, kLosses - 10000);
+  EXPECT_NEAR(figures.module_losses.back().end_s, 1e-3 * (9999 * kCyclesEach + 1), 1e-9);
+  const Json json = summaryJson(scene, figures, 1.0);
+  EXPECT_EQ(json.at("further_module_losses"), kLosses - 10000);
+  EXPECT_FALSE(summaryJson(scene, {}, 1.0).contains("further_module_losses"));
+}
+
 TEST(ModuleLosses, AreNothingOfARobotThatStops) {
   const Scene scene = lossScene("stop");
   EXPECT_FALSE(summaryJson(scene, figuresOf(scene, {0, 0}), 1.0).contains("module_losses"));

@@ -47,6 +47,7 @@ struct RunFigures {
   long long further_contacts = 0;          ///< behind the first 10000, of which no more is known
   std::uint64_t modules_lost = 0;          ///< in the last cycle; bit i: module i
   std::vector<ModuleLoss> module_losses;   ///< in the order of their start
+  long long further_losses = 0;            ///< behind the first 10000, likewise
   TimeFigures step_time_ns;
   /// The strongest of the simulated world that no module feels; absent without capsules.
   std::optional<UnsensedContact> unsensed;
@@ -75,6 +76,8 @@ class RunSummary {
   JointLimits limits_;
   RunFigures figures_;
   int modules_;
+  std::uint64_t listed_losses_ =
+      0;  ///< modules whose present loss is the last one of theirs listed
   ContactWatch contacts_;
   double squared_error_sum_m2_ = 0.0, squared_rotation_sum_rad2_ = 0.0;
   Histogram step_times_;
