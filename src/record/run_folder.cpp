@@ -48,6 +48,7 @@ fs::path prepareRunFolder(const std::string& directory, const std::string& name)
                  "expected a folder or room to make one");
   }
   removeEarlier(folder / kSummaryName, "expected an earlier summary or nothing");
+  removeEarlier(folder / kNextLogName, "expected an earlier log or nothing");
   for (int age = 1; age <= kMaxKeptLogs; ++age)
     removeEarlier(folder / logName(age), "expected an earlier log or nothing");
   return folder;

@@ -21,8 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLookPeriod_s = 1.0;
-/// The next file until it is complete up to its first cycle.
-constexpr const char* kNextName = "run.next.ulg";
 
 std::string newRunName() {
   std::random_device random;
@@ -108,7 +106,7 @@ std::unique_ptr<UlogWriter> RunLog::begin(const std::string& path) {
 
 /// Whenever this ends, by an error or with the process, all files that have cycles are complete.
 void RunLog::beginNextFile() {
-  const std::string next = folder_ + "/" + kNextName;
+  const std::string next = folder_ + "/" + kNextLogName;
   try {
     description_.infos.back().second = fmt::to_string(part_ + 1);
     std::unique_ptr<UlogWriter> writer = begin(next);

@@ -220,7 +220,7 @@ TEST_F(RunLogFiles, OneThatCannotBeBegunIsAnErrorOfTheStart) {
 }
 
 TEST_F(RunLogFiles, AnEarlierRunLeavesNoOlderFilesToANewOne) {
-  for (const char* name : {"run.1.ulg", "run.7.ulg", "summary.json", "notes.ulg"})
+  for (const char* name : {"run.1.ulg", "run.7.ulg", "run.next.ulg", "summary.json", "notes.ulg"})
     std::ofstream(path(name)) << "old";
   const std::filesystem::path folder(folder_);
   prepareRunFolder(folder.parent_path().string(), folder.filename().string());

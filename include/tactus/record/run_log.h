@@ -59,6 +59,10 @@ class RunLog {
   std::unique_ptr<UlogWriter> writer_;  ///< nullptr: stopped or closed
 };
 
+/// The next file until it is complete up to its first cycle. Only a daemon that is killed just then
+/// leaves it.
+inline constexpr const char* kNextLogName = "run.next.ulg";
+
 /// run.ulg, or an older file of the same run: run.1.ulg for `age` 1.
 std::string logName(int age);
 
