@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 namespace tactus::campaign {
 namespace {
@@ -20,8 +21,14 @@ constexpr std::int64_t kMillisecond_ns = 1'000'000;
 }  // namespace
 
 Play::Play(const Stage& stage, const Plan& plan)
+    : Play(stage, stage.moments[static_cast<int>(plan.moment)], plan,
+           [](VirtualRobotCell& cell) { cell.cycle.prepare(); }) {}
+
+Play::Play(const Stage& stage, VirtualRobotCell cell, const Plan& plan,
+           std::function<void(VirtualRobotCell&)> finish)
     : stage_(stage),
-      cell_(stage.moments[static_cast<int>(plan.moment)]),
+      cell_(std::move(cell)),
+      finish_(std::move(finish)),
       start_ns_(cell_.t_ns),
       injections_(plan.injections),
       gate_(plan.frame),
@@ -128,7 +135,7 @@ void Play::step(CycleInput input) {
   deliverHeld();
   cell_.input = input;
   cell_.step();
-  cell_.cycle.prepare();
+  finish_(cell_);
   observe();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "campaign/observation.h"
@@ -12,6 +13,9 @@ namespace tactus::campaign {
 class Play {
  public:
   Play(const Stage& stage, const Plan& plan);
+  /// On from where another play has left off. finish: after each cycle, in place of prepare().
+  Play(const Stage& stage, VirtualRobotCell cell, const Plan& plan,
+       std::function<void(VirtualRobotCell&)> finish);
 
   int now_ms() const { return static_cast<int>((cell_.t_ns - start_ns_) / 1'000'000); }
   const VirtualRobotCell& cell() const { return cell_; }
@@ -41,6 +45,7 @@ class Play {
 
   const Stage& stage_;
   VirtualRobotCell cell_;
+  std::function<void(VirtualRobotCell&)> finish_;
   std::int64_t start_ns_;
   std::vector<Injection> injections_;
   FrameGate gate_;

@@ -31,23 +31,27 @@ VirtualRobotCell readyCell(VirtualRobotCell cell) {
 
 }  // namespace
 
+Promise promiseOf(const Scene& scene, const VirtualRobotCell& cell) {
+  Promise promise;
+  const HardwareConfig& hardware = *scene.hardware;
+  promise.limits = scene.controller.limits;
+  promise.period_s = scene.period_s;
+  promise.start_tolerance = hardware.start_tolerance;
+  promise.brake_ms = static_cast<int>(1e3 * hardware.gpio->brake_switching_s);
+  promise.counts_per_unit.resize(static_cast<int>(hardware.drives.size()));
+  for (const DriveConfig& drive : hardware.drives)
+    promise.counts_per_unit[drive.joint] = drive.counts_per_unit;
+  promise.quick_stop = promise.counts_per_unit;
+  for (int i = 0; i < promise.quick_stop.size(); ++i)
+    promise.quick_stop[i] = cell.plant.drive(i).objects().get(0x6085) / promise.counts_per_unit[i];
+  return promise;
+}
+
 Stage bootStage(const std::string& variant) {
   Stage stage{campaignScene(variant), {}, {}};
-  const HardwareConfig& hardware = *stage.scene.hardware;
-  stage.promise.limits = stage.scene.controller.limits;
-  stage.promise.period_s = stage.scene.period_s;
-  stage.promise.start_tolerance = hardware.start_tolerance;
-  stage.promise.brake_ms = static_cast<int>(1e3 * hardware.gpio->brake_switching_s);
-  stage.promise.counts_per_unit.resize(static_cast<int>(hardware.drives.size()));
-  for (const DriveConfig& drive : hardware.drives)
-    stage.promise.counts_per_unit[drive.joint] = drive.counts_per_unit;
-
   VirtualRobotCell cell(stage.scene);
   const VirtualRobotCell boot = cell;
-  stage.promise.quick_stop = stage.promise.counts_per_unit;
-  for (int i = 0; i < stage.promise.quick_stop.size(); ++i)
-    stage.promise.quick_stop[i] =
-        cell.plant.drive(i).objects().get(0x6085) / stage.promise.counts_per_unit[i];
+  stage.promise = promiseOf(stage.scene, cell);
   const auto steps = [&cell](int cycles) {
     for (int i = 0; i < cycles; ++i) {
       cell.step();

@@ -20,6 +20,8 @@ struct Stage {
 
 /// Scenario 1 with e-stop, enable line and brake.
 Scene campaignScene(const std::string& variant);
+/// cell: of that scene.
+Promise promiseOf(const Scene& scene, const VirtualRobotCell& cell);
 Stage bootStage(const std::string& variant);
 
 }  // namespace tactus::campaign

@@ -14,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "support/loop_side.h"
 #include "support/virtual_robot_cell.h"
 #include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/telemetry.h"
@@ -24,34 +25,6 @@ namespace {
 using namespace tactus;
 
 volatile std::sig_atomic_t is_over = 0;
-
-/// What HardwareLoop does with orders and reports.
-void exchange(ControlCycle& cycle, LoopLink& link) {
-  ToolOrder order;
-  while (link.tool_orders.pop(order)) cycle.order(order);
-  GainOrder gains;
-  if (link.gain_orders.take(gains)) cycle.order(gains);
-  cycle.prepare();
-  link.gain_reports.put(cycle.gainReport());
-  if (!cycle.toolReport()) return;
-  ToolSight sight;
-  cycle.fill(sight);
-  link.tool_sights.put(sight);
-}
-
-/// And with what is logged.
-void publish(const ControlCycle& cycle, ModeReport& reported, LoopLink& link) {
-  if (LoopRecord* const record = link.records.reserve()) {
-    record->is_in_motion = cycle.isRecorded();
-    if (record->is_in_motion) cycle.fill(record->cycle);
-    link.records.commit();
-  }
-  const ModeReport& report = cycle.report();
-  const bool is_new = report.mode != reported.mode || report.fault != reported.fault;
-  if (!is_new && link.pulse.cycles.fetch_add(1) > 0) return;
-  reported = report;
-  link.reports.push(report);
-}
 
 void keepPace(std::chrono::steady_clock::time_point start, std::int64_t t_ns, double pace) {
   const std::chrono::nanoseconds passed(
@@ -78,13 +51,12 @@ int main(int argc, char** argv) {
   std::optional<Telemetry> telemetry;
   if (!folder.empty()) telemetry.emplace(scene, folder, link);
   const ControlSocket socket(scene, link);
-  ModeReport reported;
+  test::LoopSide side(link);
   bool is_said = false;
   const auto start = std::chrono::steady_clock::now();
   for (long i = 0; !is_over; ++i) {
     cell.step();
-    if (telemetry) publish(cell.cycle, reported, link);
-    exchange(cell.cycle, link);
+    side.finish(cell.cycle, cell.input);
     if (!is_said && cell.cycle.report().mode == Mode::kRunning) {
       is_said = true;
       std::puts("running");
