@@ -28,17 +28,17 @@ constexpr Gain kGains[] = {
 
 }  // namespace
 
-void writeScene(const std::string& path, const std::string& variant, const std::string& more) {
-  std::ofstream(path) << "extends: " TACTUS_SOURCE_DIR
-                         "/config/scenes/commands.yaml\nlog: {max_bytes: 3e7, keep: 3}\n"
-                      << fmt::format("controller:\n  variant: {}\n{}", variant, more);
+void writeScene(const std::string& path, const SoakScene& scene, const std::string& more) {
+  std::ofstream(path) << fmt::format(
+      "extends: {}/config/scenes/{}.yaml\nlog: {{max_bytes: 3e7, keep: 3}}\n"
+      "controller:\n  variant: {}\n{}",
+      TACTUS_SOURCE_DIR, scene.base, scene.variant, more);
 }
 
-Client::Client(test::Random& random, std::string scene_path, std::string variant,
-               RequestCounts& counts)
+Client::Client(test::Random& random, std::string scene_path, SoakScene scene, RequestCounts& counts)
     : random_(random),
       scene_path_(std::move(scene_path)),
-      variant_(std::move(variant)),
+      scene_(std::move(scene)),
       counts_(counts) {}
 
 /// What was asked first makes the daemon take what the loop has reported since, so that the answer
@@ -82,7 +82,7 @@ void Client::changeGains() {
   if (what < 0.25) return ask({{"do", "undo"}}, counts_.gains);
   if (what < 0.5) {
     const bool needs_restart = random_.chance(0.2);
-    writeScene(scene_path_, variant_,
+    writeScene(scene_path_, scene_,
                needs_restart ? "  order: 1\n"
                              : fmt::format("  damping: {:.3f}\n", random_.uniform(0.4, 1.0)));
     return ask({{"do", "reload"}}, counts_.gains);

@@ -16,12 +16,19 @@ struct RequestCounts {
   long long targets = 0;  ///< and of targets
 };
 
+/// A scene of config/scenes with another variant, and a log of few and small files.
+struct SoakScene {
+  std::string base, variant;
+};
+/// more: further lines of the controller's section.
+void writeScene(const std::string& path, const SoakScene& scene, const std::string& more = "");
+
 /// Who talks to the daemon by its control socket, and comes and goes: gains set, reloaded and
 /// undone, targets, holds, and what is no request.
 class Client {
  public:
   /// scene_path: of the file that the daemon was started with, which is written anew.
-  Client(test::Random& random, std::string scene_path, std::string variant, RequestCounts& counts);
+  Client(test::Random& random, std::string scene_path, SoakScene scene, RequestCounts& counts);
 
   void tell();  ///< a target or a hold
   void changeGains();
@@ -32,13 +39,10 @@ class Client {
   Json target();
 
   test::Random& random_;
-  std::string scene_path_, variant_;
+  std::string scene_path_;
+  SoakScene scene_;
   RequestCounts& counts_;
   std::optional<ControlClient> connection_;
 };
-
-/// The scene of a soak: tasks by command, a log of few and small files. more: further lines of the
-/// controller's section.
-void writeScene(const std::string& path, const std::string& variant, const std::string& more = "");
 
 }  // namespace tactus::soak

@@ -25,10 +25,12 @@ namespace {
 
 volatile std::sig_atomic_t is_interrupted = 0;
 
-constexpr double kMostHeapGrowth_bytes = 2e6;
-constexpr double kMostResidentGrowth_bytes = 8e6;
-/// Before, restarts move more memory to and fro than grows.
-constexpr double kLeastToJudge_s = 7200.0;
+constexpr double kMostHeapGrowth_bytes = 1e6;      ///< at the starts of lives
+constexpr double kMostResidentGrowth_bytes = 8e6;  ///< likewise
+/// Within a life: what ContactList keeps of a contact that lasts for 17 minutes, and the summary of
+/// ten thousand contacts (kMostContacts).
+constexpr double kMostHeapGrowthOfALife_bytes = 16.8e6 + 5e6;
+constexpr std::size_t kLeastLives = 8;   ///< to tell growth from start to start
 constexpr int kLogFiles = 4;             ///< run.ulg and log.keep of the scene
 constexpr double kMostLog_bytes = 12e7;  ///< log.max_bytes of each
 /// Of eight clients at most, and of what a request or a rotation opens for a moment.
@@ -67,16 +69,18 @@ class Course {
  public:
   Course(const std::string& folder, double report_s) : folder_(folder), report_s_(report_s) {}
 
-  void look(const Tally& tally) {
-    now_ = resourcesNow(folder_ + "/log");
+  /// As a life begins.
+  void begin(const Tally& tally) {
+    note();
     heap_.push_back({tally.t_s, now_.heap_bytes});
     resident_.push_back({tally.t_s, now_.resident_bytes});
-    least_descriptors_ = std::min(least_descriptors_, now_.descriptors);
-    most_descriptors_ = std::max(most_descriptors_, now_.descriptors);
-    least_threads_ = std::min(least_threads_, now_.threads);
-    most_threads_ = std::max(most_threads_, now_.threads);
-    most_log_files_ = std::max(most_log_files_, now_.log_files);
-    most_log_bytes_ = std::max(most_log_bytes_, now_.log_bytes);
+    heap_at_start_bytes_ = now_.heap_bytes;
+  }
+
+  /// Within it.
+  void look(const Tally& tally) {
+    note();
+    most_of_a_life_bytes_ = std::max(most_of_a_life_bytes_, now_.heap_bytes - heap_at_start_bytes_);
     if (tally.t_s < next_report_s_) return;
     next_report_s_ = tally.t_s + report_s_;
     fmt::print(
@@ -95,25 +99,38 @@ class Course {
                most_log_files_, 1e-6 * most_log_bytes_);
     const double heap = growth(heap_), resident = growth(resident_);
     fmt::print(
-        "heap {:+.3f} MB (limit {:.0f}), resident {:+.3f} MB (limit {:.0f}) in the last two "
-        "thirds\n",
+        "from start to start, last two thirds: heap {:+.3f} MB (limit {:.0f}), resident "
+        "{:+.3f} MB (limit {:.0f}){}\n",
         1e-6 * heap, 1e-6 * kMostHeapGrowth_bytes, 1e-6 * resident,
-        1e-6 * kMostResidentGrowth_bytes);
-    const bool is_short = heap_.empty() || heap_.back().t_s < kLeastToJudge_s;
-    if (is_short) fmt::print("too short to judge by memory\n");
+        1e-6 * kMostResidentGrowth_bytes,
+        heap_.size() < kLeastLives ? "; too few lives to judge" : "");
+    fmt::print("heap within a life at most {:+.3f} MB (limit {:.1f})\n",
+               1e-6 * most_of_a_life_bytes_, 1e-6 * kMostHeapGrowthOfALife_bytes);
     const bool has_memory_grown =
-        heap > kMostHeapGrowth_bytes || resident > kMostResidentGrowth_bytes;
-    return (is_short || !has_memory_grown) &&
+        heap_.size() >= kLeastLives &&
+        (heap > kMostHeapGrowth_bytes || resident > kMostResidentGrowth_bytes);
+    return !has_memory_grown && most_of_a_life_bytes_ <= kMostHeapGrowthOfALife_bytes &&
            most_descriptors_ <= least_descriptors_ + kDescriptorsOfClients &&
            most_threads_ == least_threads_ && most_log_files_ <= kLogFiles &&
            most_log_bytes_ <= kMostLog_bytes;
   }
 
  private:
+  void note() {
+    now_ = resourcesNow(folder_ + "/log");
+    least_descriptors_ = std::min(least_descriptors_, now_.descriptors);
+    most_descriptors_ = std::max(most_descriptors_, now_.descriptors);
+    least_threads_ = std::min(least_threads_, now_.threads);
+    most_threads_ = std::max(most_threads_, now_.threads);
+    most_log_files_ = std::max(most_log_files_, now_.log_files);
+    most_log_bytes_ = std::max(most_log_bytes_, now_.log_bytes);
+  }
+
   std::string folder_;
   double report_s_, next_report_s_ = 0.0;
   Resources now_;
-  std::vector<Reading> heap_, resident_;
+  std::vector<Reading> heap_, resident_;  ///< as lives begin
+  double heap_at_start_bytes_ = 0.0, most_of_a_life_bytes_ = 0.0;
   int least_descriptors_ = 1 << 20, most_descriptors_ = 0;
   int least_threads_ = 1 << 20, most_threads_ = 0;
   int most_log_files_ = 0;
@@ -136,10 +153,9 @@ void print(const Tally& tally) {
   fmt::print("{} requests: {} changes of gains, {} targets and holds, {} refused\n",
              tally.requests.sent, tally.requests.gains, tally.requests.targets,
              tally.requests.refused);
-  fmt::print(
-      "{} samples of {} logs replayed: {} cycles equal to the bit or told above, {} of "
-      "unknown state\n",
-      tally.replays.samples, tally.replays.files, tally.replays.cycles, tally.replays.skipped);
+  fmt::print("{} samples of {} logs: {} cycles replayed, {} of unknown state; {} samples unknown\n",
+             tally.replays.samples, tally.replays.files, tally.replays.cycles,
+             tally.replays.skipped, tally.replays.unknown);
   fmt::print("largest joint speed in the 3 s after going on: {:.3f} m/s or rad/s\n", tally.peak);
 }
 
@@ -178,6 +194,8 @@ int soak(const Options& options) {
       course.look(tally);
       return is_interrupted == 0;
     });
+    life.start();
+    course.begin(tally);
     life.run(std::min(drawn_s, end_s - tally.t_s));
     life.end();
     if (options.only) break;

@@ -8,6 +8,7 @@ namespace tactus::soak {
 /// What was replayed so far.
 struct ReplayCounts {
   long long samples = 0, files = 0;
+  long long unknown = 0;  ///< samples without a cycle whose state the logs tell
   long long cycles = 0;   ///< compared to the bit
   long long skipped = 0;  ///< of which the logs that are there do not tell the state
 };

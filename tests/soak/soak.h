@@ -47,6 +47,8 @@ class Life {
   Life(std::uint64_t seed, int number, const std::string& folder, Tally& tally,
        std::function<bool()> minutely);
 
+  /// The daemon, where the arm stands.
+  void start();
   /// Troubles, requests and going on, for so much virtual time, or until the arm does not go on.
   void run(double duration_s);
   /// A stop request, or the loss of power. Then drives have to rest, the log has to be readable,
@@ -54,7 +56,6 @@ class Life {
   void end();
 
  private:
-  void start();
   campaign::Plan drawEpisode();
   /// Returns how it ended.
   campaign::Observation play(const campaign::Plan& plan, Operator user);
@@ -79,7 +80,7 @@ class Life {
   Tally& tally_;
   std::function<bool()> minutely_;
   test::Random random_;
-  std::string variant_;
+  SoakScene scene_;
   campaign::Stage stage_;
   std::optional<VirtualRobotCell> cell_;
   std::optional<Daemon> daemon_;
