@@ -53,14 +53,20 @@ CycleRecord Replayer::replay(const CycleRecord& recorded) {
   return replayed;
 }
 
-/// Where the arm was commanded to be next, whatever the controller makes of a state that is
-/// unknown: a reset may keep something of that.
+/// Where the arm was commanded to be next, and where it was touched at last, whatever the
+/// controller makes of a state that is unknown: a reset keeps that.
 void Replayer::follow(const CycleRecord& recorded) noexcept {
   const JointLimits& limits = controller_.config().limits;
   for (int i = 0; i < joints_; ++i) {
     const double q = recorded.q[i] + period_s_ * recorded.dq[i];
     state_.q_desired[i] = std::clamp(q, limits.lower[i], limits.upper[i]);
     state_.velocity_before[i] = recorded.dq[i];  // kept up in missed cycles
+  }
+  for (std::size_t i = 0; i < controller_.config().tactile_modules.size(); ++i) {
+    ContactPointState& contact = state_.modules[i].contact;
+    contact.position_m = recorded.contact_position_m[i];
+    contact.direction = {recorded.contact_dir_x[i], recorded.contact_dir_y[i],
+                         recorded.contact_dir_z[i]};
   }
 }
 

@@ -7,6 +7,7 @@
 #include "support/crops9.h"
 #include "support/period.h"
 #include "support/telemetry.h"
+#include "tactus/supervisor/apply_mode.h"
 
 namespace tactus {
 namespace {
@@ -140,6 +141,35 @@ TEST(Replay, WithAnotherSettingFindsTheLargestDifferences) {
   EXPECT_EQ(largest[0].size(), expected);
   EXPECT_EQ(largest[0].t_s, expected_t_s);
   EXPECT_EQ(largest[1].column, "u_n");
+}
+
+/// A touch, nothing for long, a stop by the drives and on; the log's first part is missing.
+TEST(Replay, OfALaterPartKnowsWhereTheArmWasTouchedAtLast) {
+  constexpr int kFirst = 1500, kStop = 3600, kOn = 3700, kEnd = 4000;
+  const Controller controller(test::crops9Controller(Variant::kNullLimit));
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  Replayer replayer(controller, kShape.joints, kPeriod_s);
+  replayer.beginPart(1);
+  ReplayComparison comparison(kShape);
+  Mode before = Mode::kRunning;
+  for (int i = 0; i < kEnd; ++i) {
+    RobotInput input = touch(std::min(i, 1000));
+    input.tactile[0].sequence = static_cast<std::uint32_t>(i / 4);
+    const Mode mode = i >= kStop && i < kOn ? Mode::kFault : Mode::kRunning;
+    applyMode(controller, mode, before, input, controller.initialGains(), state);
+    before = mode;
+    controller.update(input, controller.initialGains(), i * kPeriod_s, kPeriod_s, state, output);
+    CycleRecord recorded;
+    fillRecord(i * kPeriod_s, input, controller.initialGains(), output, Vector3::Zero(), recorded);
+    recorded.task_time_s = recorded.path_time_s = i * kPeriod_s;
+    recorded.mode = static_cast<std::uint64_t>(mode);
+    if (i < kFirst) continue;
+    const CycleRecord replayed = replayer.replay(recorded);
+    if (replayer.isKnown()) comparison.add(recorded, replayed);
+  }
+  EXPECT_EQ(comparison.cycles(), kEnd - kStop);
+  EXPECT_EQ(comparison.differingCycles(), 0);
 }
 
 TEST(ReplayCsv, PutsRecordedAndReplayedSideBySide) {

@@ -31,6 +31,8 @@ constexpr Gain kGains[] = {
 void writeScene(const std::string& path, const SoakScene& scene, const std::string& more) {
   std::ofstream(path) << fmt::format(
       "extends: {}/config/scenes/{}.yaml\nlog: {{max_bytes: 3e7, keep: 3}}\n"
+      "simulation:\n  obstacles:\n"  // no law has to press hard
+      "    - {{x_m: 0.70771, y_m: 0.00265, stiffness_N_per_m: 60}}\n"
       "controller:\n  variant: {}\n{}",
       TACTUS_SOURCE_DIR, scene.base, scene.variant, more);
 }

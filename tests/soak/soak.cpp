@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "campaign/going_on.h"
@@ -48,12 +49,24 @@ std::uint64_t seedOf(std::uint64_t seed, int number) {
   return (seed * 0x9E3779B97F4A7C15U) ^ (0xD1B54A32D192ED03U * (static_cast<unsigned>(number) + 1));
 }
 
-const InjectionKind& drawKind(test::Random& random) {
+/// Of drives these alone leave joints where they are.
+constexpr std::array<std::string_view, 10> kDriveStays = {
+    "drive_fault", "drive_silent",      "feedback_lost", "heartbeat_lost",      "fault_shown",
+    "off_shown",   "emergency_message", "node_reset",    "communication_reset", "node_stopped"};
+
+bool mayMoveJoints(const InjectionKind& kind) {
+  return kind.where == InjectionKind::Where::kDrive &&
+         std::ranges::find(kDriveStays, kind.name) == kDriveStays.end();
+}
+
+/// stays: the arm is not to be moved by anybody but its controller.
+const InjectionKind& drawKind(test::Random& random, bool stays) {
   if (random.chance(0.25)) return campaign::hand();
   static const std::vector<const InjectionKind*> kinds = campaign::injectionKinds();
   while (true) {
     const InjectionKind& kind = *kinds[random.index(static_cast<int>(kinds.size()))];
-    if (!kind.lasts || &kind == &campaign::push()) return kind;
+    const bool is_end = kind.lasts && &kind != &campaign::push();
+    if (!is_end && !(stays && mayMoveJoints(kind))) return kind;
   }
 }
 
@@ -76,7 +89,7 @@ Life::Life(std::uint64_t seed, int number, const std::string& folder, Tally& tal
       tally_(tally),
       minutely_(std::move(minutely)),
       random_(seed_),
-      scene_{number % 2 == 0 ? "commands" : "scenario2_tactus",
+      scene_{number % 2 == 0 ? "commands" : "scenario1_none",
              kVariantsOfSoak[number % kVariantsOfSoak.size()]},
       stage_{loadSoakScene(folder + "/soak.yaml", scene_), {}, {}},
       began_s_(tally.t_s) {
@@ -111,10 +124,18 @@ void Life::run(double duration_s) {
     ++tally_.episodes;
     tally_.troubles += static_cast<long long>(plan.injections.size());
     judgeSubnormals(*cell_);
-    if (last.mode != Mode::kRunning) goes_on_ = false;
-    if (last.mode != Mode::kRunning) ++tally_.left[faultName(last.fault)];
+    if (last.mode != Mode::kRunning) leave(last, plan);
     if (tally_.t_s > next_replay_s_) takeReplay(0);
   }
+}
+
+/// Only an arm that stands elsewhere may not go on.
+void Life::leave(const Observation& last, const Plan& plan) {
+  goes_on_ = false;
+  ++tally_.left[faultName(last.fault)];
+  if (last.fault != Fault::kNotAtStart)
+    complain(fmt::format("does not go on: {} ({}) after{}", modeName(last.mode),
+                         faultName(last.fault), plan.text()));
 }
 
 Plan Life::drawEpisode() {
@@ -123,7 +144,8 @@ Plan Life::drawEpisode() {
   const int count = many < 0.25 ? 0 : many < 0.6 ? 1 : many < 0.9 ? 2 : 3;
   int from_ms = random_.integer(1, 500);
   for (int i = 0; i < count; ++i) {
-    const Injection x = campaign::drawInjection(random_, stage_.scene, drawKind(random_), from_ms);
+    const Injection x =
+        campaign::drawInjection(random_, stage_.scene, drawKind(random_, number_ == 0), from_ms);
     plan.injections.push_back(mended(random_, x));
     from_ms += random_.chance(0.2) ? 0 : random_.integer(0, 400);
   }
@@ -269,6 +291,9 @@ void Life::startAgain() {
   if (is_running && away > stage_.promise.start_tolerance + 1e-3)
     complain(fmt::format("runs {:.3f} from its start", away));
   if (!is_running) ++tally_.left[fmt::format("{} at a restart", faultName(last.fault))];
+  const bool may_refuse = last.fault == Fault::kNotAtStart || last.fault == Fault::kTareRefused;
+  if (!is_running && !may_refuse)
+    complain(fmt::format("does not start again: {}", faultName(last.fault)));
   stop();
   finish();
 }

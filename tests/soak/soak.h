@@ -57,6 +57,7 @@ class Life {
 
  private:
   campaign::Plan drawEpisode();
+  void leave(const campaign::Observation& last, const campaign::Plan& plan);
   /// Returns how it ended.
   campaign::Observation play(const campaign::Plan& plan, Operator user);
   void endAlone(campaign::Play& play, campaign::Judges& judges,
