@@ -276,7 +276,7 @@ void checkDown(const std::string& interface) {
   check(bus.monitor().fault() == Fault::kBusDown, "and as long as it is down");
   other.heard();
   shell("ip link set " + interface + " up");
-  const std::uint32_t sent = bus.monitor().counters().sent;
+  const std::uint64_t sent = bus.monitor().counters().sent;
   const int cycles = cyclesUntil(bus, Fault::kNone, 300);
   check(cycles <= BusMonitor::kProbeCycles + BusMonitor::kCalmCycles + 5,
         "a probe finds it when it is up again, after " + std::to_string(cycles) + " cycles");
@@ -369,7 +369,7 @@ void checkDeadBus(const std::string& interface) {
   other.heard();
   const int cycles = cyclesUntil(bus, Fault::kBusStalled, 20);
   check(cycles == BusMonitor::kMaxUnconfirmedCycles + 2, "a dead bus is stalled");
-  const std::uint32_t sent = bus.monitor().counters().sent;
+  const std::uint64_t sent = bus.monitor().counters().sent;
   for (int i = 0; i < 550; ++i) cycle(bus);
   check(bus.monitor().counters().sent == sent + 5, "it gets a probe each hundred cycles");
   check(other.heard().empty() && bus.monitor().fault() == Fault::kBusStalled,
