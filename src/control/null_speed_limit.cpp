@@ -10,19 +10,16 @@ NullSpeedLimit::NullSpeedLimit(const SerialChain& chain, const ScaledVector& inv
   for (int i = 0; i < chain.size(); ++i) is_prismatic_[i] = chain.type(i) == JointType::kPrismatic;
 }
 
-NullSpeedLimits NullSpeedLimit::limits(const ForceGains& gains) const noexcept {
-  NullSpeedLimits limits{gains.max_null_speed_m_per_s, gains.max_null_speed_rad_per_s};
+void NullSpeedLimit::renew(const ForceGains& gains, NullSpeedLimits& limits) const noexcept {
+  if (limits.max_speed_m_per_s == gains.max_null_speed_m_per_s &&
+      limits.max_speed_rad_per_s == gains.max_null_speed_rad_per_s)
+    return;
+  limits.max_speed_m_per_s = gains.max_null_speed_m_per_s;
+  limits.max_speed_rad_per_s = gains.max_null_speed_rad_per_s;
   for (int i = 0; i < kMaxJoints; ++i) {
     limits.inverse[i] = inv_sqrt_weights_[i] /
                         (is_prismatic_[i] ? limits.max_speed_m_per_s : limits.max_speed_rad_per_s);
   }
-  return limits;
-}
-
-void NullSpeedLimit::renew(const ForceGains& gains, NullSpeedLimits& limits) const noexcept {
-  if (limits.max_speed_m_per_s != gains.max_null_speed_m_per_s ||
-      limits.max_speed_rad_per_s != gains.max_null_speed_rad_per_s)
-    limits = this->limits(gains);
 }
 
 double NullSpeedLimit::share(const ForceGains& gains, const ScaledVector& v_scaled,

@@ -17,18 +17,10 @@ constexpr double kT_s = 0.1;
 constexpr double kLimit_N = 3.8;
 constexpr double kC_N_per_m = 1000.0;
 
-/// Nothing delays or filters, c is known, and the null space cannot do anything.
+/// The null space cannot do anything.
 ControllerConfig bareRail(double speed_m_per_s) {
-  ControllerConfig config = test::railController(Variant::kNullLimit);
-  config.drive_lag_s = 0.0;
-  config.tactile_modules.front().filter_cutoff_hz = 1e6;
-  config.gains.force.assumed_stiffness_N_per_m = kC_N_per_m;
+  ControllerConfig config = test::undelayedRail(speed_m_per_s, kC_N_per_m);
   config.gains.force.max_null_speed_m_per_s = 1e-12;
-  Waypoint line;
-  line.displacement_m = Vector3(0.0, 10.0, 0.0);
-  line.speed_m_per_s = speed_m_per_s;
-  line.ramp_s = 0.0;
-  config.task.trajectory.waypoints = {line};
   return config;
 }
 

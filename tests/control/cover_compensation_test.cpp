@@ -26,6 +26,21 @@ ControllerConfig coveredRobot(test::Random& random) {
   return config;
 }
 
+Joint carriageJoint() {
+  Joint rail;
+  rail.type = JointType::kPrismatic;
+  return rail;
+}
+
+/// A cover on the first of two carriages.
+ControllerConfig coveredCarriage(test::Random& random) {
+  ControllerConfig config = coveredRobot(random);
+  config.chain = SerialChain({carriageJoint(), carriageJoint()}, {1, {}});
+  config.q_start = JointVector::Zero(2);
+  config.tactile_modules.front().link.joint = 0;
+  return config;
+}
+
 Pose modulePose(const ControllerConfig& config, const JointVector& q) {
   ChainPose pose;
   config.chain.computePose(q, pose);
@@ -124,12 +139,7 @@ TEST(CoverCompensation, LeavesNextToNothingOfAMovingCover) {
 
 TEST(CoverCompensation, MissedCyclesAreNoAcceleration) {
   test::Random random(903);
-  ControllerConfig config = coveredRobot(random);
-  Joint rail;
-  rail.type = JointType::kPrismatic;
-  config.chain = SerialChain({rail, rail}, {1, {}});
-  config.q_start = JointVector::Zero(2);
-  config.tactile_modules.front().link.joint = 0;
+  const ControllerConfig config = coveredCarriage(random);
   const CoverCompensation compensation(config, config.tactile_modules.front());
   CoverCompensationState state;
   double q = 0.0, most_N = 0.0;
@@ -148,13 +158,8 @@ TEST(CoverCompensation, MissedCyclesAreNoAcceleration) {
 /// the filter with the cut-off that the module has.
 TEST(CoverCompensation, FiltersAsTheModuleDoes) {
   test::Random random(907);
-  ControllerConfig config = coveredRobot(random);
-  Joint rail;
-  rail.type = JointType::kPrismatic;
-  config.chain = SerialChain({rail, rail}, {1, {}});
-  config.q_start = JointVector::Zero(2);
+  ControllerConfig config = coveredCarriage(random);
   TactileModuleConfig& module = config.tactile_modules.front();
-  module.link.joint = 0;
   for (const double cutoff_hz : {15.0, 40.0}) {
     module.filter_cutoff_hz = cutoff_hz;
     const CoverCompensation compensation(config, module);
@@ -166,7 +171,7 @@ TEST(CoverCompensation, FiltersAsTheModuleDoes) {
       const JointVector q{{0.3 * kPeriod_s * std::max(0, cycle - 20), 0.0}};
       const double a = cycle == 21 ? 0.3 / kPeriod_s : 0.0;
       Wrench5 left = wrenchOf(compensation.relieve({}, q, kPeriod_s, state));
-      const Wrench5 felt = feltAt(config, q, a * rail.axis) - rest;
+      const Wrench5 felt = feltAt(config, q, a * carriageJoint().axis) - rest;
       for (int i = 0; i < 5; ++i) {
         const double filtered = filters[i].update(felt[i]);
         largest_N = std::max(largest_N, std::abs(filtered));

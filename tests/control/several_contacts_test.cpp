@@ -28,19 +28,11 @@ constexpr RowsOf kRowsOf[] = {{LimitAt::kStiffnessCentre, 0.0},
                               {LimitAt::kModuleEnds, 0.5}};
 
 ControllerConfig rowsRail(const RowsOf& rows, double speed_m_per_s) {
-  ControllerConfig config = test::railController(Variant::kNullLimit);
+  ControllerConfig config = test::undelayedRail(speed_m_per_s, kRailC_N_per_m);
   config.force_control->limit_at = rows.limit_at;
   config.force_control->friction_coefficient = rows.friction_coefficient;
-  config.drive_lag_s = 0.0;
-  config.tactile_modules.front().filter_cutoff_hz = 1e6;
-  config.gains.force.assumed_stiffness_N_per_m = kRailC_N_per_m;
   config.gains.force.contact_threshold_N = kHold_N;
   config.gains.force.activation_force_N = kRailAct_N;
-  Waypoint line;
-  line.displacement_m = Vector3(0.0, 10.0, 0.0);
-  line.speed_m_per_s = speed_m_per_s;
-  line.ramp_s = 0.0;
-  config.task.trajectory.waypoints = {line};
   return config;
 }
 

@@ -27,17 +27,12 @@ class Operator {
     }
     running_ms_ = -1;
     if (on_ms_ >= 0 && now_ms < on_ms_ + kAttempt_ms) return true;
-    if (now_ms >= not_before_ms_ && attempts_++ == kAttempts) {
-      has_given_up_ = true;
-      return false;
-    }
+    if (now_ms >= not_before_ms_ && attempts_++ == kAttempts) return false;
     is_off_ = true;
     input.lines.enable = false;
     next_ms_ = now_ms + off_ms_;
     return true;
   }
-
-  bool hasGivenUp() const { return has_given_up_; }
 
  private:
   static constexpr int kAttempt_ms = 3500;
@@ -46,7 +41,7 @@ class Operator {
   int next_ms_, off_ms_, run_ms_, not_before_ms_;
   int on_ms_ = -1, running_ms_ = -1;
   int attempts_ = 0;
-  bool is_off_ = false, has_given_up_ = false;
+  bool is_off_ = false;
 };
 
 }  // namespace tactus::soak

@@ -38,6 +38,20 @@ inline ControllerConfig railController(Variant variant) {
   return config;
 }
 
+/// null_limit on its way along the rail, where nothing delays or filters, and c is known.
+inline ControllerConfig undelayedRail(double speed_m_per_s, double stiffness_N_per_m) {
+  ControllerConfig config = railController(Variant::kNullLimit);
+  config.drive_lag_s = 0.0;
+  config.tactile_modules.front().filter_cutoff_hz = 1e6;
+  config.gains.force.assumed_stiffness_N_per_m = stiffness_N_per_m;
+  Waypoint line;
+  line.displacement_m = Vector3(0.0, 10.0, 0.0);
+  line.speed_m_per_s = speed_m_per_s;
+  line.ramp_s = 0.0;
+  config.task.trajectory.waypoints = {line};
+  return config;
+}
+
 /// An obstacle at +y that pushes the first carriage back like a linear spring; nothing delays or
 /// filters what the module feels.
 struct RailWorld {

@@ -39,10 +39,9 @@ struct ContactSmootherState {
 ///   |dF^| < 2 sin atan mu,  |dx| < 2 mu r
 /// is no other contact, hence averaged however large, in an impact, too. A law that followed it
 /// would answer its own sliding, late by the filter.
-/// One of several contacts has T_s = 4 s, and
-/// rests where its force is F_th, so noise takes it below that at any time:
-/// all above the mean of F_rel and F_th counts there, and an impact is what also grows by more than
-/// 2 s. For one contact alone:
+/// One of several contacts has T_s = 4 s, and rests where its force is F_th, so noise takes it
+/// below that at any time: all above the mean of F_rel and F_th counts there, and an impact is what
+/// also grows by more than 2 s. For one contact alone:
 /// A force up to F_th says nothing of either. After a blow the module's filter swings through and
 /// shows up to 12 % of it from the other side: such a reading counts as no force. So does all from
 /// the other side that is below 0.35 of the highest force, which is forgotten with 1.5 / f_c. With

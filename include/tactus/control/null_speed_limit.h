@@ -31,8 +31,8 @@ class NullSpeedLimit {
                     const ScaledVector& push_scaled, NullSpeedLimits& limits) const noexcept;
 
  private:
+  /// Where they follow from other gains.
   void renew(const ForceGains& gains, NullSpeedLimits& limits) const noexcept;
-  NullSpeedLimits limits(const ForceGains& gains) const noexcept;
 
   ScaledVector inv_sqrt_weights_;
   std::array<bool, kMaxJoints> is_prismatic_{};

@@ -55,8 +55,7 @@ inline constexpr const char* kStatusName = "status.json";
 /// Where there is none.
 inline constexpr const char* kNoDaemon =
     "no daemon is running here; `journalctl -u tactusd` says how a service ended, "
-    "RUNTIME_DIRECTORY "
-    "leads to any other";
+    "RUNTIME_DIRECTORY leads to any other";
 
 /// CLOCK_MONOTONIC, s.
 double monotonicTime_s() noexcept;
