@@ -99,6 +99,8 @@ def read_range(entry, known):
             raise known["scale"].wrong("linear or log")
     if axis.law == "log" and axis.lower <= 0.0:
         raise known["from"].wrong("a number > 0, for the scale is log")
+    if not math.isfinite(axis.upper / axis.lower if axis.law == "log" else axis.upper - axis.lower):
+        raise known["to"].error("too far from from", "a range that numbers can measure")
     if "whole" in known and known["whole"].flag():
         axis.is_whole = True
         if axis.law == "log":
