@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -44,27 +46,40 @@ ControlSocket::~ControlSocket() {
   if (!made_path_.empty()) ::unlink(made_path_.c_str());
 }
 
-void ControlSocket::serve(const std::stop_token& stop) {
-  std::vector<pollfd> polled;
+/// Without memory for requests the arm does as it was told before.
+void ControlSocket::serve(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
-    const std::string news = requests_.look();
-    if (!news.empty()) std::fputs(("tactusd: " + news + "\n").c_str(), stderr);
-    const double now_s = monotonicTime_s();
-    polled.assign(1, {listening_.fd(), POLLIN, 0});
-    for (const Client& client : clients_) {
-      const bool may_speak = client.may_speak_s <= now_s;
-      polled.push_back({client.socket.fd(), static_cast<short>(may_speak ? POLLIN : 0), 0});
+    try {
+      look();
+    } catch (const std::exception& error) {
+      clients_.clear();
+      std::fprintf(stderr, "tactusd: control socket: %s; its clients are closed\n", error.what());
+      std::this_thread::sleep_for(std::chrono::milliseconds(kLook_ms));
     }
-    const bool is_all_ears = std::ranges::all_of(
-        clients_, [now_s](const Client& client) { return client.may_speak_s <= now_s; });
-    ::poll(polled.data(), polled.size(), is_all_ears ? kLook_ms : 1000 / kMessagesPerS);
-    auto client = clients_.begin();
-    for (std::size_t i = 1; i < polled.size(); ++i) {
-      const bool stays = polled[i].revents == 0 || hear(*client);
-      client = stays ? std::next(client) : clients_.erase(client);
-    }
-    if (polled[0].revents != 0) accept();
   }
+}
+
+/// What is new, for a while.
+void ControlSocket::look() {
+  const std::string news = requests_.look();
+  if (!news.empty()) std::fputs(("tactusd: " + news + "\n").c_str(), stderr);
+  const double now_s = monotonicTime_s();
+  std::vector<pollfd> polled(1, {listening_.fd(), POLLIN, 0});
+  for (const Client& client : clients_) {
+    const bool may_speak = client.may_speak_s <= now_s;
+    polled.push_back({client.socket.fd(), static_cast<short>(may_speak ? POLLIN : 0), 0});
+  }
+  const bool is_all_ears = std::ranges::all_of(
+      clients_, [now_s](const Client& client) { return client.may_speak_s <= now_s; });
+  const int ready =
+      ::poll(polled.data(), polled.size(), is_all_ears ? kLook_ms : 1000 / kMessagesPerS);
+  if (ready <= 0) return;
+  auto client = clients_.begin();
+  for (std::size_t i = 1; i < polled.size(); ++i) {
+    const bool stays = polled[i].revents == 0 || hear(*client);
+    client = stays ? std::next(client) : clients_.erase(client);
+  }
+  if (polled[0].revents != 0) accept();
 }
 
 void ControlSocket::accept() {

@@ -1,10 +1,12 @@
 /* Preloaded: one call of the C library fails, the FAIL_AT-th of the function FAIL_CALL; with
    FAIL_COUNT, a file, how many there were is written there at the end. What came before main()
-   counts, too. */
+   counts, too; with FAIL_SIGNAL what comes after SIGUSR2 alone. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -22,12 +24,22 @@ extern void* __libc_calloc(size_t, size_t);
 static const char* failing_call = "";
 static long fail_at;
 static atomic_long calls;
+static atomic_int is_counting = 1;
+
+static void begin_counting(int signal) {
+  (void)signal;
+  is_counting = 1;
+}
 
 __attribute__((constructor)) static void begin(void) {
   const char* at = getenv("FAIL_AT");
   const char* call = getenv("FAIL_CALL");
   fail_at = at ? atol(at) : 0;
   if (call) failing_call = call;
+  if (getenv("FAIL_SIGNAL")) {
+    is_counting = 0;
+    signal(SIGUSR2, begin_counting);
+  }
 }
 
 __attribute__((destructor)) static void end(void) {
@@ -41,7 +53,7 @@ __attribute__((destructor)) static void end(void) {
 }
 
 static int fails(const char* call, int error) {
-  if (strcmp(call, failing_call) != 0 || ++calls != fail_at) return 0;
+  if (!is_counting || strcmp(call, failing_call) != 0 || ++calls != fail_at) return 0;
   errno = error;
   return 1;
 }
@@ -108,5 +120,17 @@ void* mmap(void* at, size_t size, int protection, int flags, int fd, off_t offse
 }
 int socket(int domain, int type, int protocol) {
   return fails("socket", EMFILE) ? -1 : NEXT(socket)(domain, type, protocol);
+}
+int poll(struct pollfd* fds, nfds_t count, int timeout_ms) {
+  return fails("poll", EINTR) ? -1 : NEXT(poll)(fds, count, timeout_ms);
+}
+int accept4(int fd, struct sockaddr* from, socklen_t* size, int flags) {
+  return fails("accept", EMFILE) ? -1 : NEXT(accept4)(fd, from, size, flags);
+}
+ssize_t send(int fd, const void* from, size_t size, int flags) {
+  return fails("send", ENOBUFS) ? -1 : NEXT(send)(fd, from, size, flags);
+}
+ssize_t recv(int fd, void* to, size_t size, int flags) {
+  return fails("recv", EIO) ? -1 : NEXT(recv)(fd, to, size, flags);
 }
 int mlockall(int flags) { return fails("mlockall", ENOMEM) ? -1 : NEXT(mlockall)(flags); }

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """A call of the C library that fails once, at start or end: the program says so in a line and ends with an exit
 code of its own, or goes on as if nothing had been. Arguments: tactus, tactusd, the library that makes calls
-fail. TACTUS_FAILING_CALLS in the environment says how many calls of each kind (0: all); few by default.
-tactusd ends here where it looks for its buses, unless the machine has them: what comes after that is not
-looked at."""
+fail, virtual_daemon. TACTUS_FAILING_CALLS in the environment says how many calls of each kind (0: all); few by default.
+tactusd ends here where it looks for its buses, unless the machine has them. What comes after that is looked at
+where its cycle, log and socket run in virtual time (virtual_daemon): a call fails once while it runs."""
 import json
 import os
 import pathlib
+import shutil
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -14,8 +17,9 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENE = str(ROOT / "config" / "scenes" / "scenario1_null_space.yaml")
-TACTUS, TACTUSD, LIBRARY = (str(pathlib.Path(sys.argv.pop(1)).resolve()) for _ in range(3))
+TACTUS, TACTUSD, LIBRARY, VIRTUAL = (str(pathlib.Path(sys.argv.pop(1)).resolve()) for _ in range(4))
 MOST = int(os.environ.get("TACTUS_FAILING_CALLS", "12"))
+MOST_RUNNING = int(os.environ.get("TACTUS_FAILING_CALLS", "4"))  # a daemon each
 CALLS = ["malloc", "open", "read", "write", "close", "fsync", "rename", "mkdir", "stat", "unlink", "mmap",
          "socket", "mlockall"]
 RUNS = {"check": [TACTUS, "check", SCENE],
@@ -29,11 +33,11 @@ def run(name, folder, **failure):
                           timeout=120, check=False)
 
 
-def spread(count):
+def spread(count, most=MOST):
     """Which of so many calls fail: all, or as many as may be, the first and the last among them."""
-    if MOST == 0 or count <= MOST:
+    if most == 0 or count <= most:
         return list(range(1, count + 1))
-    return sorted({1 + i * (count - 1) // (MOST - 1) for i in range(MOST)})
+    return sorted({1 + i * (count - 1) // (most - 1) for i in range(most)})
 
 
 def files(folder):
@@ -67,6 +71,62 @@ def is_known(name, call, number, count, done):
     summary is made, simulate says std::bad_alloc and aborts. The log is whole then, no summary is there."""
     is_summary = name == "simulate" and call == "malloc" and number > count - 40
     return is_summary and done.returncode == -6 and "std::bad_alloc" in done.stderr
+
+
+RUNNING_CALLS = ["malloc", "open", "read", "write", "close", "fsync", "rename", "mkdir", "stat", "unlink",
+                 "poll", "accept", "send", "recv"]
+REQUESTS = [{"do": "show"}, {"do": "set", "values": {"controller.damping": 0.7}}, {"do": "undo"},
+            {"do": "move", "to_m": [0, 0.02, 0], "relative": True}, {"do": "hold"}, {"do": "reload"}]
+PATIENCE_S = 60
+
+
+def ask(path, request):
+    """The answer; None where the connection ends without one."""
+    try:
+        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as connection:
+            connection.settimeout(PATIENCE_S)
+            connection.connect(path)
+            connection.send(json.dumps(request).encode())
+            return json.loads(connection.recv(1 << 18) or b"null")
+    except OSError:
+        return None
+
+
+def run_daemon(folder, **failure):
+    """A daemon that is asked, twice for all, until it is told to end: (process, answers)."""
+    (pathlib.Path(folder) / "log").mkdir()
+    shutil.copytree(ROOT / "config", pathlib.Path(folder) / "config")
+    environment = {**os.environ, "LD_PRELOAD": LIBRARY, "FAIL_SIGNAL": "1", "RUNTIME_DIRECTORY": folder, **failure}
+    process = subprocess.Popen([VIRTUAL, "--log", "log", "20", "config/scenes/commands.yaml"], cwd=folder,
+                               env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        if process.stdout.readline() == "running\n":
+            process.send_signal(signal.SIGUSR2)
+        path = str(pathlib.Path(folder) / "control")
+        answers = [ask(path, request) for request in REQUESTS * 2]
+        process.terminate()
+        _, said = process.communicate(timeout=PATIENCE_S)
+        return subprocess.CompletedProcess([], process.returncode, "", said), answers
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def running_trouble(done, answers, folder):
+    """What is wrong with a daemon that ran while a call failed, or None."""
+    if done.returncode < 0 or done.returncode > 100:
+        return f"crashes ({done.returncode}): {done.stderr[-300:]}"
+    if done.returncode != 0:
+        return None if done.stderr.strip() else f"ends with {done.returncode} and says nothing"
+    lost = [(request, answer and answer.get("error")) for request, answer in zip(REQUESTS * 2, answers)
+            if not answer or not answer["done"]]
+    if lost and lost[0][0]["do"] == "set" and lost[-1][1] == "undo: nothing was changed":
+        lost.pop()
+    if len(lost) > 1:
+        return f"does not do {lost}: {done.stderr[-300:]}"
+    log = subprocess.run([TACTUS, "replay", str(pathlib.Path(folder) / "log/run.ulg")], capture_output=True,
+                         text=True, check=False)
+    return f"leaves a log that {log.stderr}" if log.returncode != 0 and "log" not in done.stderr else None
 
 
 class FailingCallsTest(unittest.TestCase):
@@ -104,6 +164,23 @@ class FailingCallsTest(unittest.TestCase):
 
     def test_daemon(self):
         self.look_at("daemon")
+
+    def test_running(self):
+        found, looked_at = [], 0
+        for call in RUNNING_CALLS:
+            with tempfile.TemporaryDirectory() as folder:
+                count = pathlib.Path(folder) / "count"
+                self.assertIsNone(running_trouble(*run_daemon(folder, FAIL_CALL=call, FAIL_COUNT=str(count)), folder))
+                numbers = spread(int(count.read_text()), MOST_RUNNING)
+            for number in numbers:
+                looked_at += 1
+                with tempfile.TemporaryDirectory() as folder:
+                    trouble = running_trouble(*run_daemon(folder, FAIL_CALL=call, FAIL_AT=str(number)), folder)
+                if trouble:
+                    found.append(f"{call} {number} of {numbers[-1]}: daemon {trouble}")
+        self.assertGreater(looked_at, len(RUNNING_CALLS))
+        print(f"{looked_at} failing calls of a running daemon")
+        self.assertEqual(found, [], "\n".join(found))
 
     def test_a_crash_and_a_cut_log_are_seen(self):
         whole = subprocess.CompletedProcess([], 0, "", "")

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <optional>
 #include <string>
 #include <thread>
@@ -32,9 +33,7 @@ void keepPace(std::chrono::steady_clock::time_point start, std::int64_t t_ns, do
   std::this_thread::sleep_until(start + passed);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   std::string folder;
   double pace = 0.0;
   if (argc > 3 && std::strcmp(argv[1], "--log") == 0) {
@@ -68,4 +67,15 @@ int main(int argc, char** argv) {
   }
   if (telemetry) telemetry->finish({});
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "virtual_daemon: %s\n", error.what());
+    return 3;
+  }
 }

@@ -38,7 +38,8 @@ class ControlSocket {
     double may_speak_s = 0.0;  ///< on the monotonic clock
   };
 
-  void serve(const std::stop_token& stop);
+  void serve(const std::stop_token& stop) noexcept;
+  void look();
   void accept();
   bool hear(Client& client);
   std::string answer(std::span<char> room, long size);
