@@ -10,7 +10,7 @@ import re
 import sys
 import unittest
 
-from machine import Build
+from machine import Build, summary
 
 
 class Commission(unittest.TestCase):
@@ -36,6 +36,12 @@ class Commission(unittest.TestCase):
         counts = float(re.search(r"counts_per_rad: ([\d.e+]+)", j2)[1])
         self.assertAlmostEqual(counts / 1e6, 1.0, delta=0.08)
         self.assertIn("node_id: 3, sign: -1", (self.folder / "robot.yaml~").read_text())
+
+    def test_the_daemon_moves_the_arm_with_it(self):
+        moved = summary(results / "moved/free_motion")
+        self.assertEqual(moved["outcome"], "completed")
+        self.assertGreater(moved["loop"]["cycles"], 1900)
+        self.assertEqual(moved["loop"]["missed_cycles"], 0)
 
 
 if __name__ == "__main__":
