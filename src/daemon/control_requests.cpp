@@ -108,7 +108,9 @@ ControlRequests::ControlRequests(const Scene& scene, LoopLink& link)
       started_(scene),
       tool_(started_, link),
       read_hash_(sourceHash(scene.sources.front().text)),
-      kept_(scene) {}
+      kept_(scene) {
+  before_.reserve(kKeptForUndo);  // so that settle() never ends halfway
+}
 
 std::string ControlRequests::answer(std::string_view request) {
   try {

@@ -46,7 +46,8 @@ ControlSocket::~ControlSocket() {
   if (!made_path_.empty()) ::unlink(made_path_.c_str());
 }
 
-/// Without memory for requests the arm does as it was told before.
+/// Where memory is short the arm goes on: an answer is lost, and whether its request was taken
+/// shows in the next one.
 void ControlSocket::serve(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested()) {
     try {

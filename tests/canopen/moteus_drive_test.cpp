@@ -132,6 +132,21 @@ TEST(MoteusDrive, LeavesAFaultAsItIsUntilARestart) {
   EXPECT_EQ(rig.cycle(DriveGoal::kConfigure).mode, 0);
 }
 
+/// At rest is a joint, not a shaft: 0.01 rad/s are 0.005 turns/s of this one.
+TEST(MoteusDrive, IsStoppedWhenItsJointRests) {
+  for (const float turns_per_s : {0.0048F, 0.0052F}) {
+    MoteusRig rig;
+    rig.enable();
+    Said said;
+    for (int i = 0; i < 30; ++i) {
+      rig.drive.receive(moteusReply(10, 0.0F, i < 10 ? 0.1F : turns_per_s, 0));
+      said = rig.quietCycle(DriveGoal::kDisabled);
+      EXPECT_TRUE(i >= 10 || said.mode == 12) << "zero velocity, while it moves";
+    }
+    EXPECT_EQ(said.mode, turns_per_s < 0.005F ? 0 : 12);
+  }
+}
+
 TEST(MoteusDrive, IsNotSilentWhileNobodyAsks) {
   MoteusRig rig;
   rig.configure();

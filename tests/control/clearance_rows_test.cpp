@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -8,6 +9,7 @@
 #include "tactus/control/clearance.h"
 #include "tactus/control/clearance_cost.h"
 #include "tactus/control/joint_limit_rows.h"
+#include "tactus/control/motion_gate.h"
 
 /// The rows of clearance.h and joint_limit_rows.h by hand: a ball on a rail before a wall.
 namespace tactus {
@@ -123,6 +125,29 @@ TEST(ClearanceRows, AreKeptByWhatGoesNoFaster) {
   EXPECT_TRUE(rail.isKept(0.06, -9.0)) << "away from it";
   EXPECT_TRUE(rail.isKept(0.2, 9.0)) << "far from it";
   EXPECT_FALSE(rail.isKept(0.06, std::numeric_limits<double>::quiet_NaN()));
+}
+
+/// Also far from all bodies, where the gate looks at nothing else.
+TEST(ClearanceRows, AreNotAllThatTheGateKeeps) {
+  RailBeforeAWall rail;
+  rail.config.task.size = 1;
+  const MotionGate gate(rail.config, rail.inv_sqrt);
+  const JointVector q = rail.at(0.5), rest = JointVector::Zero(2);
+  rail.look(*gate.clearance(), q);
+  for (const double speed : {0.09, 0.11}) {
+    SpeedRows rows;
+    SpeedRow& contact = rows.row[rows.size++];
+    contact.a_scaled = rail.inv_sqrt.cwiseProduct(-ScaledVector::Unit(0));
+    contact.a_task = rail.kinematics.pseudoinverse.project(contact.a_scaled);
+    contact.v_max_m_per_s = 0.1;
+    contact.damping_N_s_per_m = contact.presence = 1.0;
+    Motion motion;
+    motion.y.setZero();
+    motion.v_scaled = speed / rail.inv_sqrt[0] * ScaledVector::Unit(0);
+    const RowVector l = gate.keep({q, rest, true}, rail.kinematics, 1.0, kRail_s, rows, motion);
+    EXPECT_EQ(l[0] > 0.0, speed > 0.1);
+    EXPECT_NEAR(speedAlong(rows.row[0], 1, motion), -std::min(speed, 0.1), 1e-6);
+  }
 }
 
 /// The largest share that can still be stopped, found to a thirty-second, between the stop of the

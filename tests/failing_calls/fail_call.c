@@ -1,6 +1,7 @@
 /* Preloaded: one call of the C library fails, the FAIL_AT-th of the function FAIL_CALL; with
    FAIL_COUNT, a file, how many there were is written there at the end. What came before main()
-   counts, too; with FAIL_SIGNAL what comes after SIGUSR2 alone. */
+   counts, too; with FAIL_SIGNAL what comes after SIGUSR2 alone, and with FAIL_THREADS what comes from
+   other threads than main()'s. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -25,6 +26,7 @@ static const char* failing_call = "";
 static long fail_at;
 static atomic_long calls;
 static atomic_int is_counting = 1;
+static int counts_main = 1;
 
 static void begin_counting(int signal) {
   (void)signal;
@@ -36,6 +38,7 @@ __attribute__((constructor)) static void begin(void) {
   const char* call = getenv("FAIL_CALL");
   fail_at = at ? atol(at) : 0;
   if (call) failing_call = call;
+  counts_main = getenv("FAIL_THREADS") == NULL;
   if (getenv("FAIL_SIGNAL")) {
     is_counting = 0;
     signal(SIGUSR2, begin_counting);
@@ -53,7 +56,8 @@ __attribute__((destructor)) static void end(void) {
 }
 
 static int fails(const char* call, int error) {
-  if (!is_counting || strcmp(call, failing_call) != 0 || ++calls != fail_at) return 0;
+  if (!is_counting || strcmp(call, failing_call) != 0) return 0;
+  if ((!counts_main && gettid() == getpid()) || ++calls != fail_at) return 0;
   errno = error;
   return 1;
 }

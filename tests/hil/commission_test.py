@@ -42,6 +42,9 @@ class Commission(unittest.TestCase):
         self.assertEqual(moved["outcome"], "completed")
         self.assertGreater(moved["loop"]["cycles"], 1900)
         self.assertEqual(moved["loop"]["missed_cycles"], 0)
+        self.assertLess(moved["tcp_error_max_m"], 0.002)
+        before, after = map(int, (self.folder / "moved.txt").read_text().split())
+        self.assertGreater(abs(after - before), 5000)
 
 
 if __name__ == "__main__":

@@ -15,8 +15,13 @@ NAME = "planar2_moteus"
 # A controller's answer tells of the cycle before, which is a millisecond that simulate does not have. The
 # force comes to rest below the threshold, where no law holds it: there the millisecond is more of it.
 DEVIATIONS = {"peak_force_N": 0.02, "final_force_N": 0.1}
-# candump's log of an FD frame: its identifier, one digit of flags (1: bit-rate switch), its data.
-FD_LINE = re.compile(r"\([\d.]+\) can0 (0000800[12]|0*[12]00)##(\d)([0-9A-F]*)$", re.M)
+# candump's log of a frame: its identifier, of FD one digit of flags (1: bit-rate switch), its data.
+LINE = re.compile(r"\([\d.]+\) can0 ([0-9A-F]+)#(?:#(\d))?([0-9A-F]*)$")
+MODULE = {0x110, 0x111, 0x112, 0x113}
+# Of mjbots' reference: a write of mode 10, NaN as position and a float as velocity, three queries; and
+# its answer.
+COMMAND = re.compile(r"01000A0E200000C07F[0-9A-F]{8}")
+ANSWER = re.compile(r"2100[0-9A-F]{2}2E01[0-9A-F]{16}210F00")
 
 
 class Moteus(unittest.TestCase):
@@ -46,14 +51,21 @@ class Moteus(unittest.TestCase):
             self.assertAlmostEqual(self.run_[force] / simulated[force], 1.0, delta=deviation, msg=force)
 
     def test_each_controller_is_asked_and_answers_in_each_cycle(self):
-        frames = FD_LINE.findall((self.folder / "candump.log").read_text())
-        self.assertTrue(all(int(flags, 16) & 1 for _, flags, _ in frames))
-        count = {}
-        for name, _, _ in frames:
-            count[int(name, 16)] = count.get(int(name, 16), 0) + 1
-        print(f"{len(frames)} FD frames: {count}")
-        self.assertEqual(set(count), {0x8001, 0x8002, 0x100, 0x200})
-        self.assertGreaterEqual(min(count.values()), self.run_["cycles"])
+        asked, answered, others = {0x8001: 0, 0x8002: 0}, {0x100: 0, 0x200: 0}, set()
+        said = set()
+        for line in (self.folder / "candump.log").read_text().splitlines():
+            name, flags, data = LINE.fullmatch(line).groups()
+            frame = int(name, 16)
+            said.update(kind for kind, bytes_ in (("command", COMMAND), ("answer", ANSWER))
+                        if bytes_.match(data) and flags)
+            if flags is None or not int(flags, 16) & 1:
+                others.add(frame)
+                continue
+            (asked if frame in asked else answered)[frame] += 1
+        print(f"asked {asked}, answered {answered}")
+        self.assertEqual(others, MODULE)
+        self.assertEqual(said, {"command", "answer"})
+        self.assertGreaterEqual(min(*asked.values(), *answered.values()), self.run_["loop"]["cycles"] - 1)
 
 
 if __name__ == "__main__":

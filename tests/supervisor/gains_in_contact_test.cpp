@@ -161,7 +161,7 @@ TEST(GainsInContact, SwitchingPushesNoHarderThanEither) {
   }
   EXPECT_EQ(switched, pairs(14));
   for (const auto& [variant, count] : counts) {
-    EXPECT_LE(count.above, count.switched / (bounces(variant) ? 20 : 50) + 1) << variant;
+    EXPECT_LE(count.above, count.switched / (bounces(variant) ? 12 : 50) + 1) << variant;
     std::printf("%s: %d of %d pairs push more than 2 %% harder, at most %.3f times as hard\n",
                 variant.c_str(), count.above, count.switched, count.worst);
   }

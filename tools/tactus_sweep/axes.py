@@ -4,6 +4,8 @@ import dataclasses
 import math
 
 MAX_VALUES = 100_000
+WIDEST = 40  # standard deviations beyond which a double has no normal distribution
+MOST_CUT = 1e6  # deviations to what from and to leave: above it quantiles lose their digits
 DIGITS = 6  # of what is drawn: enough, and a line that reruns it stays short
 
 
@@ -123,6 +125,10 @@ def read_normal(entry):
         axis.lower = known["from"].number()
     if "to" in known:
         axis.upper = known["to"].number()
+    if not math.isfinite(axis.mean + WIDEST * axis.deviation):
+        raise known["standard_deviation"].wrong("a smaller number")
+    if axis.upper - axis.lower < axis.deviation / MOST_CUT:
+        raise known["standard_deviation"].error("so wide that from and to leave no shape of it", "a range")
     if not axis.lower < axis.mean < axis.upper:
         raise known["mean"].wrong("a number between from and to")
     return axis

@@ -69,13 +69,19 @@ while kill -0 $session 2>/dev/null; do
 done
 exec 3>&-
 wait $session || fail "tactus commission exits with $?: $(cat "$said")"
-# With what it wrote the arm moves, from where commissioning left it: that is its home now.
-per_rad=$(sed -n 's/.*joint: j2,.*counts_per_rad: \([0-9.e+]*\).*/\1/p' $robot)
-awk -v j2="$(counts can0 2)" -v j3="$(counts can0 3)" -v per_rad="$per_rad" \
-  '/^home:/ { split($0, q, ","); sub(q[2] "," q[3], " " j2 / per_rad ", " j3 / 1e6) } { print }' \
-  $robot >/tmp/robot.yaml && cp /tmp/robot.yaml $robot
-tactusd "$config/scenes/free_motion.yaml" --duration 2 -o "$ROOT/out/moved" ||
-  fail "tactusd exits with $? after it"
-stop_plant
 cp $robot "$out/robot.yaml"
 cp $robot~ "$out/robot.yaml~"
+
+# value KEY: of joint j2, as commissioning wrote it.
+value() { sed -n "s/.*joint: j2,.*$1: \([-0-9.e+]*\).*/\1/p" $robot; }
+
+# With that the arm moves, from where commissioning left it: that is its home now.
+awk -v j2="$(counts can0 2)" -v j3="$(counts can0 3)" -v per_rad="$(value counts_per_rad)" \
+  -v offset="$(value offset_rad)" \
+  '/^home:/ { split($0, q, ","); sub(q[2] "," q[3], " " j2 / per_rad + offset ", " j3 / 1e6) } { print }' \
+  $robot >/tmp/robot.yaml && cp /tmp/robot.yaml $robot
+counts can0 2 >"$out/moved.txt"
+tactusd "$config/scenes/free_motion.yaml" --duration 2 -o "$ROOT/out/moved" ||
+  fail "tactusd exits with $? after it"
+counts can0 2 >>"$out/moved.txt"
+stop_plant
