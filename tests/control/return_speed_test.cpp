@@ -55,7 +55,7 @@ TEST(ReturnSpeed, IsThatOfTheToolWhichTheLawPushes) {
   task.components = {4, 1, 0};
   task.size = 3;
   gains.max_return_speed_m_per_s = 0.2;
-  const TaskVector wanted = Vector3(3.0, 0.6, 0.8);
+  const TaskVector wanted = Vector3(3.0, 1.2, 1.6);
   const auto limitedWith = [&](const Vector3& push) -> Vector3 {
     TaskVector correction = wanted;
     limitReturnSpeed(gains, task, push, correction);
@@ -66,7 +66,7 @@ TEST(ReturnSpeed, IsThatOfTheToolWhichTheLawPushes) {
       << "against it";
   EXPECT_LT((limitedWith({9, 0.06, 0.08}) - Vector3(3.0, 0.06, 0.08)).norm(), 1e-15) << "with it";
   EXPECT_LT((limitedWith({9, 0.8, -0.6}) - Vector3(3.0, 0.12, 0.16)).norm(), 1e-15) << "across";
-  EXPECT_EQ(limitedWith({0, -0.6, -0.8}), wanted) << "to the bit, where the tool is at rest";
+  EXPECT_EQ(limitedWith({0, -1.2, -1.6}), wanted) << "to the bit, where the tool is at rest";
   EXPECT_EQ(limitedWith({0, 0.6, 0.8}), Vector3(3.0, 0.0, 0.0));
 }
 
