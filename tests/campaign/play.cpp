@@ -151,14 +151,13 @@ void Play::observe() {
   const CycleInput& input = cell_.input;
   const ModeReport& report = cell_.cycle.report();
   now_.t_ms = now_ms();
-  now_.mode = report.mode;
+  const Mode judged_in = std::exchange(now_.mode, report.mode);
   now_.fault = report.fault;
   now_.enable = input.lines.enable && input.lines.is_valid;
   now_.is_stop_requested = input.stop_requested;
   now_.is_emergency = input.lines.emergency_stop;
   const RealTimeConfig& real_time = stage_.scene.hardware->real_time;
-  const bool is_late =
-      input.late_in_a_row > real_time.max_late_cycles && report.mode != Mode::kBoot;
+  const bool is_late = input.late_in_a_row > real_time.max_late_cycles && judged_in != Mode::kBoot;
   const bool has_bus_fault = std::any_of(input.bus_faults.begin(), input.bus_faults.end(),
                                          [](Fault fault) { return fault != Fault::kNone; });
   now_.has_cause = input.lines.emergency_stop || input.are_lines_lost || has_bus_fault || is_late ||

@@ -20,6 +20,9 @@ using campaign::Plan;
 constexpr int kRestart_ms = 5000;
 constexpr int kLeastAlone_ms = 1500, kMostAlone_ms = 4000;  ///< of the plant without a daemon
 constexpr double kRestVelocity = 1e-3;                      ///< m/s or rad/s
+/// m/s^2 or rad/s^2 of the plant's drives, which take any setpoint: one whose frame was corrupted
+/// may be 256 rad/s.
+constexpr double kQuickStop = 10.0;
 
 }  // namespace
 
@@ -40,13 +43,21 @@ void Life::cutPower() {
   if (random_.chance(0.3)) std::ofstream(log_folder_ + "/run.next.ulg") << "ULog";
   takeReplay(0);
   Plant& plant = cell_->plant;
-  for (int i = random_.integer(kLeastAlone_ms, kMostAlone_ms); i > 0; --i)
+  const double stop_s = fastestJoint() / kQuickStop;
+  for (int i = random_.integer(kLeastAlone_ms, kMostAlone_ms) + static_cast<int>(1e3 * stop_s);
+       i > 0; --i)
     plant.advance(cell_->t_ns += 1'000'000);
-  for (int joint = 0; joint < stage_.scene.controller.chain.size(); ++joint)
-    if (std::abs(plant.drive(joint).velocity()) > kRestVelocity)
-      complain("a drive moves though the daemon has lost its power");
+  if (fastestJoint() > kRestVelocity)
+    complain("a drive moves though the daemon has lost its power");
   if (!cell_->areDrivesLimp()) complain("a drive has torque though the daemon has lost its power");
   startAgain();
+}
+
+double Life::fastestJoint() const {
+  double fastest = 0.0;
+  for (int joint = 0; joint < stage_.scene.controller.chain.size(); ++joint)
+    fastest = std::max(fastest, std::abs(cell_->plant.drive(joint).velocity()));
+  return fastest;
 }
 
 /// Where the arm stands now.

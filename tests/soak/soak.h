@@ -70,6 +70,7 @@ class Life {
   void complain(const std::string& what);
   void judgeSubnormals(const VirtualRobotCell& cell);
   void cutPower();
+  double fastestJoint() const;  ///< m/s or rad/s
   void startAgain();
   void stop();
   void finish();
