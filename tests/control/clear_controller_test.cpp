@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "support/controller_run.h"
+#include "support/crops9.h"
 #include "support/random_clearance.h"
 #include "tactus/control/clearance.h"
 
@@ -146,6 +148,43 @@ TEST(ClearController, AvoidsInTheNullSpace) {
   }
   EXPECT_GT(all, 10);
   EXPECT_GT(helped, 3 * all / 4);
+}
+
+/// A law must not ask for more and more of what the gate does not let it do.
+TEST(ClearController, TellsTheLawWhatIsTakenFromItsRetreat) {
+  test::Random random(431);
+  int taken = 0;
+  for (int i = 0; i < 200; ++i) {
+    ControllerConfig config = test::crops9Controller(Variant::kNullSpace);
+    config.limits.max_acceleration.setConstant(1e9);
+    config.limits.max_velocity.setConstant(1e3);
+    ControllerConfig clear = config;
+    ClearanceConfig& bodies = clear.clearance.emplace();
+    bodies.safe_distance_m = 0.02;
+    bodies.influence_distance_m = 0.1;
+    LinkCapsule& ball = bodies.capsules.emplace_back();
+    ball.link.joint = random.integer(3, 8);
+    ball.radius_m = 0.05;
+    ChainPose pose;
+    config.chain.computePose(config.q_start, pose);
+    const auto normal = random.unitVector();
+    bodies.walls = {HalfSpace{framePosition(pose, ball.link) - 0.0712 * normal, normal}};
+    bodies.wall_pairs = {{0, 0}};
+    const Controller free(config), kept(clear);
+    ControllerState free_state = free.initialState(), kept_state = kept.initialState();
+    ControllerOutput free_output, kept_output;
+    const RobotInput input{config.q_start, test::touchAt(0.2, 20.0, random.uniform(-3.0, 3.0), 1)};
+    free.update(input, config.gains, 0.0, 1e-3, free_state, free_output);
+    kept.update(input, config.gains, 0.0, 1e-3, kept_state, kept_output);
+    const AttachedFrame& link = config.tactile_modules.front().link;
+    const PlacedContact at = placed(pose, link, kept_output.sensed[0]);
+    ScaledVector a;
+    applyPointJacobianTranspose(config.chain, pose, link.joint, at.p_Base, at.F_Base, a);
+    const double cut = a.head(9).dot(free_output.velocity - kept_output.velocity);
+    EXPECT_NEAR(kept_state.contact.cut_by_rows_m_per_s, std::max(0.0, cut), 1e-9);
+    taken += cut > 1e-3;
+  }
+  EXPECT_GT(taken, 20);
 }
 
 }  // namespace

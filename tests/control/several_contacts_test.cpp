@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "support/crops9.h"
 #include "support/period.h"
 #include "support/rail_robot.h"
 
@@ -66,6 +68,39 @@ struct RowsRun {
   ControllerOutput output;
   int cycle = 0;
 };
+
+/// Of a module that feels two contacts, or one that rubs: corners around both places.
+TEST(SeveralContacts, HaveTheConesAroundTheResultantAndTheStiffnessCentre) {
+  ControllerConfig config = test::crops9Controller(Variant::kNullLimit, true);
+  config.force_control->friction_coefficient = 0.5;
+  const ScaledVector inv_sqrt = ScaledVector::Ones();
+  TaskKinematics kinematics;
+  config.chain.computePose(config.q_start, kinematics.pose);
+  ScaledJacobian J;
+  computeTipJacobian(config.chain, kinematics.pose,
+                     framePosition(kinematics.pose, config.chain.tip()),
+                     config.task.components.data(), config.task.size, inv_sqrt, J);
+  kinematics.pseudoinverse.factorise(J, config.chain.size(), config.task.size);
+  const SeveralContacts contacts(config, inv_sqrt);
+  const FrictionCone cone(config.tactile_modules.front(), 0.5);
+  for (const double shift_m : {-0.05, 0.0, 0.05}) {
+    SeveralContactsState state = contacts.initialState();
+    ModuleContactState& module = state.modules[0];
+    module.approach.memory_N_per_m = 1000.0;
+    module.centre.shift_m = shift_m;
+    ContactPointState& contact = module.approach.smoother.contact;
+    contact.position_m = 0.1;
+    contact.direction = Vector3(0.0, 0.6, -0.8);
+    SpeedRows rows, expected;
+    contacts.addRows(config.gains.force, kinematics, -1, state, rows);
+    cone.add(config.chain, kinematics, contact.direction,
+             cone.around({0.1 + std::min(0.0, shift_m), 0.1 + std::max(0.0, shift_m)}), inv_sqrt,
+             expected);
+    ASSERT_EQ(rows.size, 4);
+    for (int i = 0; i < rows.size; ++i)
+      EXPECT_EQ(rows.row[i].a_scaled, expected.row[i].a_scaled) << i << " " << shift_m;
+  }
+}
 
 /// The null space holds a contact at F_th, and the tool does not notice.
 TEST(SeveralContacts, HoldTheThresholdInTheNullSpace) {
