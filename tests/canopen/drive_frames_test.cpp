@@ -50,6 +50,9 @@ TEST(DriveFrames, FramesOfOthersAreNothingToIt) {
     frame.extended = true;
     rig.drive.receive(frame);
     frame.extended = false;
+    frame.is_fd = true;
+    rig.drive.receive(frame);
+    frame.is_fd = false;
     for (FrameKind kind : {FrameKind::kRemote, FrameKind::kError}) {
       frame.kind = kind;
       rig.drive.receive(frame);

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <stdexcept>
 
 #include "support/period.h"
 
@@ -130,6 +131,71 @@ TEST(MoteusDrive, LeavesAFaultAsItIsUntilARestart) {
   EXPECT_EQ(rig.drive.report().emergency_code, 34);
   EXPECT_EQ(rig.cycle(DriveGoal::kConfigure, 0.0, true).mode, -1) << "first it is asked";
   EXPECT_EQ(rig.cycle(DriveGoal::kConfigure).mode, 0);
+}
+
+TEST(MoteusDrive, NeedsItsWatchdog) {
+  CanopenConfig canopen;
+  for (const double timeout_s : {0.0, -1.0, std::nan("")}) {
+    canopen.heartbeat_timeout_s = timeout_s;
+    EXPECT_THROW(MoteusDrive(moteusConfig(), canopen, test::kPeriod_s), std::invalid_argument);
+  }
+}
+
+TEST(MoteusDrive, CountsRepliesThatAreNone) {
+  MoteusRig rig;
+  CanFrame frame = moteusReply(10, 0.0F, 0.0F, 0);
+  frame.size = 5;
+  rig.drive.receive(frame);
+  EXPECT_EQ(rig.drive.malformedFrames(), 1u);
+  frame.id = moteusReplyId(kMoteusNode + 1);
+  rig.drive.receive(frame);
+  EXPECT_EQ(rig.drive.malformedFrames(), 1u) << "another node's";
+}
+
+/// Each by itself; the position stays the last good one.
+TEST(MoteusDrive, APositionOrVelocityThatIsNoNumberIsAFault) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  for (const bool is_velocity : {false, true}) {
+    MoteusRig rig;
+    rig.enable();
+    const double position = rig.drive.report().position;
+    rig.drive.receive(moteusReply(10, is_velocity ? 0.3F : kNaN, is_velocity ? kNaN : 0.0F, 0));
+    rig.quietCycle(DriveGoal::kEnabled);
+    EXPECT_EQ(rig.drive.report().fault, Fault::kDriveFault);
+    EXPECT_EQ(rig.drive.report().position, position);
+  }
+}
+
+TEST(MoteusDrive, IsSetUpAtFirstWithoutBeingRestarted) {
+  MoteusRig rig;
+  rig.cycle(DriveGoal::kConfigure);
+  rig.cycle(DriveGoal::kConfigure);
+  EXPECT_TRUE(rig.drive.report().is_configured);
+}
+
+TEST(MoteusDrive, APlaceThatIsNoNumberIsNoCommand) {
+  MoteusRig rig;
+  rig.enable();
+  rig.drive.coast(1000);
+  rig.cycle(DriveGoal::kEnabled, 0.1);
+  EXPECT_EQ(rig.drive.report().fault, Fault::kNone)
+      << "cycles that were missed are no fault of its";
+  rig.position = std::nan("");
+  EXPECT_NE(rig.cycle(DriveGoal::kEnabled, 0.1).mode, 10);
+  EXPECT_EQ(rig.drive.report().fault, Fault::kCommandNotFinite);
+}
+
+/// Told to by the user, it is set up again without a start of its own.
+TEST(MoteusDrive, IsSetUpAnewOnRestart) {
+  MoteusRig rig;
+  rig.enable();
+  rig.mode = 0;
+  rig.cycle(DriveGoal::kConfigure);
+  EXPECT_TRUE(rig.drive.report().is_configured) << "nobody asked for it";
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  EXPECT_FALSE(rig.drive.report().is_configured);
+  rig.cycle(DriveGoal::kConfigure);
+  EXPECT_TRUE(rig.drive.report().is_configured);
 }
 
 /// At rest is a joint, not a shaft: 0.01 rad/s are 0.005 turns/s of this one.

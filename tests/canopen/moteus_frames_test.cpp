@@ -76,6 +76,16 @@ TEST(MoteusFrames, AReplyIsReadInAnyType) {
   EXPECT_NEAR(unknown->velocity, 21474.83647, 1e-9);
 }
 
+/// A float where a register holds whole numbers: far beyond them it is no mode.
+TEST(MoteusFrames, ModesThatAreNoNumberAreNone) {
+  for (const char* const mode : {"000020d0", "00002050", "0000c07f"}) {  // -1e10, 1e10, NaN
+    const std::string hex = "2d00" + std::string(mode) + "2a0100000080ffffff7f210f00";
+    const auto reply = decodeMoteusReply(replyOf(3, hex), 3);
+    ASSERT_TRUE(reply) << mode;
+    EXPECT_EQ(reply->mode, -1) << mode;
+  }
+}
+
 TEST(MoteusFrames, NothingElseIsAReply) {
   const std::string good = "2100002e010000000000000000210f00";
   EXPECT_TRUE(decodeMoteusReply(replyOf(2, good), 2));
@@ -88,6 +98,9 @@ TEST(MoteusFrames, NothingElseIsAReply) {
   CanFrame frame = replyOf(2, good);
   frame.is_fd = false;
   EXPECT_FALSE(decodeMoteusReply(frame, 2));
+  frame = replyOf(2, good);
+  frame.size = 65;
+  EXPECT_FALSE(decodeMoteusReply(frame, 2)) << "longer than any";
   frame = replyOf(2, good);
   frame.kind = FrameKind::kRemote;
   EXPECT_FALSE(decodeMoteusReply(frame, 2));

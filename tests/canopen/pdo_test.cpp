@@ -32,6 +32,9 @@ TEST(Pdo, TakesNothingOfWrongSizeIdOrKind) {
   frame.extended = true;
   EXPECT_FALSE(decodeFeedback(frame, 5));
   frame.extended = false;
+  frame.is_fd = true;
+  EXPECT_FALSE(decodeFeedback(frame, 5));
+  frame.is_fd = false;
   frame.kind = FrameKind::kRemote;
   EXPECT_FALSE(decodeFeedback(frame, 5));
 }

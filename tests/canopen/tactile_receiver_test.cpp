@@ -176,13 +176,16 @@ TEST(TactileReceiver, DropsFramesOfWrongSizeOrKindButIgnoresOthersIds) {
   frame.kind = FrameKind::kData;
   frame.extended = true;
   receiver.receive(frame);
-  EXPECT_EQ(receiver.counters().malformed, 258u);
+  frame.extended = false;
+  frame.is_fd = true;
+  receiver.receive(frame);
+  EXPECT_EQ(receiver.counters().malformed, 259u);
   for (const std::uint32_t id : {0U, 0xFFU, 0x104U, 0x100U + 0x800U, 0xFFFFFFFFU}) {
     frame = frames[0];
     frame.id = id;
     receiver.receive(frame);
   }
-  EXPECT_EQ(receiver.counters().malformed, 258u);
+  EXPECT_EQ(receiver.counters().malformed, 259u);
   receive(receiver, std::vector{frames[1], frames[2], frames[3]});
   EXPECT_EQ(receiver.sample().sequence, 0u) << "the first frame never came";
 }
