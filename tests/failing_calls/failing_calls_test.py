@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """A call of the C library that fails once, at start or end: the program says so in a line and ends with an exit
 code of its own, or goes on as if nothing had been. Arguments: tactus, tactusd, the library that makes calls
-fail, virtual_daemon. TACTUS_FAILING_CALLS in the environment says how many calls of each kind (0: all); few by default.
+fail, virtual_daemon. TACTUS_FAILING_CALLS in the environment says how many calls of each kind (0: all); few by
+default.
 tactusd ends here where it looks for its buses, unless the machine has them. What comes after that is looked at
 where its cycle, log and socket run in virtual time (virtual_daemon): a call fails once while it runs."""
 import json
@@ -198,7 +199,7 @@ class FailingCallsTest(unittest.TestCase):
         print(f"{failed} failing calls of a running daemon")
         self.assertEqual(found, [], "\n".join(found))
 
-    def test_a_request_without_memory_does_not_end_it(self):
+    def test_a_look_without_memory_does_not_end_it(self):
         """The first calls of the thread of the control socket are those of its looks, between requests."""
         found, _ = self.look_at_running("malloc", lambda _: range(1, 5), FAIL_THREADS="1")
         self.assertEqual(found, [], "\n".join(found))

@@ -11,12 +11,9 @@ import time
 import unittest
 
 from common import ROOT, Scratch
-from sweep_common import STUDY
-
-sys.path.insert(0, str(ROOT / "tools"))
-
-from tactus_sweep import study as studies  # noqa: E402
-from tactus_sweep.study_text import StudyError  # noqa: E402
+from sweep_common import STUDY  # which finds tactus_sweep
+from tactus_sweep import study as studies
+from tactus_sweep.study_text import StudyError
 
 TRIES = 1500
 DRAWN = 256  # runs: what is larger is counted only, for time
