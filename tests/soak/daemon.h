@@ -3,9 +3,9 @@
 #include <string>
 
 #include "soak/latencies.h"
-#include "support/loop_side.h"
 #include "support/virtual_robot_cell.h"
 #include "tactus/daemon/control_socket.h"
+#include "tactus/daemon/loop_side.h"
 #include "tactus/daemon/telemetry.h"
 
 namespace tactus::soak {
@@ -24,9 +24,12 @@ class Daemon {
 
   /// After each cycle, in place of ControlCycle::prepare().
   /// Returns the times that it was given.
-  test::LoopTimes finishCycle(test::VirtualRobotCell& cell) {
-    const test::LoopTimes times = latencies_.draw();
-    side_.finish(cell.cycle, cell.input, times);
+  Latencies::Times finishCycle(test::VirtualRobotCell& cell) {
+    const Latencies::Times times = latencies_.draw();
+    side_.finish({.latency_ns = times[0],
+                  .skipped = cell.input.missed_cycles,
+                  .late_in_a_row = cell.input.late_in_a_row},
+                 {times[1], times[2], times[3]}, cell.cycle);
     if (side_.cycles() % kDrain_cycles == 0) telemetry_.drain();
     return times;
   }
@@ -59,7 +62,7 @@ class Daemon {
   LoopLink link_;
   Telemetry telemetry_;
   ControlSocket socket_;
-  test::LoopSide side_;
+  LoopSide side_;
   Latencies latencies_;
 };
 

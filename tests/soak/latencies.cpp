@@ -76,7 +76,7 @@ std::vector<std::string> DrawnTimes::compare(const std::string& name,
   return wrong;
 }
 
-test::LoopTimes Latencies::draw() { return {next(0), next(1), next(2), next(3)}; }
+Latencies::Times Latencies::draw() { return {next(0), next(1), next(2), next(3)}; }
 
 std::int64_t Latencies::next(int series) {
   static const auto values_ns = [] {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "support/loop_side.h"
 #include "tactus/math/histogram.h"
 #include "tactus/scene/json.h"
 
@@ -37,10 +36,11 @@ class Latencies {
  public:
   explicit Latencies(std::uint64_t seed) : engine_(seed) {}
 
-  test::LoopTimes draw();
-
+  using Times = std::array<std::int64_t, 4>;
   static constexpr std::array<const char*, 4> kNames = {"wake_latency_ns", "read_ns", "control_ns",
                                                         "write_ns"};
+
+  Times draw();
   const std::array<DrawnTimes, 4>& drawn() const { return drawn_; }
 
  private:

@@ -152,11 +152,8 @@ Observation Life::play(const Plan& plan, Operator user) {
   Plan unnoted = plan;
   unnoted.frame = campaign::FrameTrouble{.ordinal = -1};  // of no frame; without one all are noted
   Play play(stage_, std::move(*cell_), unnoted, [this](VirtualRobotCell& cell) {
-    const test::LoopTimes times = daemon_->finishCycle(cell);
-    tally_.histograms[0].add(times.wake_latency_ns);
-    tally_.histograms[1].add(times.read_ns);
-    tally_.histograms[2].add(times.control_ns);
-    tally_.histograms[3].add(times.write_ns);
+    const Latencies::Times times = daemon_->finishCycle(cell);
+    for (std::size_t i = 0; i < times.size(); ++i) tally_.histograms[i].add(times[i]);
   });
   campaign::Judges judges;
   campaign::GoingOnJudge going_on;

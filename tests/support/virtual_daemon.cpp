@@ -15,9 +15,9 @@
 #include <string>
 #include <thread>
 
-#include "support/loop_side.h"
 #include "support/virtual_robot_cell.h"
 #include "tactus/daemon/control_socket.h"
+#include "tactus/daemon/loop_side.h"
 #include "tactus/daemon/telemetry.h"
 #include "tactus/scene/command_scene.h"
 
@@ -50,12 +50,13 @@ int run(int argc, char** argv) {
   std::optional<Telemetry> telemetry;
   if (!folder.empty()) telemetry.emplace(scene, folder, link);
   const ControlSocket socket(scene, link);
-  test::LoopSide side(link);
+  LoopSide side(link);
   bool is_said = false;
   const auto start = std::chrono::steady_clock::now();
   for (long i = 0; !is_over; ++i) {
     cell.step();
-    side.finish(cell.cycle, cell.input);
+    side.finish({.skipped = cell.input.missed_cycles, .late_in_a_row = cell.input.late_in_a_row},
+                {}, cell.cycle);
     if (!is_said && cell.cycle.report().mode == Mode::kRunning) {
       is_said = true;
       std::puts("running");

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "tactus/daemon/loop_link.h"
+#include "tactus/daemon/loop_side.h"
 #include "tactus/io/can_socket.h"
 #include "tactus/io/gpio_lines.h"
 #include "tactus/rt/periodic_schedule.h"
@@ -31,8 +32,8 @@ class HardwareLoop {
   const BusCounters& counters(std::size_t bus) const noexcept {
     return buses_[bus]->socket.monitor().counters();
   }
-  long long cycles() const noexcept { return cycles_; }
-  long long missedCycles() const noexcept { return missed_cycles_; }
+  long long cycles() const noexcept { return side_.cycles(); }
+  long long missedCycles() const noexcept { return side_.missedCycles(); }
   std::int64_t cpuTime_ns() const noexcept { return cpu_end_ns_ - cpu_start_ns_; }
   const ModeReport& report() const noexcept { return cycle_.report(); }
   const CanRobot& robot() const noexcept { return cycle_.robot(); }
@@ -47,13 +48,8 @@ class HardwareLoop {
 
   void readAll(const Wake& wake) noexcept;
   void writeAll() noexcept;
-  void takeToolOrders() noexcept;
-  void reportTool() noexcept;
-  void reportGains() noexcept;
-  void publish(const Wake& wake, std::int64_t read_ns, std::int64_t control_ns,
-               std::int64_t write_ns) noexcept;
 
-  LoopLink& link_;
+  const std::atomic<bool>& stop_requested_;
   const SystemCallFilter& filter_;
   long long max_task_cycles_;
   std::vector<std::unique_ptr<Bus>> buses_;
@@ -61,12 +57,7 @@ class HardwareLoop {
   ControlCycle cycle_;
   CycleInput input_;
   bool are_lines_written_ = true;
-  ModeReport reported_;
-  GainReport reported_gains_;
-  ToolReport reported_tool_;
-  ToolSight tool_sight_;
-  long long cycles_ = 0;
-  long long missed_cycles_ = 0;
+  LoopSide side_;
   std::int64_t cpu_start_ns_ = 0, cpu_end_ns_ = 0;
 };
 

@@ -1,0 +1,69 @@
+#include "tactus/daemon/loop_side.h"
+
+namespace tactus {
+namespace {
+
+constexpr int kMaxOrdersACycle = 8;
+constexpr long long kCyclesToSeeTool = 16;
+
+}  // namespace
+
+void LoopSide::finish(const Wake& wake, const LoopTimes& times, ControlCycle& cycle) noexcept {
+  ++cycles_;
+  missed_cycles_ += wake.skipped;
+  publish(wake, times, cycle);
+  takeOrders(cycle);
+  cycle.prepare();
+  reportGains(cycle);
+  reportTool(cycle);
+}
+
+void LoopSide::publish(const Wake& wake, const LoopTimes& times,
+                       const ControlCycle& cycle) noexcept {
+  if (LoopRecord* const record = link_.records.reserve()) {
+    record->is_in_motion = cycle.isRecorded();
+    if (record->is_in_motion) cycle.fill(record->cycle);
+    record->cycle.wake_latency_ns = wake.latency_ns;
+    record->cycle.read_ns = times.read_ns;
+    record->cycle.step_ns = times.control_ns;
+    record->cycle.write_ns = times.write_ns;
+    link_.records.commit();
+  }
+  link_.pulse.late_in_a_row.store(wake.late_in_a_row, std::memory_order_relaxed);
+  link_.pulse.missed_cycles.store(missed_cycles_, std::memory_order_relaxed);
+  link_.pulse.cycles.store(cycles_, std::memory_order_relaxed);
+  const ModeReport& report = cycle.report();
+  const bool is_new = report.mode != reported_.mode || report.fault != reported_.fault;
+  if (!is_new && cycles_ > 1) return;
+  reported_ = report;
+  link_.reports.push(report);
+}
+
+void LoopSide::takeOrders(ControlCycle& cycle) noexcept {
+  GainOrder gains;
+  if (link_.gain_orders.take(gains)) cycle.order(gains);
+  if (!cycle.toolReport()) return;
+  for (int i = 0; i < kMaxOrdersACycle; ++i) {
+    const ToolOrder* const order = link_.tool_orders.front();
+    if (!order) return;
+    cycle.order(*order);
+    link_.tool_orders.release();
+  }
+}
+
+void LoopSide::reportGains(const ControlCycle& cycle) noexcept {
+  const GainReport& report = cycle.gainReport();
+  if (report == reported_gains_) return;
+  reported_gains_ = report;
+  link_.gain_reports.put(report);
+}
+
+void LoopSide::reportTool(const ControlCycle& cycle) noexcept {
+  const ToolReport* const report = cycle.toolReport();
+  if (!report || (*report == reported_tool_ && cycles_ % kCyclesToSeeTool != 0)) return;
+  reported_tool_ = *report;
+  cycle.fill(tool_sight_);
+  link_.tool_sights.put(tool_sight_);
+}
+
+}  // namespace tactus
