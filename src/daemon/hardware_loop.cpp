@@ -76,13 +76,8 @@ void HardwareLoop::readAll(const Wake& wake) noexcept {
 
 void HardwareLoop::writeAll() noexcept {
   for (std::size_t i = 0; i < buses_.size(); ++i) {
-    CanSocket& socket = buses_[i]->socket;
-    const FrameBatch& outbox = cycle_.outbox(static_cast<int>(i));
-    if (socket.monitor().mayProbe()) {
-      socket.probe(cycle_.probe());
-    } else if (!outbox.empty()) {
-      socket.send(outbox.frames());
-    }
+    buses_[i]->socket.send(cycle_.outbox(static_cast<int>(i)).frames());
+    buses_[i]->socket.probe(cycle_.probe());
   }
   if (lines_) are_lines_written_ = lines_->write(cycle_.lines());
 }

@@ -1,7 +1,5 @@
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tactus/python/bindings.h"
@@ -17,8 +15,6 @@ namespace tactus {
 namespace {
 
 constexpr long long kCyclesBetweenLooks = 8192;
-/// Longer runs pay for their memory as they go.
-constexpr double kMaxReservedCycles = 1e6;
 
 /// Adds cycles; Ctrl-C ends it.
 class Collector {
@@ -42,8 +38,7 @@ py::tuple simulateScene(const Scene& scene) {
   std::string summary;
   {
     const py::gil_scoped_release release;
-    columns->reserve(static_cast<std::size_t>(
-        std::min(std::round(scene.duration_s / scene.period_s), kMaxReservedCycles)));
+    columns->reserve(cyclesToReserve(scene));
     const SimulationResult result = simulate(scene, Collector(*columns));
     summary = jsonText(summaryJson(scene, result.figures, result.real_time_factor));
   }

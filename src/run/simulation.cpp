@@ -17,7 +17,6 @@ using Clock = std::chrono::steady_clock;
 /// After a fault, until sensors tell what is left of the force.
 constexpr double kRest_s = 0.3;
 constexpr long long kCyclesBetweenReports = 8192;
-/// Longer runs pay for their memory as they go.
 constexpr long long kMaxReservedCycles = 1'000'000;
 
 std::int64_t nanoseconds(Clock::duration duration) {
@@ -40,13 +39,17 @@ void read(SimulatedRobot& robot, RobotInput& input) {
 
 }  // namespace
 
+std::size_t cyclesToReserve(const Scene& scene) {
+  const long long cycles = std::llround(scene.duration_s / scene.period_s);
+  return static_cast<std::size_t>(std::min(cycles, kMaxReservedCycles));
+}
+
 SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
   const auto cycles = std::llround(scene.duration_s / scene.period_s);
   const auto cycles_at_rest = std::llround(kRest_s / scene.period_s);
   VirtualCycle cycle(scene);
   SimulatedRobot robot(scene.controller, scene.plant, scene.period_s);
-  RunSummary summary(scene.controller,
-                     static_cast<std::size_t>(std::min(cycles, kMaxReservedCycles)));
+  RunSummary summary(scene.controller, cyclesToReserve(scene));
   ToolRotationError rotation_error(scene.controller);
   RobotInput input;
   CycleRecord record;

@@ -4,130 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "tactus/scene/gain_keys.h"
 #include "tactus/scene/key_words.h"
 #include "tactus/scene/obstacle_checks.h"
 #include "tactus/scene/tactile_loader.h"
+#include "tactus/scene/task_checks.h"
 
 namespace tactus {
 namespace {
 
-/// What the checks look at.
-struct Checked {
-  const YamlNode& root;
-  const SceneConfig& scene;
-  const LoadedRobot& robot;
-  const JointVector& q_start;
-
-  [[noreturn]] void fail(const std::string& path, const std::string& problem,
-                         const std::string& expectation) const {
-    failAt(locate(root, path), path, problem, "expected " + expectation);
-  }
-};
-
-bool isOfPosition(int component) { return component < 3; }
-
-void checkTask(const Checked& c) {
-  const std::size_t joint_count = c.robot.chain.joints.size();
-  const TaskConfig& task = c.scene.task;
-  if (static_cast<std::size_t>(task.size) > joint_count) {
-    c.fail("task.components", fmt::format("a list of {}", task.size),
-           fmt::format("at most {}, as many as there are joints", joint_count));
-  }
-  const auto end = task.components.begin() + task.size;
-  const bool has_position = std::any_of(task.components.begin(), end, isOfPosition);
-  if (c.scene.gains.task.wait_beyond_m < kNoLimit && !has_position) {
-    c.fail("task.wait_beyond_m", "the task has no position that could lag",
-           "x, y or z among task.components, or no such key");
-  }
-}
-
-/// A sound bound, not a sharp one: how far from the base's origin the tool can ever be.
-double largestReach_m(const UrdfChain& chain) {
-  double reach = chain.tip.X_JointFrame.p_AB.norm();
-  for (std::size_t i = 0; i < chain.joints.size(); ++i) {
-    reach += chain.joints[i].X_ParentJoint.p_AB.norm();
-    if (chain.joints[i].type == JointType::kPrismatic) {
-      reach += std::max(std::abs(chain.limits.lower[i]), std::abs(chain.limits.upper[i]));
-    }
-  }
-  return reach;
-}
-
-void checkReach(const Checked& c, const Waypoint& waypoint, const std::string& path) {
-  const UrdfChain& chain = c.robot.chain;
-  const SerialChain kinematics(chain.joints, chain.tip);
-  ChainPose pose;
-  kinematics.computePose(c.q_start, pose);
-  const Vector3 target = framePosition(pose, chain.tip) + waypoint.displacement_m;
-  double squared_distance = 0.0;
-  for (int i = 0; i < c.scene.task.size; ++i) {
-    const int axis = c.scene.task.components[i];
-    if (isOfPosition(axis)) squared_distance += target[axis] * target[axis];
-  }
-  const double distance = std::sqrt(squared_distance);
-  if (distance > largestReach_m(chain)) {
-    c.fail(path + ".displacement_m", fmt::format("leads {:.3f} m away from the base", distance),
-           fmt::format("at most the arm's reach of {:.3f} m", largestReach_m(chain)));
-  }
-}
-
-void checkWaypoint(const Checked& c, const Waypoint& waypoint, const std::string& path) {
-  checkReach(c, waypoint, path);
-  const double angle = waypoint.rotation_vector_rad.norm();
-  if (angle > std::numbers::pi) {
-    c.fail(path + ".rotation_vector_rad", fmt::format("turns by {:.4g} rad", angle),
-           "at most half a turn");
-  }
-}
-
-/// A tool that is held off must not be told to go further and further away.
-void checkCommands(const Checked& c) {
-  if (c.scene.trajectory)
-    c.fail("task.trajectory", "a trajectory besides task.source: commands", "one of both");
-  if (!c.scene.controller || c.scene.controller->variant == Variant::kNone) return;
-  const TaskGains& gains = c.scene.gains.task;
-  if (gains.wait_beyond_m == kNoLimit)
-    c.fail("task.wait_beyond_m", "is missing", "a lag for a task by commands, such as 0.02");
-  if (gains.max_return_speed_m_per_s == kNoLimit)
-    c.fail("task.max_return_speed_m_per_s", "is missing",
-           "a speed for a task by commands, such as 0.05");
-  if (c.scene.task.hasRotation() && gains.max_return_speed_rad_per_s == kNoLimit)
-    c.fail("task.max_return_speed_rad_per_s", "is missing",
-           "a speed for a task by commands with a rotation, such as 0.2");
-}
-
-void checkTrajectory(const Checked& c) {
-  if (c.scene.source == TaskSource::kCommands) return checkCommands(c);
-  if (c.scene.task.commands)
-    c.fail("task.commands", "is of no use", "task.source: commands besides");
-  const std::string section = "task.trajectory";
-  if (!c.scene.trajectory) c.fail(section, "is missing", "a section, or task.source: commands");
-  const TrajectorySection& trajectory = *c.scene.trajectory;
-  std::vector<std::string> given;
-  if (trajectory.line) given.push_back("line");
-  if (!trajectory.waypoints.empty()) given.push_back("waypoints");
-  if (trajectory.hold) given.push_back("hold");
-  if (given.empty()) c.fail(section, "no motion", "one of line, waypoints, hold");
-  if (given.size() > 1) {
-    c.fail(section + "." + given[1], "a second kind of motion besides " + given[0],
-           "one of line, waypoints, hold");
-  }
-  for (std::size_t i = 0; i < trajectory.waypoints.size(); ++i) {
-    checkWaypoint(c, trajectory.waypoints[i], fmt::format("{}.waypoints[{}]", section, i));
-  }
-  if (!trajectory.line) return;
-  const std::string path = section + ".line";
-  checkWaypoint(c, *trajectory.line, path);
-  if (trajectory.line->displacement_m.isZero(0.0) &&
-      trajectory.line->rotation_vector_rad.isZero(0.0)) {
-    c.fail(path, "does not move", "displacement_m or rotation_vector_rad, or hold");
-  }
-}
-
-void checkJointSpace(const Checked& c) {
+void checkJointSpace(const CheckedScene& c) {
   if (!c.scene.has_joint_limit_avoidance) {
     c.fail(
         "redundancy.joint_limit_avoidance", "is missing",
@@ -141,7 +28,7 @@ bool needsActivationForce(Variant variant) {
 }
 
 /// At rest the sensor shows F_th, or F_act + F_th: what it cannot show is a fault.
-void checkSensorRange(const Checked& c) {
+void checkSensorRange(const CheckedScene& c) {
   const ForceGains& gains = c.scene.gains.force;
   const bool has_second = needsActivationForce(c.scene.controller->variant);
   const double rest_N = gains.contact_threshold_N + (has_second ? gains.activation_force_N : 0.0);
@@ -157,7 +44,7 @@ void checkSensorRange(const Checked& c) {
 }
 
 /// The paper's laws answer one contact.
-void checkModules(const Checked& c) {
+void checkModules(const CheckedScene& c) {
   const std::size_t modules = c.robot.config.tactile_modules.size();
   if (modules == 0) {
     c.fail("controller", "the robot has no tactile_modules", "no controller, or such a robot");
@@ -172,7 +59,7 @@ void checkModules(const Checked& c) {
 }
 
 /// What acceleration_law.h has no law for.
-void checkLevel(const Checked& c) {
+void checkLevel(const CheckedScene& c) {
   const ForceControlConfig& control = *c.scene.controller;
   const Variant variant = control.variant;
   const bool is_velocity = control.level == ControlLevel::kVelocity;
@@ -198,7 +85,7 @@ void checkLevel(const Checked& c) {
   }
 }
 
-void checkController(const Checked& c) {
+void checkController(const CheckedScene& c) {
   if (!c.scene.controller) return;
   checkModules(c);
   checkLevel(c);
@@ -220,7 +107,7 @@ void checkController(const Checked& c) {
 }
 
 /// A run takes a few bytes of memory and some hundred of its log for every cycle.
-void checkDuration(const Checked& c) {
+void checkDuration(const CheckedScene& c) {
   constexpr double kMaxCycles = 1e8;
   const std::string key = "simulation.duration_s";
   if (c.scene.simulation.duration_s < c.scene.period_s) {
@@ -235,7 +122,7 @@ void checkDuration(const Checked& c) {
   }
 }
 
-void checkSimulatedModule(const Checked& c) {
+void checkSimulatedModule(const CheckedScene& c) {
   const std::optional<double>& cutoff_hz = c.scene.simulation.filter_cutoff_hz;
   if (!cutoff_hz) return;
   for (const TactileModuleSection& module : c.robot.config.tactile_modules) {
@@ -247,7 +134,7 @@ void checkSimulatedModule(const Checked& c) {
   }
 }
 
-void checkPeriodOfModule(const Checked& c, std::size_t index) {
+void checkPeriodOfModule(const CheckedScene& c, std::size_t index) {
   const TactileModuleSection& module = c.robot.config.tactile_modules[index];
   const double filter_rate_hz = module.simulated.filter_rate_hz;
   const std::string key = moduleKey(c.robot.root, index);
@@ -267,7 +154,7 @@ void checkPeriodOfModule(const Checked& c, std::size_t index) {
 }
 
 /// The simulation steps by the shortest of all periods, of which the others are multiples.
-void checkFilterPeriods(const Checked& c) {
+void checkFilterPeriods(const CheckedScene& c) {
   const std::vector<TactileModuleSection>& modules = c.robot.config.tactile_modules;
   double shortest_s = c.scene.period_s;
   for (const TactileModuleSection& module : modules)
@@ -282,13 +169,13 @@ void checkFilterPeriods(const Checked& c) {
   }
 }
 
-void checkPeriod(const Checked& c) {
+void checkPeriod(const CheckedScene& c) {
   if (!c.scene.controller) return;
   for (std::size_t i = 0; i < c.robot.config.tactile_modules.size(); ++i) checkPeriodOfModule(c, i);
   checkFilterPeriods(c);
 }
 
-void checkGains(const Checked& c) {
+void checkGains(const CheckedScene& c) {
   const GainUse use = gainUse(c.scene.controller, c.robot.config.tactile_modules.size());
   const auto problem = findGainConflict(c.scene.gains, use, c.scene.period_s);
   if (problem) c.fail(problem->path, problem->problem, problem->expectation);
@@ -305,9 +192,8 @@ bool fitsModule(double period_s, double filter_rate_hz) {
 
 void checkScene(const YamlNode& root, const SceneConfig& scene, const LoadedRobot& robot,
                 const JointVector& q_start) {
-  const Checked checked{root, scene, robot, q_start};
+  const CheckedScene checked{root, scene, robot, q_start};
   checkTask(checked);
-  checkTrajectory(checked);
   checkController(checked);
   checkDuration(checked);
   checkPeriod(checked);

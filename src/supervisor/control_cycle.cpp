@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "tactus/canopen/cycle_count.h"
 #include "tactus/supervisor/apply_mode.h"
@@ -16,7 +15,6 @@ constexpr double kSwitchingTime_s = 2.0;
 constexpr double kRestTime_s = 0.02;
 /// Beyond the drives' own limit, which names the drive: for first feedback and first samples.
 constexpr double kFirstFrames_s = 2.0;
-constexpr double kFullSpeed = 0.999;  ///< of a joint's largest speed
 /// A ramp takes no longer in any robot that should be left to it.
 constexpr double kMaxRamp_s = 30.0;
 
@@ -116,74 +114,6 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   heartbeat_ = !heartbeat_;
 }
 
-void ControlCycle::goOnWithOrders() noexcept {
-  goOnWithGains();
-  if (tool_orders_) goOnWithTool();
-}
-
-/// Of the commanded configuration; an orientation that is not the task's stays the reference's.
-Pose ControlCycle::toolPose() const noexcept {
-  Pose X_BaseTool = tipPose(controller_.config().chain, state_.q_desired);
-  if (!controller_.config().task.hasRotation())
-    X_BaseTool.R_AB = state_.tool_motion->evaluate(nextPathTime_s()).R_BaseTool;
-  return X_BaseTool;
-}
-
-/// An arm that goes on slowly without a module is not held off.
-double ControlCycle::toolProgress() const noexcept {
-  return std::min(1.0, state_.progress / output_.speed_share);
-}
-
-double ControlCycle::nextPathTime_s() const noexcept {
-  return static_cast<double>(nextTaskCycle()) * period_s_ - state_.waited_s;
-}
-
-void ControlCycle::fill(ToolSight& sight) const noexcept {
-  sight.report = tool_orders_->report();
-  sight.is_running = is_started_ && mode_.mode == Mode::kRunning;
-  std::copy_n(state_.q_desired.data(), state_.q_desired.size(), sight.q);
-  sight.run = runs_;
-  Pose X_BaseTool = toolPose();
-  if (toolProgress() >= kFreeProgress) {
-    const ToolReference reference = state_.tool_motion->evaluate(nextPathTime_s());
-    X_BaseTool = {reference.R_BaseTool, reference.p_BaseTool};
-  }
-  std::copy_n(X_BaseTool.p_AB.data(), 3, sight.p_BaseTool_m);
-  std::copy_n(X_BaseTool.R_AB.data(), 9, sight.R_BaseTool);
-  for (int i = 0; i < output_.modules; ++i) {
-    sight.force_N[i] = output_.sensed[i].force_N;
-    sight.position_m[i] = output_.sensed[i].position_m;
-  }
-}
-
-void ControlCycle::goOnWithTool() noexcept {
-  ToolWatch seen;
-  seen.path_time_s = nextPathTime_s();
-  seen.progress = toolProgress();
-  const TaskConfig& task = controller_.config().task;
-  for (int i = 0; i < output_.error.size(); ++i) {
-    double& lag = task.components[i] < 3 ? seen.lag_m : seen.lag_rad;
-    lag = std::hypot(lag, output_.error[i]);
-  }
-  seen.X_BaseTool = toolPose();
-  seen.run = runs_;
-  seen.is_running = is_started_ && mode_.mode == Mode::kRunning;
-  tool_orders_->update(seen, *state_.tool_motion);
-}
-
-/// By what the last cycle saw.
-void ControlCycle::goOnWithGains() noexcept {
-  GainWatchInput seen;
-  for (int i = 0; i < output_.modules; ++i)
-    seen.force_N = std::max(seen.force_N, output_.sensed[i].force_N);
-  const JointVector& most = controller_.config().limits.max_velocity;
-  for (int i = 0; i < output_.velocity.size(); ++i)
-    seen.is_at_limit |= std::abs(output_.velocity[i]) >= kFullSpeed * most[i];
-  seen.has_fault = mode_.fault != Fault::kNone;
-  gain_change_.update(seen);
-  if (gain_change_.isChanging()) gains_ = gain_change_.gains();
-}
-
 void ControlCycle::prepare() noexcept {
   goOnWithOrders();
   has_next_orders_ = true;
@@ -267,13 +197,6 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   const bool goes_on = is_running && before != Mode::kRunning;
   if (goes_on && state_.tool_motion) forgetOrders();
   controller_.update(input_, gains_, taskTime_s(), period_s_, prepared_, state_, output_);
-}
-
-/// Nothing that was ordered before moves a tool that goes on.
-void ControlCycle::forgetOrders() noexcept {
-  ++runs_;
-  state_.tool_motion.emplace(toolPose(), state_.tool_motion->plan().number + 1);
-  prepared_.path_time_s = std::numeric_limits<double>::quiet_NaN();
 }
 
 /// As a replay begins, which knows of no sample before. Of these the age is remembered.

@@ -11,31 +11,18 @@ import json
 import sys
 import unittest
 
-from machine import Build, summary
+from asked_run import AskedRun
+from machine import Build
 
 
-class Control(unittest.TestCase):
+class Control(AskedRun, unittest.TestCase):
     @classmethod
-    def setUpClass(cls):
-        cls.folder = results / "control"
-        cls.said = (cls.folder / "tactusd.txt").read_text()
-        cls.loop = summary(cls.folder)["loop"]
-        print(f"{cls.loop['cycles']} cycles, {cls.loop['missed_cycles']} missed")
-
-    def test_no_cycle_is_missed(self):
-        self.assertEqual(self.loop["missed_cycles"], 0)
-        self.assertEqual(self.loop["page_faults"], 0)
-
-    def test_the_arm_goes_on(self):
-        self.assertEqual(summary(self.folder)["outcome"], "completed")
-        self.assertNotIn("fault", self.said)
+    def folder_of_results(cls):
+        return results / "control"
 
     def test_the_journal_names_the_changes(self):
         self.assertIn("tactusd: gains: change 1 ramping\n", self.said)
         self.assertIn("tactusd: gains: change 1 on_trial\n", self.said)
-
-    def test_replays_with_its_gains(self):
-        self.assertIn("to the bit", (self.folder / "replay.txt").read_text())
 
 
 def lines(path):

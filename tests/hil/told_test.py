@@ -8,33 +8,20 @@ usage: told_test.py --tactus FILE --tactusd FILE --out FOLDER [--keep]
 import sys
 import unittest
 
-from machine import Build, summary
+from asked_run import AskedRun
+from machine import Build
 
 
-class Told(unittest.TestCase):
+class Told(AskedRun, unittest.TestCase):
     @classmethod
-    def setUpClass(cls):
-        cls.folder = results / "told"
-        cls.said = (cls.folder / "tactusd.txt").read_text()
-        cls.loop = summary(cls.folder)["loop"]
-        print(f"{cls.loop['cycles']} cycles, {cls.loop['missed_cycles']} missed")
-
-    def test_no_cycle_is_missed(self):
-        self.assertEqual(self.loop["missed_cycles"], 0)
-        self.assertEqual(self.loop["page_faults"], 0)
-
-    def test_the_arm_goes_on(self):
-        self.assertEqual(summary(self.folder)["outcome"], "completed")
-        self.assertNotIn("fault", self.said)
+    def folder_of_results(cls):
+        return results / "told"
 
     def test_the_journal_names_what_became_of_orders(self):
         self.assertIn("tactusd: task: order 1 moving\n", self.said)
         self.assertIn("tactusd: task: order 1 arrived\n", self.said)
         self.assertRegex(self.said, r"tactusd: task: order \d+ late\n")
         self.assertRegex(self.said, r"tactusd: task: order \d+ stopped\n")
-
-    def test_replays_with_what_it_was_told(self):
-        self.assertIn("to the bit", (self.folder / "replay.txt").read_text())
 
 
 if __name__ == "__main__":

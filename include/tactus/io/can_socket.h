@@ -40,7 +40,8 @@ class CanSocket {
   /// Once a cycle: hands frames to the kernel if the monitor lets it. What is not accepted is
   /// dropped: the next cycle has newer ones. One system call, never waits.
   void send(std::span<const CanFrame> frames) noexcept;
-  /// In place of send(): hands over a frame that does no harm, if the monitor wants a probe.
+  /// Once a cycle: hands over a frame that does no harm, where the monitor wants a probe; send()
+  /// then does nothing.
   void probe(const CanFrame& harmless) noexcept;
 
   BusMonitor& monitor() noexcept { return monitor_; }

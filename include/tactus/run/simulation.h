@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 
@@ -18,6 +19,9 @@ using Progress = std::function<void(double share)>;
 
 /// Given every cycle of a run.
 using CycleSink = std::function<void(const CycleRecord& record)>;
+
+/// To take memory for ahead. Longer runs pay for theirs as they go.
+std::size_t cyclesToReserve(const Scene& scene);
 
 /// Runs a scene in virtual time. A fault ends the run as soon as the arm is at rest.
 SimulationResult simulate(const Scene& scene, const CycleSink& sink);
