@@ -26,7 +26,8 @@ class Soak(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.rows = resources()
-        cls.summaries = [json.loads(path.read_text()) for path in sorted((results / "soak").glob("summary.*.json"))]
+        paths = sorted((results / "soak").glob("summary.*.json"))
+        cls.summaries = [json.loads(path.read_text()) for path in paths]
         cycles = sum(run["cycles"] for run in cls.summaries)
         missed = sum(run["loop"]["missed_cycles"] for run in cls.summaries)
         lives = cls.rows[-1].life

@@ -114,7 +114,9 @@ something() {
 # resources WHEN: memory and descriptors that the daemon has.
 resources() {
   resident_kB=$(grep VmRSS /proc/$daemon/status | tr -dc 0-9)
-  echo "$life $1 $resident_kB $(ls /proc/$daemon/fd | wc -l) $(ls /proc/$daemon/task | wc -l)" >>"$out/resources.txt"
+  descriptors=$(ls /proc/$daemon/fd | wc -l)
+  threads=$(ls /proc/$daemon/task | wc -l)
+  echo "$life $1 $resident_kB $descriptors $threads" >>"$out/resources.txt"
 }
 
 # look_at_log: whatever comes of a life; logs of an hour have no room on the way out.
