@@ -158,6 +158,7 @@ Json ControlRequests::reload(const Json& request) {
   if (!plan.keys.empty()) return order(std::move(plan), request, false);
   (trial_ ? trial_->scene : kept_) = std::move(plan.scene);  // comments may differ
   Json json = showGains();
+  if (!trial_) json["trouble"] = "";  // that of a change before is not this one's
   json["changes"] = Json::object();
   return json;
 }
@@ -216,7 +217,9 @@ std::string ControlRequests::lookAtGains() {
   report_ = report;
   if (report.state == GainState::kKept && trial_) settle(report);
   const std::string trouble = troubleText(report);
-  return fmt::format("gains: change {} {}{}{}", report.number, stateName(report.state),
+  const bool has_gone_back = report.state == GainState::kKept && !trouble.empty();
+  return fmt::format("gains: change {} {}{}{}", report.number,
+                     has_gone_back ? "gone back" : stateName(report.state),
                      trouble.empty() ? "" : ": ", trouble);
 }
 

@@ -97,8 +97,24 @@ TEST_F(ControlRequestsTest, TellsWhyGainsWentBack) {
   EXPECT_EQ(damping(), before);
   const Json shown = ask({{"do", "show"}});
   EXPECT_EQ(shown.at("trouble"), "the arm has a fault");
+  EXPECT_EQ(news_, "gains: change 1 gone back: the arm has a fault");
   EXPECT_EQ(shown.at("ordered").at(kDamping), before);
   EXPECT_EQ(ask({{"do", "undo"}}).at("done"), false) << "nothing was kept";
+}
+
+TEST_F(ControlRequestsTest, AReloadOfNothingNewHasNoTroubleOfAChangeBefore) {
+  set(kDamping, 0.8);
+  pass(0.1);
+  pass(0.01, {.has_fault = true});
+  const Json underway = ask({{"do", "reload"}});
+  EXPECT_FALSE(underway.at("changes").empty()) << "the file's, in place of what goes back";
+  pass(0.01, {.has_fault = true});
+  pass(2.0);
+  EXPECT_NE(ask({{"do", "show"}}).at("trouble"), "");
+  const Json answer = ask({{"do", "reload"}});
+  EXPECT_EQ(answer.at("done"), true);
+  EXPECT_TRUE(answer.at("changes").empty());
+  EXPECT_EQ(answer.at("trouble"), "");
 }
 
 TEST_F(ControlRequestsTest, GoesBackAfterItsTime) {
