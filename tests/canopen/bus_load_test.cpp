@@ -58,6 +58,7 @@ TEST(BusLoad, ABusWithoutDrivesHasNoSyncAndNoHeartbeat) {
   const BusLoad tactile = busLoads(hardware, 0.001)[1];
   ASSERT_EQ(tactile.terms.size(), 1u);
   EXPECT_DOUBLE_EQ(tactile.bitsPerSecond(), 4 * 135 / 0.004);
+  EXPECT_DOUBLE_EQ(cyclicBits(busLoads(hardware, 0.001)[0]), 745.0) << "it is on the other";
 }
 
 TEST(BusLoad, DrivesAndModuleOnOneBusAddUpAtAnotherRate) {

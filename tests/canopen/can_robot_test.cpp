@@ -84,5 +84,22 @@ TEST(CanRobot, IsNotHeldByADriveThatHasBooted) {
   EXPECT_EQ(rig.robot.drives().joint, 0);
 }
 
+/// By these drives know that it runs; by SYNC they take what they were told.
+TEST(CanRobot, TellsThatItRunsInItsPeriod) {
+  HardwareConfig hardware = RobotRig::hardware();
+  hardware.canopen.heartbeat_period_s = 0.007;
+  hardware.buses.resize(2);  // the second has no drive
+  CanRobot robot(hardware, test::kPeriod_s);
+  for (int cycle = 0; cycle < 50; ++cycle) {
+    robot.write(JointVector::Zero(2));
+    const auto& frames = robot.outbox(0);
+    const auto heartbeats = std::ranges::count(
+        frames, heartbeatFrame(hardware.canopen.master_node_id, NmtState::kOperational));
+    EXPECT_EQ(heartbeats, cycle % 7 == 0 ? 1 : 0) << cycle;
+    EXPECT_EQ(std::ranges::count(frames, syncFrame()), 1);
+    EXPECT_TRUE(std::ranges::empty(robot.outbox(1)));
+  }
+}
+
 }  // namespace
 }  // namespace tactus

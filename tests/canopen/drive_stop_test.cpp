@@ -184,6 +184,9 @@ TEST(DriveStop, ARealRestartEndsOff) {
   rig.cycles(10, DriveGoal::kQuickStop);
   EXPECT_TRUE(rig.report().is_off);
   EXPECT_EQ(rig.report().fault, Fault::kDriveStateLost);
+  rig.cycles(200, DriveGoal::kQuickStop);
+  EXPECT_TRUE(rig.report().is_off);
+  EXPECT_FALSE(rig.report().is_silent) << "one that has booted has nothing to say";
 }
 
 TEST(DriveStop, OnlyWhatWasSeenOffLosesItsWatchAtTheEnd) {

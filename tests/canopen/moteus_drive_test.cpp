@@ -102,6 +102,21 @@ TEST(MoteusDrive, TurnsRadiansIntoTurnsAndBack) {
   EXPECT_FLOAT_EQ(other.cycle(DriveGoal::kEnabled, 9.0).velocity, -1.0F) << "at most 2 rad/s";
 }
 
+TEST(MoteusDrive, ThatDoesNotAnswerIsWaitedForToTheCycle) {
+  CanopenConfig canopen;
+  canopen.boot_timeout_s = 0.02;
+  MoteusRig rig{MoteusDrive(moteusConfig(), canopen, test::kPeriod_s)};
+  for (int start = 0; start < 2; ++start) {  // each has all of it
+    rig.quietCycle(DriveGoal::kConfigure, 0.0, true);
+    for (int i = 0; i < 20; ++i) {
+      rig.quietCycle(DriveGoal::kConfigure);
+      ASSERT_EQ(rig.drive.report().fault, Fault::kNone) << i;
+    }
+    rig.quietCycle(DriveGoal::kConfigure);
+    EXPECT_EQ(rig.drive.report().fault, Fault::kDriveSetupRefused);
+  }
+}
+
 TEST(MoteusDrive, RestsBeforeItLetsGo) {
   MoteusRig rig;
   rig.enable();
