@@ -1,0 +1,170 @@
+#include "tactus/control/contact_controller.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/period.h"
+#include "support/rail_robot.h"
+
+/// What the answer to one contact tells and remembers, on a rail where all of it can be told by
+/// hand: nothing delays or filters, and c is known.
+namespace tactus {
+namespace {
+
+using test::kPeriod_s;
+constexpr double kOneT_s = 0.1;
+constexpr double kOneC_N_per_m = 1000.0;
+constexpr double kOneThreshold_N = 1.2;
+constexpr double kOneAct_N = 3.8;
+
+ControllerConfig oneContactRail(double speed_m_per_s, double friction_coefficient = 0.0) {
+  ControllerConfig config = test::undelayedRail(speed_m_per_s, kOneC_N_per_m);
+  config.force_control->friction_coefficient = friction_coefficient;
+  config.gains.force.contact_threshold_N = kOneThreshold_N;
+  config.gains.force.activation_force_N = kOneAct_N;
+  return config;
+}
+
+/// A wall that is far away, but watched in every cycle.
+void addFarWall(ControllerConfig& config) {
+  ClearanceConfig& clear = config.clearance.emplace();
+  LinkCapsule ball;
+  ball.link.joint = 0;
+  ball.radius_m = 0.05;
+  clear.capsules = {ball};
+  clear.walls = {HalfSpace{100.0 * Vector3::UnitY(), -Vector3::UnitY()}};
+  clear.wall_pairs = {{0, 0}};
+}
+
+struct OneContactRun {
+  explicit OneContactRun(const ControllerConfig& c) : config(c) {}
+  /// A sample of a force from +y.
+  void press(double force_N) {
+    const std::uint32_t next = state.modules[0].sequence + 1;
+    controller.update({state.q_desired, {test::touchAt(0.5, -force_N, 0.0, next)}}, config.gains,
+                      cycle++ * kPeriod_s, kPeriod_s, state, output);
+  }
+  void pressFor(int cycles, double force_N) {
+    for (int i = 0; i < cycles; ++i) press(force_N);
+  }
+
+  ControllerConfig config;
+  Controller controller{config};
+  ControllerState state = controller.initialState();
+  ControllerOutput output;
+  int cycle = 0;
+};
+
+enum class RowsFor { kFriction, kWall, kJoints };
+
+/// dF/dt = -(F - F_act - F_th) / T, and what the tool loses of its speed is what u_t says.
+TEST(ContactRows, LimitTheToolByWhatTheyTell) {
+  constexpr double kSpeed_m_per_s = 10.0;
+  for (const RowsFor rows : {RowsFor::kFriction, RowsFor::kWall, RowsFor::kJoints}) {
+    const double mu = rows == RowsFor::kFriction ? 0.5 : 0.0;
+    ControllerConfig config = oneContactRail(kSpeed_m_per_s, mu);
+    if (rows == RowsFor::kWall) addFarWall(config);
+    config.gains.force.max_null_speed_m_per_s = 1e-12;
+    OneContactRun run(config);
+    const test::RailWorld world{kOneC_N_per_m, -0.002};
+    for (int i = 0; i < 800; ++i) {
+      const double before_N = world.force_N(run.state.q_desired);
+      run.state.contact.keeps_joints = rows == RowsFor::kJoints;  // in the last cycle
+      run.press(before_N);
+      if (i < 20) continue;
+      const double F_dot = -(before_N - kOneAct_N - kOneThreshold_N) / kOneT_s;
+      ASSERT_NEAR(world.force_N(run.state.q_desired) - before_N, kPeriod_s * F_dot,
+                  kPeriod_s * 0.01 * std::abs(F_dot) + 1e-5)
+          << static_cast<int>(rows) << " " << i;
+      ASSERT_LT(run.output.contact.u_t, 0.0);
+      ASSERT_NEAR(run.output.velocity.sum(),
+                  kSpeed_m_per_s + run.output.contact.u_t / std::hypot(1.0, mu), 1e-9);
+      ASSERT_TRUE(run.state.contact.approach.is_limiting);
+    }
+  }
+}
+
+/// By so much the law's integral must not grow.
+TEST(ContactRows, TellWhatJointsTookOfTheRetreat) {
+  const auto pressed = [](double left_m, int joint) {
+    ControllerConfig config = oneContactRail(0.0, 0.5);
+    config.limits.lower[0] = joint == 0 ? -left_m : -9.0;
+    config.limits.upper[1] = joint == 1 ? left_m : 9.0;
+    OneContactRun run(config);
+    run.press(4.0);
+    EXPECT_EQ(run.state.contact.keeps_joints, left_m < 0.25);
+    return run;
+  };
+  for (const int joint : {0, 1}) {
+    const OneContactRun free = pressed(1.0, joint), near = pressed(0.002, joint);
+    EXPECT_EQ(free.state.contact.cut_by_rows_m_per_s, 0.0);
+    const double cut_m_per_s = near.output.velocity[0] - free.output.velocity[0];
+    EXPECT_GT(cut_m_per_s, 0.01);
+    EXPECT_NEAR(near.state.contact.cut_by_rows_m_per_s, cut_m_per_s, 1e-12) << joint;
+  }
+}
+
+/// Nothing that was felt has to be left: joints keep to their limits by other means.
+TEST(ContactRows, AreNoneBeforeAContact) {
+  ControllerConfig config = oneContactRail(0.1, 0.5);
+  config.limits.lower[0] = 0.0;  // it stands there
+  OneContactRun law(config);
+  config.force_control.reset();
+  OneContactRun none(config);
+  for (int i = 0; i < 10; ++i) {
+    law.press(0.0);
+    none.press(0.0);
+    ASSERT_EQ(law.output.velocity, none.output.velocity) << i;
+    ASSERT_EQ(law.output.fault, Fault::kNone);
+  }
+}
+
+/// What was learnt of a contact is of use as long as it is felt, and not after.
+TEST(ContactMemory, KeepsAStiffnessAboveTheReleaseForceAlone) {
+  for (const double force_N : {0.31, 0.3, 0.29}) {
+    ControllerConfig config = oneContactRail(0.0);
+    config.force_control->has_estimator = true;
+    config.gains.force.max_null_speed_m_per_s = 1e-12;  // it stays there
+    config.gains.force.transition.release_force_N = 0.3;
+    OneContactRun run(config);
+    run.pressFor(10, 3.0);
+    run.state.contact.approach.estimator.stiffness_N_per_m = 50.0 * kOneC_N_per_m;
+    run.pressFor(8000, force_N);
+    EXPECT_NEAR(run.output.contact.stiffness_N_per_m, (force_N > 0.3 ? 50.0 : 1.0) * kOneC_N_per_m,
+                0.02 * 50.0 * kOneC_N_per_m);
+  }
+}
+
+/// (2) and the pull of joint space together keep to the return speed.
+TEST(JointSpacePull, IsWhatTheReturnSpeedLeaves) {
+  constexpr double kAway_m = 0.1;
+  const auto toolSpeed = [](double cap_m_per_s) {
+    ControllerConfig config = test::railController(Variant::kJointSpace);
+    config.gains.force.contact_threshold_N = kOneThreshold_N;
+    config.gains.task.drift_gain_per_s = 5.0;
+    config.gains.force.pull_gain_per_s = 3.0;
+    config.gains.task.max_return_speed_m_per_s = cap_m_per_s;
+    OneContactRun run(config);
+    run.state.q_desired[1] -= kAway_m;
+    JointSpaceTransitionState& transition = run.state.contact.joint_space_transition;
+    transition.gamma = transition.kappa = 1.0;
+    transition.touching = true;
+    run.press(1.0);  // between release and threshold: feedforward alone
+    return run.output.velocity;
+  };
+  // The carriage that is touched stays; what its share would be is not made up for.
+  const auto expectSpeed = [&](double cap_m_per_s, double expected_m_per_s) {
+    const JointVector velocity = toolSpeed(cap_m_per_s);
+    EXPECT_NEAR(velocity[0], 0.0, 1e-9) << cap_m_per_s;
+    EXPECT_NEAR(velocity[1], 0.5 * expected_m_per_s, 1e-9) << cap_m_per_s;
+  };
+  expectSpeed(kNoLimit, 8.0 * kAway_m);
+  expectSpeed(9.0 * kAway_m, 8.0 * kAway_m);
+  expectSpeed(7.0 * kAway_m, 7.0 * kAway_m);
+  expectSpeed(4.0 * kAway_m, 4.0 * kAway_m);
+}
+
+}  // namespace
+}  // namespace tactus
