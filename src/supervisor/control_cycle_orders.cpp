@@ -27,7 +27,7 @@ Pose ControlCycle::toolPose() const noexcept {
 
 /// An arm that goes on slowly without a module is not held off.
 double ControlCycle::toolProgress() const noexcept {
-  return std::min(1.0, state_.progress / output_.speed_share);
+  return state_.progress / output_.speed_share;
 }
 
 double ControlCycle::nextPathTime_s() const noexcept {
