@@ -118,6 +118,8 @@ TEST(ContactRows, AreNoneBeforeAContact) {
     none.press(0.0);
     ASSERT_EQ(law.output.velocity, none.output.velocity) << i;
     ASSERT_EQ(law.output.fault, Fault::kNone);
+    ASSERT_EQ(law.state.contact.cut_by_rows_m_per_s, 0.0);
+    ASSERT_FALSE(law.state.contact.keeps_joints);
   }
 }
 
@@ -137,33 +139,128 @@ TEST(ContactMemory, KeepsAStiffnessAboveTheReleaseForceAlone) {
   }
 }
 
-/// (2) and the pull of joint space together keep to the return speed.
-TEST(JointSpacePull, IsWhatTheReturnSpeedLeaves) {
-  constexpr double kAway_m = 0.1;
-  const auto toolSpeed = [](double cap_m_per_s) {
-    ControllerConfig config = test::railController(Variant::kJointSpace);
+TEST(ContactMemory, LearnsOfNewSamplesAlone) {
+  ControllerConfig config = oneContactRail(0.1);
+  config.force_control->has_estimator = true;
+  OneContactRun run(config);
+  for (int i = 1; i < 5; ++i) run.press(i);
+  const ApproachLimitState& approach = run.state.contact.approach;
+  EXPECT_TRUE(approach.smoother.contact.isNew());
+  const double before_m = approach.estimator.x_m;
+  const TactileSample old = test::touchAt(0.5, -4.0, 0.0, run.state.modules[0].sequence);
+  run.controller.update({run.state.q_desired, {old}}, run.config.gains, 0.0, kPeriod_s, run.state,
+                        run.output);
+  EXPECT_FALSE(approach.smoother.contact.isNew());
+  EXPECT_EQ(approach.estimator.x_m, before_m);
+}
+
+/// Below the threshold a law that limits lets a contact come nearer, as it else would let it go:
+/// without a leak of what it has learnt, as long as the arm is where it felt the contact.
+TEST(ContactIntegral, GoesBothWaysAboutTheThreshold) {
+  OneContactRun run(oneContactRail(0.0));
+  run.pressFor(50, 3.0);
+  const double& V_m_per_s = run.state.contact.law.V_m_per_s;
+  double before_m_per_s = V_m_per_s;
+  run.press(kOneThreshold_N + 0.4);
+  const double more_m_per_s = V_m_per_s - before_m_per_s;
+  before_m_per_s = V_m_per_s;
+  run.press(kOneThreshold_N - 0.4);
+  EXPECT_GT(more_m_per_s, 0.0);
+  EXPECT_NEAR(V_m_per_s - before_m_per_s, -more_m_per_s, 1e-3 * more_m_per_s);
+}
+
+/// An arm that is held remembers what it holds against, and forgets it once nothing is felt.
+TEST(ContactIntegral, OfAHeldArmFadesWhereNothingIsFelt) {
+  for (const Variant variant : {Variant::kNullSpace, Variant::kJointSpace, Variant::kNullLimit}) {
+    ControllerConfig config = oneContactRail(0.0);
+    config.force_control->variant = variant;
+    OneContactRun run(config);
+    run.pressFor(50, 3.0);
+    const double held_m_per_s = run.state.contact.law.V_m_per_s;
+    EXPECT_GT(held_m_per_s, 0.0);
+    run.state.is_stopping = true;
+    run.pressFor(500, 3.0);
+    EXPECT_EQ(run.state.contact.law.V_m_per_s, held_m_per_s);
+    run.pressFor(500, 0.0);
+    const double T_s = config.gains.force.transition.max_time_constant_s;
+    EXPECT_NEAR(run.state.contact.law.V_m_per_s, held_m_per_s * std::exp(-0.5 / T_s),
+                1e-6 * held_m_per_s);
+  }
+}
+
+/// By which a return speed knows how fast the law moves the tool itself.
+TEST(ContactPush, IsWhatTheSecondSpaceDoesToTheTool) {
+  for (const Variant variant : {Variant::kNullTask, Variant::kNullJoint}) {
+    ControllerConfig config = test::railController(variant);
+    config.gains.task.max_return_speed_m_per_s = 0.5;
+    OneContactRun run(config);
+    for (int i = 0; i < 20; ++i) {
+      run.press(10.0);
+      EXPECT_LT(run.state.contact.push[0], -1e-3);
+      EXPECT_NEAR(run.state.contact.push[0], run.output.velocity.sum(), 1e-12);
+    }
+    EXPECT_TRUE(run.state.contact.has_push);
+    run.state.is_stopping = true;
+    run.press(10.0);
+    EXPECT_EQ(run.state.contact.push[0], 0.0);
+    EXPECT_FALSE(run.state.contact.has_push);
+  }
+}
+
+/// A tool that is off its path by so much, in a contact at +y that is felt below the threshold.
+constexpr double kAway_m = 0.1;
+struct PulledRail {
+  explicit PulledRail(double away_m) : tool_m(-away_m) {
     config.gains.force.contact_threshold_N = kOneThreshold_N;
     config.gains.task.drift_gain_per_s = 5.0;
     config.gains.force.pull_gain_per_s = 3.0;
-    config.gains.task.max_return_speed_m_per_s = cap_m_per_s;
+  }
+  JointVector velocity(double return_share = 1.0) const {
     OneContactRun run(config);
-    run.state.q_desired[1] -= kAway_m;
+    run.state.q_desired[1] = tool_m;
+    run.state.return_share = return_share;
     JointSpaceTransitionState& transition = run.state.contact.joint_space_transition;
     transition.gamma = transition.kappa = 1.0;
     transition.touching = true;
-    run.press(1.0);  // between release and threshold: feedforward alone
+    run.press(1.0);
     return run.output.velocity;
-  };
-  // The carriage that is touched stays; what its share would be is not made up for.
-  const auto expectSpeed = [&](double cap_m_per_s, double expected_m_per_s) {
-    const JointVector velocity = toolSpeed(cap_m_per_s);
-    EXPECT_NEAR(velocity[0], 0.0, 1e-9) << cap_m_per_s;
-    EXPECT_NEAR(velocity[1], 0.5 * expected_m_per_s, 1e-9) << cap_m_per_s;
-  };
-  expectSpeed(kNoLimit, 8.0 * kAway_m);
-  expectSpeed(9.0 * kAway_m, 8.0 * kAway_m);
-  expectSpeed(7.0 * kAway_m, 7.0 * kAway_m);
-  expectSpeed(4.0 * kAway_m, 4.0 * kAway_m);
+  }
+  /// The carriage that is touched comes no nearer; what its share would be is not made up for.
+  void expectSpeed(double m_per_s, double return_share = 1.0) const {
+    const JointVector v = velocity(return_share);
+    EXPECT_NEAR(v[0], std::min(0.0, 0.5 * m_per_s), 1e-9);
+    EXPECT_NEAR(v[1], 0.5 * m_per_s, 1e-9);
+  }
+
+  double tool_m;
+  ControllerConfig config = test::railController(Variant::kJointSpace);
+};
+
+/// (2) and the pull of joint space together keep to the return speed.
+TEST(JointSpacePull, IsWhatTheReturnSpeedLeaves) {
+  for (const double side : {1.0, -1.0}) {
+    PulledRail rail(side * kAway_m);
+    rail.expectSpeed(side * 8.0 * kAway_m);
+    for (const double cap_per_s : {9.0, 7.0, 4.0}) {
+      rail.config.gains.task.max_return_speed_m_per_s = cap_per_s * kAway_m;
+      rail.expectSpeed(side * std::min(8.0, cap_per_s) * kAway_m);
+    }
+  }
+}
+
+/// The correction of (2) is 5, the pull at most 3.
+TEST(JointSpacePull, IsLessWhereTheArmReturnsOrNearsItsLimits) {
+  PulledRail rail(-kAway_m);
+  rail.expectSpeed(-0.25 * 8.0 * kAway_m, 0.25);
+  rail.config.gains.force.max_null_speed_m_per_s = 0.5 * kAway_m;  // of each carriage
+  rail.expectSpeed(-(5.0 + 1.0) * kAway_m);
+  rail.config.gains.force.max_null_speed_m_per_s = 10.0;
+  rail.config.has_joint_limit_avoidance = true;
+  rail.config.gains.joint_limit_avoidance.gain = 0.0;
+  rail.config.gains.joint_limit_avoidance.active_fraction = 0.5;
+  rail.config.limits.lower.setConstant(-4.0 * kAway_m / 3.0);
+  rail.config.limits.upper.setConstant(4.0 * kAway_m / 3.0);  // halfway into its zone
+  rail.expectSpeed(-(5.0 + 3.0 * 0.75) * kAway_m);
 }
 
 }  // namespace

@@ -249,5 +249,29 @@ TEST(CoverCompensation, FollowsLinksBehindTheirGears) {
   EXPECT_GT(elsewhere_N, 0.01);
 }
 
+/// The weight that a cover has shed since it was tared is no contact, on whichever module it is.
+TEST(CoverCompensation, IsOfTheModulesThatHaveACover) {
+  for (const int covered : {0, 1}) {
+    test::Random random(908);
+    const ControllerConfig with = coveredRobot(random);
+    ControllerConfig config = with;
+    config.tactile_modules.push_back(config.tactile_modules.front());
+    config.tactile_modules[1 - covered].cover.reset();
+    const Controller controller(config);
+    const JointVector q = config.q_start.array() + 0.5;
+    ControllerState state = controller.initialState(q);
+    ControllerOutput output;
+    const Wrench5 shed =
+        feltAt(with, q, Vector3::Zero()) - feltAt(with, with.q_start, Vector3::Zero());
+    ASSERT_GT(shed.head(2).matrix().norm(), 0.05);
+    for (std::uint32_t i = 1; i < 3; ++i) {
+      const TactileSample sample = sampleOf(shed, i);
+      controller.update({q, {sample, sample}}, config.gains, 0.0, kPeriod_s, state, output);
+    }
+    EXPECT_NEAR(output.sensed[covered].force_N, 0.0, 1e-9) << covered;
+    EXPECT_GT(output.sensed[1 - covered].force_N, 0.05);
+  }
+}
+
 }  // namespace
 }  // namespace tactus

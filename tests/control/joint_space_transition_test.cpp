@@ -108,6 +108,16 @@ TEST_F(JointSpace, LetsGoWhereTheArmWouldNotMoveOrIsFarAway) {
   }
 }
 
+TEST_F(JointSpace, WithoutASearchLetsGoByDistanceAlone) {
+  gains_.transition.search_speed_m_per_s = 0.0;
+  for (const double x_0 : {0.0, -0.05}) {
+    state_ = {};
+    updateFor(2.0, 3.0);
+    updateFor(2.0, 0.0, 0.0125, x_0);
+    EXPECT_NEAR(state_.gamma, 0.75, 1e-8);
+  }
+}
+
 TEST_F(JointSpace, PullComesWithTheFeedforwardAndGoesGently) {
   updateFor(0.1, 3.0);
   EXPECT_NEAR(state_.kappa, 1.0 - std::exp(-1.0), 0.1)
@@ -130,6 +140,16 @@ TEST_F(JointSpace, PullComesGentlyAfterARest) {
   EXPECT_NEAR(state_.kappa, 1.0 - std::exp(-2.9), 1e-6) << "0.945";
   updateFor(0.2, 3.0);
   EXPECT_NEAR(state_.kappa, 1.0 - 0.05 * std::exp(-1.04), 1e-3) << "with T from 0.95 on, at 3 s";
+}
+
+/// Once nothing is felt there is nothing to regain.
+TEST_F(JointSpace, PullComesAtOnceWhereARestLeftNothing) {
+  updateFor(2.0, 3.0);
+  restTransition(state_);
+  update(0.0);
+  EXPECT_FALSE(state_.has_rested);
+  updateFor(0.1, 3.0);
+  EXPECT_GT(state_.kappa, 0.5);
 }
 
 TEST_F(JointSpace, AFeedforwardThatIsNextToNothingIsNone) {

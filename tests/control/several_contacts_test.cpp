@@ -177,6 +177,34 @@ TEST(SeveralContacts, RememberWhatIsStillFelt) {
   }
 }
 
+/// A soft obstacle that comes is known for one, as long as the arm moves.
+TEST(SeveralContacts, AreGivenWayAsFastAsTheyCome) {
+  for (const RowsOf& rows : kRowsOf) {
+    ControllerConfig config = rowsRail(rows, 0.1);
+    config.gains.force.max_null_speed_m_per_s = 1e-12;
+    RowsRun run(config, 0.0);
+    run.run(2000);
+    EXPECT_NEAR(run.force_N(), kRailAct_N + kHold_N, 0.01);
+    const double& high_s = run.state.several.modules[0].approach.obstacle.high_s;
+    const auto come = [&](int cycles) {
+      double longest_s = 0.0;
+      for (int i = 0; i < cycles; ++i) {
+        run.world.surface_m -= 0.02 * kPeriod_s;
+        run.step();
+        longest_s = std::max(longest_s, high_s);
+      }
+      return longest_s;
+    };
+    EXPECT_GT(come(250), 0.1);
+    RowsRun stopped = run;
+    stopped.state.is_stopping = true;
+    stopped.step();
+    EXPECT_EQ(stopped.state.several.modules[0].approach.obstacle.high_s, 0.0);
+    come(4000);
+    EXPECT_LT(run.force_N(), 1.15 * (kRailAct_N + kHold_N)) << "T c v_o alone were 2 N more";
+  }
+}
+
 /// It tells of the module that is pressed most, and each has its own.
 TEST(SeveralContacts, TellOfTheModuleThatIsPressedMost) {
   for (const int most : {0, 1}) {
