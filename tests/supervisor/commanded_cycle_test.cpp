@@ -60,6 +60,33 @@ TEST(CommandedCycle, LeadsTheToolToItsTarget) {
   EXPECT_LT((toolPose(cell, scene).p_AB - target.p_AB).norm(), 1e-3);
 }
 
+/// In each direction: joints that are too slow for what was ordered make the tool late.
+TEST(CommandedCycle, ArrivesNoFartherOffThanItSays) {
+  Scene scene = toldScene({{"simulation.obstacles", "[]"}});
+  scene.controller.limits.max_velocity.setConstant(0.05);
+  scene.controller.gains.task.drift_gain_per_s = 1.0;
+  const double near_m = scene.controller.task.commands->arrival_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    VirtualRobotCell cell(scene);
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+    Pose target = toolPose(cell, scene);
+    target.p_AB += 0.03 * Vector3::Unit(axis);
+    tell(cell, target, 1);
+    const auto isThere = [&] { return cell.cycle.toolReport()->state == ToolState::kArrived; };
+    double farthest_m = 0.0;
+    for (int i = 0; i < 20000 && !isThere(); ++i) {
+      stepPrepared(cell);
+      const CycleRecord record = cell.record();
+      farthest_m = std::max(
+          farthest_m,
+          (Eigen::Map<const Vector3>(record.wd) - Eigen::Map<const Vector3>(record.w)).norm());
+    }
+    EXPECT_GT(farthest_m, 2.0 * near_m) << "it follows at once: this test is blind";
+    EXPECT_TRUE(isThere());
+    EXPECT_LT((toolPose(cell, scene).p_AB - target.p_AB).norm(), 1.01 * near_m) << axis;
+  }
+}
+
 /// 20 targets and 50 sets of gains in contact, a hold, an e-stop and missed cycles.
 TEST(CommandedCycle, ReplaysToTheBitFromItsLog) {
   const Scene scene = toldScene();

@@ -178,6 +178,21 @@ TEST(FaultDetails, AreGoneOnceItIsCleared) {
   EXPECT_TRUE(std::isnan(cell.cycle.report().time_s));
 }
 
+/// The joint that the controller names is that of the whole report.
+TEST(FaultDetails, OfACommandThatIsNoNumber) {
+  VirtualRobotCell cell = runningArm();
+  Gains gains = test::shippedScene("scenario1_multi_space").controller.gains;
+  gains.task.drift_gain_per_s = std::nan("");
+  cell.cycle.tune(gains);
+  for (int i = 0; i < 2; ++i) cell.step();
+  const ModeReport report = cell.cycle.report();
+  EXPECT_EQ(report.fault, Fault::kCommandNotFinite);
+  ASSERT_GE(report.detail.joint, 0);
+  EXPECT_EQ(report.joint, report.detail.joint);
+  EXPECT_NE(report.q_measured, 0.0);
+  EXPECT_NEAR(report.q_measured, report.q_expected, 0.05);
+}
+
 /// Drives that never hear a control word: time is over, and no drive has said anything wrong.
 TEST(FaultDetails, OfATimeLimitSpeakOfNoDrive) {
   VirtualRobotCell cell(test::shippedScene("scenario1_multi_space"));

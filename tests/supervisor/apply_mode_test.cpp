@@ -1,0 +1,55 @@
+#include "tactus/supervisor/apply_mode.h"
+
+#include <gtest/gtest.h>
+
+#include "support/random_limits.h"
+#include "support/random_robot.h"
+
+/// What a mode makes of the controller's state.
+namespace tactus {
+namespace {
+
+/// Whenever drives move the arm by themselves it is where they say, in the first cycle of the
+/// command, too; in between it is where it was commanded to be.
+TEST(ApplyMode, TheArmIsWhereWhoeverMovesItSays) {
+  test::Random random(2601);
+  const Controller controller(test::randomController(random, 5, 2));
+  const JointVector measured = random.vector(5, -0.5, 0.5), commanded = random.vector(5, -0.5, 0.5);
+  for (int to = 0; to < kModeCount; ++to) {
+    for (int from = 0; from < kModeCount; ++from) {
+      const Mode mode = static_cast<Mode>(to), before = static_cast<Mode>(from);
+      ControllerState state = controller.initialState(commanded);
+      state.velocity_before.setConstant(0.1);
+      applyMode(controller, mode, before, {measured, {}}, controller.initialGains(), state);
+      const bool goes_on = isCommanding(mode) && isCommanding(before);
+      EXPECT_EQ(state.q_desired, goes_on ? commanded : measured) << from << " " << to;
+      EXPECT_EQ(state.velocity_before.isZero(0.0), !goes_on) << from << " " << to;
+      EXPECT_EQ(state.mayMove(), mode == Mode::kRunning) << from << " " << to;
+      EXPECT_EQ(state.retreat.is_under_way, mode == Mode::kRetreating) << from << " " << to;
+    }
+  }
+}
+
+/// While it retreats or holds, and in the cycle after, the mode alone remembers faults; one that
+/// runs keeps its own.
+TEST(ApplyMode, AFaultIsForgottenWhileTheArmIsHeld) {
+  test::Random random(2602);
+  const Controller controller(test::randomController(random, 5, 2));
+  const auto isForgotten = [&](Mode mode, Mode before) {
+    ControllerState state = controller.initialState();
+    state.fault = Fault::kTactileStale;
+    applyMode(controller, mode, before, {state.q_desired, {}}, controller.initialGains(), state);
+    return state.fault == Fault::kNone;
+  };
+  EXPECT_FALSE(isForgotten(Mode::kRunning, Mode::kRunning));
+  EXPECT_FALSE(isForgotten(Mode::kStopping, Mode::kRunning));
+  for (const Mode still : {Mode::kRetreating, Mode::kHolding}) {
+    EXPECT_TRUE(isForgotten(still, Mode::kRunning));
+    EXPECT_TRUE(isForgotten(still, still));
+    EXPECT_TRUE(isForgotten(Mode::kRunning, still));
+    EXPECT_TRUE(isForgotten(Mode::kStopping, still));
+  }
+}
+
+}  // namespace
+}  // namespace tactus
