@@ -51,5 +51,26 @@ TEST(ApplyMode, AFaultIsForgottenWhileTheArmIsHeld) {
   }
 }
 
+/// A way out begins once, and is left once: then the arm makes for its path gently.
+TEST(ApplyMode, BeginsAWayOutOnceAndGoesOnOnce) {
+  test::Random random(2603);
+  const Controller controller(test::randomController(random, 5, 2));
+  const auto after = [&](Mode mode, Mode before) {
+    ControllerState state = controller.initialState();
+    state.retreat.time_s = 1.0;
+    state.retreat.has_moved = true;
+    applyMode(controller, mode, before, {state.q_desired, {}}, controller.initialGains(), state);
+    return state;
+  };
+  EXPECT_EQ(after(Mode::kRetreating, Mode::kRunning).retreat.time_s, 0.0);
+  EXPECT_EQ(after(Mode::kRetreating, Mode::kRetreating).retreat.time_s, 1.0);
+  EXPECT_EQ(after(Mode::kHolding, Mode::kRetreating).retreat.time_s, 1.0);
+  EXPECT_EQ(after(Mode::kRunning, Mode::kHolding).return_share, 0.0);
+  EXPECT_EQ(after(Mode::kRunning, Mode::kRunning).return_share, 1.0);
+  EXPECT_EQ(after(Mode::kHolding, Mode::kRetreating).return_share, 1.0);
+  EXPECT_EQ(after(Mode::kFault, Mode::kRunning).return_share, 0.0);
+  EXPECT_EQ(after(Mode::kFault, Mode::kFault).return_share, 1.0);
+}
+
 }  // namespace
 }  // namespace tactus
