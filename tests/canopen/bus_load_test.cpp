@@ -72,6 +72,20 @@ TEST(BusLoad, DrivesAndModuleOnOneBusAddUpAtAnotherRate) {
   EXPECT_DOUBLE_EQ(load.share(), load.bitsPerSecond() / 500e3);
 }
 
+TEST(BusLoad, OfMoteusIsACommandAndAReplyEach) {
+  for (const int drives : {1, 3}) {
+    HardwareConfig hardware = withDrives(drives, 1);
+    for (DriveConfig& drive : hardware.drives) drive.kind = DriveKind::kMoteus;
+    hardware.buses[1].data_bit_rate_per_s = 5e6;
+    EXPECT_TRUE(busLoads(hardware, 0.001)[0].terms.empty());
+    const BusLoad load = busLoads(hardware, 0.001)[1];
+    ASSERT_EQ(load.terms.size(), 2u);
+    double bits = 0.0;
+    for (const BusLoadTerm& term : load.terms) bits += term.bitsAFrame();
+    EXPECT_DOUBLE_EQ(load.bitsPerSecond(), drives * bits / 0.001);
+  }
+}
+
 TEST(FdSize, IsTheSmallestThatALengthCodeHas) {
   const std::vector<int> sizes = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
   for (int n = 0; n <= 64; ++n)

@@ -101,5 +101,16 @@ TEST(CanRobot, TellsThatItRunsInItsPeriod) {
   }
 }
 
+/// The last word: each drive is told, and nothing else is.
+TEST(CanRobot, ReleasesEachOfItsDrives) {
+  RobotRig rig;
+  rig.enable();
+  rig.robot.release();
+  const auto frames = rig.robot.outbox(0);
+  ASSERT_EQ(std::ranges::size(frames), 2u);
+  for (const int node : {1, 2})
+    EXPECT_EQ(std::ranges::count(frames, nmtFrame({NmtCommand::kResetNode, node})), 1) << node;
+}
+
 }  // namespace
 }  // namespace tactus

@@ -106,6 +106,18 @@ TEST(PlacedArm, KnowsWhetherItLeansAndWhatTheStopAdded) {
   }
 }
 
+TEST(PlacedArm, LeansOnNothingThatZonesWouldHaveHeldOff) {
+  test::Random random(2407);
+  ControllerConfig config = test::fullController(random, 6, Variant::kNullSpace);
+  config.has_joint_limit_avoidance = false;
+  const Controller controller(config);
+  ControllerState state = controller.initialState();
+  state.modules[0].contact.force_N = 5.0;
+  controller.place(config.q_start, config.gains, state);
+  EXPECT_FALSE(state.is_leaning);
+  EXPECT_TRUE(state.way_out_added.isZero(0.0));
+}
+
 /// The drives kept the last command, the reference its progress, and samples grew older.
 TEST(MissedCycles, AreOfTheWayAndOfTheSamples) {
   test::Random random(2404);
