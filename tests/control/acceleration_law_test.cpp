@@ -53,7 +53,7 @@ struct AccelerationTerms {
   }
   void update() {
     motion.y.setZero();
-    motion.v_scaled.setZero();
+    motion.v_scaled = cost;
     law.update(gains, input, curvature, free, kinematics, space, kTerm_s, state, motion, u);
   }
   /// s_n and s_t
@@ -81,6 +81,7 @@ struct AccelerationTerms {
   Motion motion;
   ControlLawOutput u;
   double curvature = 0.0;
+  ScaledVector cost = ScaledVector::Zero();  ///< what the free null space does
   double share = lagShare(kTerm_s, 0.01);
   double damped = lagShare(kTerm_s, 0.1);
 };
@@ -124,7 +125,9 @@ TEST(AccelerationTerms, ComeToTheirFloorByTheVelocityGain) {
   EXPECT_NEAR(it.nullSpeed(), it.share * 0.1 + 2.0 * kTermPerN, 1e-12);
   it.input.F_p_N = -2.0;  // null_limit below F_th: P F_p lower
   it.input.x_dot_ff_m_per_s = 0.0;
-  EXPECT_NEAR(it.nullSpeed(), std::max(-it.share * 2.0 * 0.01, -2.0 * kTermPerN), 1e-12);
+  EXPECT_NEAR(it.nullSpeed(), -2.0 * kTermPerN, 1e-12);
+  it.before(0.0, -0.03);  // P F_p is -0.02 m/s
+  EXPECT_NEAR(it.nullSpeed(), -0.03 - 2.0 * kTermPerN + it.damped * 0.03 + it.share * 0.01, 1e-12);
 }
 
 /// As fast as the integral leaks, and no faster than k_v.
@@ -151,8 +154,14 @@ TEST(AccelerationTerms, OfTheTool) {
   EXPECT_NEAR(it.taskSpeed(), 0.1 + 2.0 * kTermPerN - damped, 1e-12);
   it.input.F_p_N = 1.0;  // still open
   EXPECT_NEAR(it.taskSpeed(), 0.1 - std::min(it.share * 0.1, 2.0 * kTermPerN + damped), 1e-12);
-  it.state.It_m_per_s = 0.0;
+  it.state.It_m_per_s = -0.01;
   EXPECT_NEAR(it.taskSpeed(), 0.1 - it.share * 0.1, 1e-12) << "closed";
+  EXPECT_EQ(it.state.It_m_per_s, 0.0);
+  for (const double excess_N : {0.0, 0.5}) {  // which opens it
+    it.state.It_m_per_s = 0.0;
+    it.input.F_p_N = 3.0 + excess_N;
+    EXPECT_NEAR(it.taskSpeed(), 0.1 + excess_N * kTermPerN - damped, 1e-12);
+  }
   AccelerationTerms one(Variant::kNullSpace);
   one.input.F_p_N = 5.0;
   EXPECT_EQ(one.taskSpeed(), 0.0) << "it has no such law";
@@ -169,6 +178,16 @@ TEST(AccelerationTerms, LeaveTheRestToTheVelocityGain) {
   it.free.w_dd.setZero();
   it.update();
   EXPECT_NEAR(it.retreat(), 0.0, 1e-12);
+}
+
+/// What joint limits ask for changes as they do, and is no part of the contact's.
+TEST(AccelerationTerms, FollowWhatTheFreeNullSpaceDoes) {
+  AccelerationTerms it;
+  it.before(0.0, 0.1);
+  it.free.cost_change = 0.02 * scaled(JointVector{{-1.0, 1.0}}, ScaledVector::Ones());
+  it.cost = 0.12 * scaled(JointVector{{-1.0, 1.0}}, ScaledVector::Ones());
+  EXPECT_NEAR(it.nullSpeed(), 0.0, 1e-12);
+  EXPECT_NEAR(it.retreat(), 0.12, 1e-12);
 }
 
 }  // namespace
