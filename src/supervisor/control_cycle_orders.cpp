@@ -26,9 +26,7 @@ Pose ControlCycle::toolPose() const noexcept {
 }
 
 /// An arm that goes on slowly without a module is not held off.
-double ControlCycle::toolProgress() const noexcept {
-  return state_.progress / output_.speed_share;
-}
+double ControlCycle::toolProgress() const noexcept { return state_.progress / output_.speed_share; }
 
 double ControlCycle::nextPathTime_s() const noexcept {
   return static_cast<double>(nextTaskCycle()) * period_s_ - state_.waited_s;
