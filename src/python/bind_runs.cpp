@@ -54,11 +54,12 @@ std::string runFigures(const Scene& scene) {
   return jsonText(summaryJson(scene, result.figures, result.real_time_factor));
 }
 
-template <typename Value>
-py::dict dictOf(const std::vector<std::pair<std::string, Value>>& pairs) {
+/// Of pairs of a name and a number or a text; of one name the last.
+template <typename Pair>
+py::dict dictOf(const std::vector<Pair>& pairs) {
   py::dict dict;
   for (const auto& [name, value] : pairs) {
-    if constexpr (std::is_same_v<Value, double>)
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
       dict[textOf(name)] = value;
     else
       dict[textOf(name)] = textOf(value);
@@ -66,7 +67,7 @@ py::dict dictOf(const std::vector<std::pair<std::string, Value>>& pairs) {
   return dict;
 }
 
-/// (columns, whether it was cut off, infos, parameters)
+/// (columns, whether it was cut off, infos, parameters, sources, overrides)
 py::tuple readLog(const std::string& path) {
   std::unique_ptr<Columns> columns;
   LogDescription description;
@@ -84,7 +85,8 @@ py::tuple readLog(const std::string& path) {
     is_cut_off = reader.cutOff();
   }
   return py::make_tuple(std::move(columns), is_cut_off, dictOf(description.infos),
-                        dictOf(description.parameters));
+                        dictOf(description.parameters), dictOf(description.sources),
+                        dictOf(description.overrides));
 }
 
 std::string replay(const std::vector<std::string>& logs, const std::vector<std::string>& settings) {

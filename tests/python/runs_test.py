@@ -5,6 +5,7 @@ usage: runs_test.py FOLDER TACTUS"""
 
 import gc
 import json
+import pathlib
 import struct
 import sys
 import unittest
@@ -232,11 +233,26 @@ class Logs(Scratch):
             self.assertEqual(str(refused.exception), said)
 
     def test_name_their_scene(self):
-        log = tactus.read_log(self.log)
+        log, scene = tactus.read_log(self.log), tactus.Scene(scene_file("scenario2_estimated"))
         self.assertEqual(log.parameters["controller/damping"], 0.5)
         self.assertIn("scenario2_estimated", json.dumps(log.infos))
         self.assertEqual(set(log.units), set(log))
         self.assertEqual(log.units["force_sensor_N"], "N")
+        self.assertEqual((log.joints, log.modules), (scene.joints, scene.modules))
+        self.assertEqual(log.overrides, {"simulation.duration_s": "1"})
+
+    def test_have_the_files_that_they_were_made_of(self):
+        sources = tactus.read_log(self.log).sources
+        files = tactus.Scene(scene_file("scenario2_estimated")).files
+        self.assertEqual([path.rpartition("/")[2] for path in sources],
+                         [path.rpartition("/")[2] for path in files])
+        for path, (_, text) in zip(files, sources.items()):
+            self.assertEqual(text, pathlib.Path(path).read_text(encoding="utf-8"), path)
+
+    def test_keep_the_bytes_of_texts_that_are_no_utf_8(self):
+        content = self.log.read_bytes()
+        self.log.write_bytes(content.replace(b"tip: tcp", b"tip: \xfc\xfe\xff"))
+        self.assertIn("tip: \udcfc\udcfe\udcff", "".join(tactus.read_log(self.log).sources.values()))
 
 
 if __name__ == "__main__":

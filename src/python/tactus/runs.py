@@ -108,13 +108,16 @@ class LogFile(Log):
     """What read_log() returns."""
 
     def __init__(self, path: Path) -> None:
-        columns, self.is_cut_off, self.infos, self.parameters = _core.read_log(path_bytes(path))
+        (columns, self.is_cut_off, self.infos, self.parameters, self.sources,
+         self.overrides) = _core.read_log(path_bytes(path))
         super().__init__(columns)
         self.path = path
 
     is_cut_off: bool  #: it ends within a cycle: the run was interrupted
     infos: dict[str, str]  #: what the log says of the run
     parameters: dict[str, float]  #: numbers of scene and robot, as plots show them: rounded to float32
+    sources: dict[str, str]  #: the text of each file that the run was made of, the scene first, by its path
+    overrides: dict[str, str]  #: values given by `--set`, by key
 
     @property
     def joints(self) -> list[str]:
