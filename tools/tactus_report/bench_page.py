@@ -4,9 +4,9 @@ import csv
 import html
 import json
 
+from .document import html_page, table
+from .errors import InputError, first_line
 from .figures import as_figure
-from .page import html_page, table
-from .runs import InputError, first_line
 from .series_figure import Series, series_figure
 
 PLAN = "report.json"

@@ -1,13 +1,11 @@
-"""The report: one HTML page that needs nothing else."""
+"""The report of runs."""
 
 import html
-import pathlib
-import re
 
 from . import comparison, contacts, levels, paper_figures, run_figures, runs, skin_figures
+from .document import html_page, number, table, with_unit
 from .figures import as_figure, scatter_figure
 
-CSS = pathlib.Path(__file__).with_name("page.css")
 PAPER_SCENES = {scene for figure in paper_figures.FIGURES for scene, *_ in figure.curves}
 OWN_SCENES = {scene for figure in paper_figures.BEYOND_FIGURES + paper_figures.LEVEL_FIGURES
               for scene, *_ in figure.curves}
@@ -41,15 +39,6 @@ def build_page(loaded, tactus):
                  runs_table([run for run in loaded if run.scene not in PAPER_SCENES]),
                  *further_figures(further, {group[0].scene for group in groups})]
     return html_page("Tactus report", body)
-
-
-def html_page(title, body):
-    """One page that needs nothing else. `title` is text, `body` a list of elements."""
-    return ('<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-            '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-            f"<title>{html.escape(title)}</title>\n"
-            f"<style>\n{CSS.read_text(encoding='utf-8')}</style>\n</head>\n<body>\n<main>\n"
-            + "\n".join(body) + "\n</main>\n</body>\n</html>\n")
 
 
 def comparison_with_paper(by_scene):
@@ -192,27 +181,3 @@ def unsensed_section(runs):
                          number(contact["force_N"], 2), number(contact["t_s"], 3)])
     heads = ["Run", "Link", "Obstacle", "Largest force, N", "At, s"]
     return ["<h2>Contact that no module feels</h2>", table(heads, rows, "unsensed")] if rows else []
-
-
-def with_unit(value, unit):
-    return "" if value is None else f"{value:.6g} {unit}"
-
-
-def number(value, digits, scale=1.0):
-    return "" if value is None else f"{scale * value:.{digits}f}"
-
-
-def table(heads, rows, kind):
-    """First column names the row."""
-    lines = [f'<div class="wide"><table class="{kind}">', "<thead><tr>"]
-    lines += [f'<th scope="col">{html.escape(head)}</th>' for head in heads]
-    lines.append("</tr></thead>\n<tbody>")
-    for first, *rest in rows:
-        cells = "".join(f"<td>{with_units(cell)}</td>" for cell in rest)
-        lines.append(f'<tr><th scope="row">{html.escape(first)}</th>{cells}</tr>')
-    return "\n".join(lines) + "\n</tbody></table></div>"
-
-
-def with_units(text):
-    """Escaped, and no line break between a number and its unit."""
-    return re.sub(r"(\d) (N/m|N|mm|m|%)", r"\1&nbsp;\2", html.escape(text))

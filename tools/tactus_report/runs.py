@@ -12,10 +12,7 @@ import tempfile
 import numpy as np
 
 from . import log_text
-
-
-class InputError(Exception):
-    """Something wrong with what the user gave; the message is one line."""
+from .errors import InputError, first_line
 
 
 SUMMARY_NUMBERS = ("peak_force_N", "final_force_N", "tcp_error_max_m", "tcp_error_rms_m",
@@ -256,7 +253,3 @@ def read_table(table, log):
     if not np.isfinite(values).all():
         raise InputError(f"{log}: a number that is not finite, expected none in a log")
     return wanted, values
-
-
-def first_line(text):
-    return next(iter(str(text).strip().splitlines()), "")

@@ -6,8 +6,8 @@ import math
 import shlex
 
 import matplotlib
+from tactus_report.document import html_page, table
 from tactus_report.figures import BLUE, GRID, RED, as_figure, as_svg, new_figure
-from tactus_report.page import html_page, table
 
 from .judge import ERROR, FORCE, candidates, completed, front, sensitivities
 from .table import scene_name
