@@ -1,4 +1,6 @@
-"""tools/report as a user runs it, on made-up runs whose numbers are known."""
+"""tools/report as a user runs it, on made-up runs whose numbers are known.
+
+usage: report_test.py FOLDER, which has the package tactus as built, beside tactus-report"""
 
 import html.parser
 import json
@@ -15,12 +17,15 @@ import xml.etree.ElementTree
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
+FOLDER = pathlib.Path(sys.argv.pop(1)).resolve()
+sys.path[:0] = [str(FOLDER), str(ROOT / "tools"), str(ROOT / "tests/support")]
 sys.dont_write_bytecode = True
 
-from tactus_report import bench_page, comparison, figures, levels, page, runs, series_figure  # noqa: E402
+import tactus  # noqa: E402
+from made_log import made_log, message  # noqa: E402
+from tactus_report import bench_page, comparison, errors, figures, levels, logs, page, runs, series_figure  # noqa: E402
 
-FAKE_TACTUS = ROOT / "tests/tools/fake_tactus"
+REPORT = FOLDER.with_name("tactus-report")
 
 
 def summary_of(scene, **changes):
@@ -34,23 +39,37 @@ def summary_of(scene, **changes):
     return summary
 
 
-def write_run(folder, name, text=None, **changes):
+def write_run(folder, name, log=None, **changes):
     run = folder / name
     run.mkdir(parents=True)
     summary = summary_of(changes.pop("scene", name), **changes)
     (run / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    (run / "run.ulg").write_text(table_text() if text is None else text, encoding="utf-8")
+    (run / "run.ulg").write_bytes(log_of() if log is None else log)
     return run
 
 
-def table_text(replace=None):
-    """13 s of a force that peaks between two plotted points; columns beyond those needed."""
-    lines = ["t_s,other,force_sensor_N,stiffness_N_per_m,dq_1,dq_2,"
-             "tool_error_x_m,tool_error_y_m,tool_error_z_m"]
-    for cycle in range(0, 13000, 5):
-        force = 8.0 if cycle == 8335 else cycle / 2600
-        lines.append(f"{cycle / 1000},0,{force},30,0.3,0.4,0.001,0.002,0.002")
-    return "\n".join(lines if replace is None else replace(lines)) + "\n"
+CYCLES = 2600
+
+
+def log_of(cycles=CYCLES, without=(), **changes):
+    """13 s of a force that peaks between two plotted points."""
+    time_s = 0.005 * np.arange(CYCLES)
+    columns = {"t_s": time_s, "force_sensor_N": peaking(8.0), "stiffness_N_per_m": 30.0, "dq": [0.3, 0.4],
+               "tool_error_x_m": 0.001, "tool_error_y_m": 0.002, "tool_error_z_m": 0.002, **changes}
+    return made_log({name: value[:cycles] if isinstance(value, np.ndarray) else value
+                     for name, value in columns.items()}, without=without)
+
+
+def peaking(force_N):
+    forces_N = np.arange(CYCLES) / 520
+    forces_N[1667] = force_N
+    return forces_N
+
+
+def with_nan():
+    values = np.ones(CYCLES)
+    values[1000] = np.nan
+    return values
 
 
 class Report(unittest.TestCase):
@@ -63,8 +82,8 @@ class Report(unittest.TestCase):
         self.scratch = pathlib.Path(scratch.name)
         self.runs = self.scratch / "runs"
 
-    def report(self, *arguments, tactus=FAKE_TACTUS, environment=None):
-        command = [ROOT / "tools/report", "--tactus", tactus, *(arguments or [self.runs])]
+    def report(self, *arguments, program=REPORT, environment=None):
+        command = [program, *(arguments or [self.runs])]
         return subprocess.run(command, capture_output=True, encoding="utf-8", env=environment)
 
     def page(self):
@@ -155,11 +174,9 @@ FAULT = {"name": "following_error", "time_s": 3.214, "joint": "j<5>", "bus": "ca
 
 class Levels(Report):
     def test_stand_beside_each_other_with_their_jerk(self):
-        def jerky(lines):
-            rows = [line.split(",") for line in lines]
-            rows[1000][4] = "0.30005"  # one cycle of 5 ms: +2, -4 and +2 rad/s^3
-            return [",".join(row) for row in rows]
-        write_run(self.runs, "scenario3_estimated", table_text(jerky))
+        dq = np.tile([0.3, 0.4], (CYCLES, 1))
+        dq[1000, 0] = 0.30005  # one cycle of 5 ms: +2, -4 and +2 rad/s^3
+        write_run(self.runs, "scenario3_estimated", log_of(dq=dq))
         write_run(self.runs, "scenario3_acceleration")
         self.assertEqual(self.report().returncode, 0)
         table = self.page().split("<h2>Acceleration level</h2>")[1].split("</table>")[0]
@@ -175,14 +192,19 @@ class Levels(Report):
         self.assertNotIn("Acceleration level", self.page())
 
     def test_margins_are_those_of_the_least_stable_loop(self):
-        check = self.scratch / "tactus"
         loops = [{"largest_stiffness_ratio": ratio, "phase_margin_deg": degrees}
                  for ratio, degrees in ((3.0, 41.25), (2.5, 60.0))]
-        text = json.dumps({"stability": {"loops": loops}})
-        check.write_text(f"#!/bin/sh\necho '{text}'\n", encoding="utf-8")
-        check.chmod(0o755)
-        self.assertEqual(levels.margins("scenario3_estimated", check), ["2.50", "41.2"])
-        self.assertEqual(levels.margins("scenario3_estimated", FAKE_TACTUS), ["", ""])
+        self.assertEqual(levels.least_stable(loops), ["2.50", "41.2"])
+
+    def test_margins_are_those_of_the_scene(self):
+        scene = "scenario3_estimated"
+        loops = tactus.Scene(ROOT / f"config/scenes/{scene}.yaml").check()["stability"]["loops"]
+        self.assertEqual(levels.margins(scene), levels.least_stable(loops))
+        self.assertGreater(float(levels.margins(scene)[1]), 10.0)
+
+    def test_no_file_or_no_loop_no_margins(self):
+        for scene in ("nowhere", "free_motion"):
+            self.assertEqual(levels.margins(scene), ["", ""])
 
 
 class Faults(Report):
@@ -319,8 +341,7 @@ class Incomplete(Report):
         self.assertEqual(self.report().returncode, 0)
 
     def test_draws_no_force_of_a_run_without_any(self):
-        write_run(self.runs, "free", table_text(
-            lambda lines: lines[:1] + [re.sub(r",0,[^,]*,", ",0,0,", line) for line in lines[1:]]))
+        write_run(self.runs, "free", log_of(force_sensor_N=0.0))
         self.assertEqual(self.report().returncode, 0)
         self.assertNotIn("Contact force", self.page())
         self.assertIn("Deviation of the tool", self.page())
@@ -372,9 +393,9 @@ class OneScene(Report):
         self.assertIn("before/mine, peak 8.00 N", text)
 
     def test_leave_the_papers_figures_to_the_run_with_the_scenes_name(self):
-        for name, force in (("a_variation", "9.5"), ("scenario2_estimated", "8.0")):
-            text = table_text(lambda lines: [line.replace(",8.0,", f",{force},") for line in lines])
-            write_run(self.runs, name, text, scene="scenario2_estimated")
+        for name, force_N in (("a_variation", 9.5), ("scenario2_estimated", 8.0)):
+            log = log_of(force_sensor_N=peaking(force_N))
+            write_run(self.runs, name, log, scene="scenario2_estimated")
         self.assertEqual(self.report().returncode, 0)
         figure = self.page().split("Figure 5. ")[0]
         self.assertIn("estimated, peak 8.00 N", figure)
@@ -392,8 +413,8 @@ class OneScene(Report):
 class Malformed(Report):
     def refuse_to_load(self, expected):
         """What refuse() prints; without a program for each of many cases."""
-        with self.assertRaises(runs.InputError) as refusal:
-            runs.load_runs([self.runs], FAKE_TACTUS)
+        with self.assertRaises(errors.InputError) as refusal:
+            runs.load_runs([self.runs])
         self.assertIn(expected, str(refusal.exception))
         self.assertEqual(len(str(refusal.exception).splitlines()), 1)
 
@@ -405,7 +426,7 @@ class Malformed(Report):
         self.refuse("no run found")
 
     def test_no_argument_is_a_usage_error(self):
-        result = subprocess.run([ROOT / "tools/report"], capture_output=True)
+        result = subprocess.run([REPORT], capture_output=True)
         self.assertEqual(result.returncode, 2)
 
     def test_summaries(self):
@@ -429,23 +450,45 @@ class Malformed(Report):
         self.refuse(expected)
 
     def test_logs(self):
+        whole = log_of()
         broken = {
-            "column t_s missing": table_text(lambda lines: ["x"] + lines[1:]),
-            "column tool_error_z_m missing": table_text(
-                lambda lines: [line.rsplit(",", 1)[0] for line in lines]),
-            "not readable as a table": table_text(lambda lines: lines[:9] + ["1,2,x"]),
-            "fewer than two rows": table_text(lambda lines: lines[:1]),
-            "not finite": table_text(lambda lines: lines + [lines[1].replace(",30,", ",nan,")])}
-        for expected, text in broken.items():
+            "message F: no field t_s of type double": log_of(without=["t_s"]),
+            "message F: no field tool_error_z_m of type double": log_of(without=["tool_error_z_m"]),
+            "unknown type 0x78, an undamaged log is expected": whole + message(b"x", b"") + whole[-5000:],
+            "longer than the log, an undamaged log is expected": whole + b"\xff\xffI",
+            "the log ends here": whole[:200],
+            "is empty": b"",
+            "not a ULog file of version 1": b"t_s,force_sensor_N\n0,1\n1,2\n",
+            "fewer than two cycles": log_of(cycles=1)}
+        for expected, log in broken.items():
             with self.subTest(expected):
-                write_run(self.runs, "scenario1_none", text)
+                write_run(self.runs, "scenario1_none", log)
                 self.refuse_to_load(expected)
+                self.refuse(f"{self.runs / 'scenario1_none/run.ulg'}:")
                 shutil.rmtree(self.runs)
+        write_run(self.runs, "scenario1_none", log_of(cycles=0))
+        self.refuse_to_load("fewer than two cycles")
+
+    def test_numbers_of_logs(self):
+        for field in logs.NEEDED:
+            with self.subTest(field):
+                values = np.full((CYCLES, 2), 0.3) if field in ("dq", "q_measured") else with_nan()
+                values[-1] = np.nan
+                write_run(self.runs, "scenario1_none", log_of(**{field: values}))
+                self.refuse_to_load(f"run.ulg: {field}: a number that is not finite")
+                shutil.rmtree(self.runs)
+        write_run(self.runs, "scenario1_none", log_of(stiffness_N_per_m=with_nan()))
+        self.refuse("stiffness_N_per_m: a number that is not finite")
+
+    def test_a_log_that_was_cut_off_is_shown_up_to_there(self):
+        write_run(self.runs, "cut", log_of()[:-20])
+        self.assertEqual(self.report().returncode, 0)
+        self.assertIn("sensor force, peak 8.00 N", self.page())
 
     def test_binary_log(self):
         run = write_run(self.runs, "scenario1_none")
         (run / "run.ulg").write_bytes(bytes(range(256)) * 20)
-        self.refuse("not readable as a table")
+        self.refuse("not a ULog file of version 1")
 
     def test_missing_log(self):
         (write_run(self.runs, "scenario1_none") / "run.ulg").unlink()
@@ -457,10 +500,35 @@ class Malformed(Report):
         self.assertEqual((result.returncode, result.stdout), (1, ""))
         self.assertIn("scenario1_none: is there twice, expected once", result.stderr)
 
-    def test_program_that_is_not_there_or_fails(self):
-        write_run(self.runs, "scenario1_none")
-        self.refuse("cannot be run", tactus=self.scratch / "none")
-        self.refuse("tactus export failed", tactus="/bin/false")
+
+class Installed(Report):
+    """Away from the source tree, with the module elsewhere."""
+
+    def setUp(self):
+        super().setUp()
+        share = self.scratch / "usr/share/tactus/tools"
+        shutil.copytree(ROOT / "tools/tactus_report", share / "tactus_report")
+        shutil.copy(ROOT / "tools/report", share)
+        self.program = self.scratch / "usr/bin/tactus-report"
+        self.program.parent.mkdir()
+        self.program.symlink_to("../share/tactus/tools/report")
+        write_run(self.runs, "free")
+
+    def run_with(self, modules):
+        return self.report(program=self.program, environment={**os.environ, "PYTHONPATH": str(modules)})
+
+    def test_finds_the_module(self):
+        result = self.run_with(FOLDER)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("sensor force, peak 8.00 N", self.page())
+
+    def test_says_what_to_install_or_build_without_it(self):
+        (self.scratch / "tactus.py").write_text("raise ModuleNotFoundError(\"No module named 'tactus'\")")
+        result = self.run_with(self.scratch)
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertEqual(result.stderr, "No module named 'tactus'; install it: apt install "
+                         "./build/package/python3-tactus_*.deb, or build it: cmake --build --preset release\n")
+        self.assertFalse((self.runs / "report.html").exists())
 
 
 class Bench(Report):
@@ -514,13 +582,18 @@ class Bench(Report):
                        {"y": "name"}, {"x_scale": "none"}):
             with self.subTest(change):
                 self.write({**self.PLOT, **change})
-                with self.assertRaisesRegex(runs.InputError, "not what `tactus bench -o` wrote: "):
+                with self.assertRaisesRegex(errors.InputError, "not what `tactus bench -o` wrote: "):
                     bench_page.build_page(self.runs)
         (self.runs / "report.json").write_text("[")
         self.refuse("not what `tactus bench -o` wrote: JSONDecodeError")
         self.written()
         (self.runs / "t.csv").unlink()
         self.refuse("t.csv")
+
+    def test_needs_no_module(self):
+        self.written()
+        text = "import sys; sys.modules['tactus'] = None; sys.path.insert(0, sys.argv[1]); import tactus_report.bench_page"
+        subprocess.run([sys.executable, "-c", text, ROOT / "tools"], check=True)
 
     def test_stands_alone(self):
         write_run(self.scratch / "others", "free")

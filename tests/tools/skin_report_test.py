@@ -1,7 +1,7 @@
 """The report of an arm with several modules, of real logs: kinematics against the tool that the log has,
 forces, contacts and pictures against what the run says.
 
-usage: skin_report_test.py TACTUS"""
+usage: skin_report_test.py FOLDER TACTUS, where FOLDER has the package tactus as built"""
 
 import pathlib
 import re
@@ -15,10 +15,11 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENES = ROOT / "config/scenes"
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path[:0] = [sys.argv.pop(1), str(ROOT / "tools")]
 sys.dont_write_bytecode = True
 
-from tactus_report import contacts, kinematics, log_text, page, runs, skin_figures  # noqa: E402
+import tactus  # noqa: E402
+from tactus_report import arm, contacts, errors, kinematics, page, runs, skin_figures  # noqa: E402
 
 SKIN = "crops9_skin_in_turn"
 
@@ -45,11 +46,11 @@ class Kinematics(unittest.TestCase):
     def agrees(self, scene, *settings):
         with tempfile.TemporaryDirectory() as folder:
             run = simulate(folder, scene, "simulation.duration_s=3", *settings)
-            log = log_text.read_log_text(run / "run.ulg")
+            log = tactus.read_log(run / "run.ulg")
             column = table(run)
-        chain = kinematics.read_chain(log.source(".urdf"), log_text.tip_of(log))
-        self.assertEqual(chain.moving(), log.joints())
-        q = np.column_stack([column[f"q_{i + 1}"] for i in range(len(log.joints()))])
+        chain = kinematics.read_chain(arm.urdf_of(log), arm.tip_of(log))
+        self.assertEqual(chain.moving(), log.joints)
+        q = np.column_stack([column[f"q_{i + 1}"] for i in range(len(log.joints))])
         w = np.column_stack([column[f"w_{i + 1}"] for i in range(3)])
         self.assertGreater(np.ptp(w, axis=0).max(), 0.01, "the tool does not move")
         for cycle in range(0, len(q), 97):
@@ -74,21 +75,53 @@ class Kinematics(unittest.TestCase):
         self.assertEqual(len(chain.way(q)), len(chain.joints))
 
     def test_refuses_a_urdf_without_a_way(self):
-        for urdf in ("<robot", "<robot/>", '<robot><link name="a"/></robot>'):
+        for urdf in ("<robot", "<robot/>", '<robot><link name="a"/></robot>', "<robot>\udcff</robot>"):
             with self.assertRaises(ValueError):
                 kinematics.read_chain(urdf, "tcp")
 
+    def test_reads_a_urdf_in_the_encoding_that_it_names(self):
+        urdf = (ROOT / "config/robots/planar3_skin/planar3.urdf").read_text(encoding="utf-8")
+        text = re.sub(r"<\?xml.*?\?>", "", urdf).strip()
+        latin = f'<?xml version="1.0" encoding="ISO-8859-1"?><!-- \u00e9 -->{text}'.encode("latin-1")
+        chain = kinematics.read_chain(latin.decode("utf-8", "surrogateescape"), "tip")
+        self.assertEqual(chain.moving(), kinematics.read_chain(urdf, "tip").moving())
 
-class LogText(unittest.TestCase):
-    def test_of_what_is_no_log_or_cut_off(self):
-        with tempfile.TemporaryDirectory() as folder:
-            log = simulate(folder, "free_motion", "simulation.duration_s=0.1") / "run.ulg"
-            whole = log.read_bytes()
-            for size in (0, 5, 16, 17, 300, 5000):
-                log.write_bytes(whole[:size])
-                text = log_text.read_log_text(log)
-                self.assertEqual(text is None, size < 16)
-                self.assertTrue(text is None or skin_figures.read_arm(text) is None)
+
+class Damaged(unittest.TestCase):
+    """Logs of several modules, in what stands before the cycles."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        cls.log = simulate(cls.folder, f"whole_arm/{SKIN}", "simulation.duration_s=0.01") / "run.ulg"
+        cls.whole = cls.log.read_bytes()
+
+    def load(self, content):
+        """What is wrong; None: nothing."""
+        self.log.write_bytes(content)
+        try:
+            return runs.load_runs([self.folder]) and None
+        except errors.InputError as error:
+            return str(error)
+
+    def test_are_refused_where_they_are_cut_off(self):
+        self.assertIsNone(self.load(self.whole))
+        for size in (0, 5, 16, 17, 300, 5000):
+            said = self.load(self.whole[:size])
+            self.assertRegex(said or "", r"^/.*/run\.ulg:1:\d+: \S.*, .*expected[^\n]*$")
+
+    def test_give_one_line_or_no_picture(self):
+        generator = np.random.default_rng(1)
+        end = self.whole.index(b"\0cycle")
+        self.assertGreater(end, 10000)
+        refused = 0
+        for place in generator.integers(16, end, 400):
+            content = bytearray(self.whole)
+            content[place] ^= 1 << generator.integers(8)
+            said = self.load(bytes(content))
+            self.assertNotIn("\n", said or "")
+            refused += said is not None
+        self.assertGreater(refused, 10)
 
 
 class Skin(unittest.TestCase):
@@ -98,9 +131,9 @@ class Skin(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
         cls.path = simulate(cls.folder.name, f"whole_arm/{SKIN}", "controller.variant=none")
         simulate(cls.folder.name, "scenario1_null_space", "simulation.duration_s=1")
-        cls.runs = runs.load_runs([pathlib.Path(cls.folder.name)], TACTUS)
+        cls.runs = runs.load_runs([pathlib.Path(cls.folder.name)])
         cls.run_of_skin = next(run for run in cls.runs if run.name == SKIN)
-        cls.page = page.build_page(cls.runs, TACTUS)
+        cls.page = page.build_page(cls.runs)
 
     def test_has_the_force_of_each_module(self):
         run, column = self.run_of_skin, table(self.path)
@@ -131,7 +164,7 @@ class Skin(unittest.TestCase):
     def test_arrows_come_from_the_posts(self):
         """Without friction a push leads from a post's axis to that of the link."""
         run = self.run_of_skin
-        chain, covers, obstacles = skin_figures.read_arm(run.log)
+        chain, covers, obstacles = run.arm
         self.assertEqual(len(obstacles), 3)
         np.testing.assert_allclose(obstacles[1].start, [0.68, 0.08, 0.2], atol=1e-6)
         np.testing.assert_allclose(obstacles[1].end, [0.68, 0.08, 0.9], atol=1e-6)

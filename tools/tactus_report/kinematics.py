@@ -26,6 +26,9 @@ class Chain:
     def moving(self):
         return [joint.name for joint in self.joints if joint.kind in MOVING]
 
+    def links(self):
+        return {self.joints[0].parent, *(joint.child for joint in self.joints + self.attached)}
+
     def poses(self, q):
         """Of each child link, 4 x 4 in the base frame, for a value of each moving joint, m or rad."""
         poses, values = {self.joints[0].parent: np.eye(4)}, iter(q)
@@ -45,7 +48,7 @@ class Chain:
 def read_chain(urdf, tip):
     """From the URDF's root to the link `tip`; ValueError where there is no such way."""
     try:
-        root = xml.etree.ElementTree.fromstring(urdf)
+        root = xml.etree.ElementTree.fromstring(urdf.encode("utf-8", "surrogateescape"))
     except xml.etree.ElementTree.ParseError as error:
         raise ValueError(f"the URDF is no XML: {error}") from error
     by_child = {element.find("child").get("link"): element for element in root.findall("joint")}

@@ -1,10 +1,9 @@
 """The acceleration level beside the velocity level: force, jerk, and the margins of `tactus check`."""
 
-import json
 import pathlib
-import subprocess
 
 import numpy as np
+import tactus
 
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "config/scenes"
 PAIRS = [("scenario1_multi_space", "scenario1_acceleration"),
@@ -19,8 +18,8 @@ def shown(by_scene):
     return [scene for pair in PAIRS if pair[1] in by_scene for scene in pair if scene in by_scene]
 
 
-def rows(by_scene, tactus):
-    return [[scene, *figures(by_scene[scene]), *margins(scene, tactus)] for scene in shown(by_scene)]
+def rows(by_scene):
+    return [[scene, *figures(by_scene[scene]), *margins(scene)] for scene in shown(by_scene)]
 
 
 def figures(run):
@@ -30,13 +29,14 @@ def figures(run):
             + [f"{jerk:.0f}" for jerk in jerks])
 
 
-def margins(scene, tactus):
-    """Those of the least stable loop; empty where the scene's file or the program is not there."""
+def margins(scene):
+    """Those of the least stable loop; empty where the scene's file is not there or has none."""
     try:
-        result = subprocess.run([tactus, "check", SCENES / f"{scene}.yaml", "--json"], check=True,
-                                capture_output=True, encoding="utf-8", errors="replace")
-        loops = json.loads(result.stdout)["stability"]["loops"]
-        return [f"{min(loop['largest_stiffness_ratio'] for loop in loops):.2f}",
-                f"{min(loop['phase_margin_deg'] for loop in loops):.1f}"]
-    except (OSError, subprocess.CalledProcessError, ValueError, LookupError, TypeError):
+        return least_stable(tactus.Scene(SCENES / f"{scene}.yaml").check()["stability"]["loops"])
+    except (tactus.Error, LookupError, TypeError):
         return ["", ""]
+
+
+def least_stable(loops):
+    return [f"{min(loop['largest_stiffness_ratio'] for loop in loops):.2f}",
+            f"{min(loop['phase_margin_deg'] for loop in loops):.1f}"]

@@ -11,7 +11,7 @@ OWN_SCENES = {scene for figure in paper_figures.BEYOND_FIGURES + paper_figures.L
               for scene, *_ in figure.curves}
 
 
-def build_page(loaded, tactus):
+def build_page(loaded):
     by_scene = runs.by_scene(loaded)
     of_paper = {scene: run for scene, run in by_scene.items() if scene in PAPER_SCENES}
     further = {scene: run for scene, run in by_scene.items() if scene not in PAPER_SCENES}
@@ -24,7 +24,7 @@ def build_page(loaded, tactus):
             *comparison_with_paper(by_scene),
             *paper_section(of_paper),
             *beyond_the_paper(by_scene),
-            *levels_section(by_scene, tactus),
+            *levels_section(by_scene),
             *overlays(groups),
             "<h2>Error against run time</h2>",
             error_figure(loaded)]
@@ -77,7 +77,7 @@ def beyond_the_paper(by_scene):
             *(paper_figures.render(figure, by_scene) for figure in figures)]
 
 
-def levels_section(by_scene, tactus):
+def levels_section(by_scene):
     """The acceleration level beside the velocity level; nothing without a run of it."""
     if not levels.shown(by_scene):
         return []
@@ -86,7 +86,7 @@ def levels_section(by_scene, tactus):
             "<p>The same law as resolved acceleration (level acceleration). Jerk is the second "
             "difference of the command, of all joints; margins are those of the least stable "
             "loop.</p>",
-            table(levels.HEADS, levels.rows(by_scene, tactus), "runs"),
+            table(levels.HEADS, levels.rows(by_scene), "runs"),
             *(paper_figures.render(figure, own) for figure in paper_figures.LEVEL_FIGURES
               if figure.shows_any_of(own))]
 

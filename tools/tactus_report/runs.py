@@ -5,21 +5,16 @@ import collections
 import dataclasses
 import json
 import pathlib
-import subprocess
 import sys
-import tempfile
 
 import numpy as np
 
-from . import log_text
+from . import logs
 from .errors import InputError, first_line
-
 
 SUMMARY_NUMBERS = ("peak_force_N", "final_force_N", "tcp_error_max_m", "tcp_error_rms_m",
                    "tcp_error_final_m", "peak_joint_speed_squared", "joints_at_limit_cycles",
                    "stiffness_at_peak_N_per_m", "real_time_factor")
-# Beginnings of columns that tell of several modules.
-OF_SKINS = ("force_sensor_N_", "contact_position_m", "contact_dir_", "q_measured_")
 STEP_TIMES = ("median", "p99")
 # That summaries of older versions do not have.
 FIGURES_OF_CONTACTS = ("rest_force_N", "swing_N", "stiffness_N_per_m", "tcp_error_max_m", "null_space_share",
@@ -37,16 +32,16 @@ class Run:
     joint_jerk: np.ndarray  # norm of the second difference of the command; mixed likewise
     joint_speed_squared: np.ndarray  # of the command; m/s and rad/s mixed, as in the paper
     tool_error_m: np.ndarray  # |w_d - w| of the real arm
-    # Of each tactile module, in the order of robot.yaml; of logs without these columns: nothing.
+    # Of each tactile module, in the order of robot.yaml; of logs of one: nothing.
     modules: list = dataclasses.field(default_factory=list)  # their links
     forces_N: list = dataclasses.field(default_factory=list)
     positions_m: list = dataclasses.field(default_factory=list)  # of the contact along the link
     directions: list = dataclasses.field(default_factory=list)  # one row a cycle, frame of the module
     q: np.ndarray = None  # as measured, one row a cycle
-    log: log_text.LogText = None  # None: no ULog
+    arm: tuple = None  # chain, covers, obstacles
 
 
-def load_runs(folders, tactus):
+def load_runs(folders):
     """All runs in the folders, in their order. Raises InputError."""
     paths = []
     for folder in folders:
@@ -56,7 +51,7 @@ def load_runs(folders, tactus):
     if not paths:
         raise InputError(f"{', '.join(map(str, folders))}: no run found, expected "
                          "<scene>/summary.json as `tactus simulate -o` writes it")
-    return [load_run(path, name, tactus) for path, name in zip(paths, run_names(paths))]
+    return [load_run(path, name) for path, name in zip(paths, run_names(paths))]
 
 
 def run_names(paths):
@@ -92,47 +87,12 @@ def of_one_scene(runs):
     return [group for _, group in sorted(groups.items()) if len(group) > 1]
 
 
-def load_run(folder, name, tactus):
+def load_run(folder, name):
     summary = read_summary(folder / "summary.json")
     log = folder / "run.ulg"
     if not log.is_file():
         raise InputError(f"{log}: missing, expected the log beside summary.json")
-    with tempfile.TemporaryDirectory() as scratch:
-        table = pathlib.Path(scratch) / "run.csv"
-        export(tactus, log, table)
-        names, values = read_table(table, log)
-    column = dict(zip(names, values.T))
-    velocities = [values for name, values in column.items() if name.startswith("dq_")]
-    errors = [column[f"tool_error_{axis}_m"] for axis in "xyz"]
-    modules = of_modules(column, log_text.read_log_text(log))
-    return Run(name, summary["scene"], summary, column["t_s"],
-               np.max([column[key] for key in column if key.startswith("force_sensor_N")], axis=0),
-               column["stiffness_N_per_m"], jerk(column["t_s"], velocities),
-               np.sum(np.square(velocities), axis=0), np.sqrt(np.sum(np.square(errors), axis=0)),
-               **modules)
-
-
-def of_modules(column, log):
-    """The members of Run that speak of several modules; none where the log has not all of them."""
-    if log is None:
-        return {}
-    links = log.module_links()
-    endings = [""] + [f"_{number}" for number in range(2, len(links) + 1)]
-    names = ["force_sensor_N", "contact_position_m", *(f"contact_dir_{axis}" for axis in "xyz")]
-    if len(links) < 2 or not all(name + ending in column for name in names for ending in endings):
-        return {}
-    q = [values for name, values in column.items() if name.startswith("q_measured_")]
-    return {"modules": links, "log": log, "q": np.column_stack(q) if q else None,
-            "forces_N": [column["force_sensor_N" + ending] for ending in endings],
-            "positions_m": [column["contact_position_m" + ending] for ending in endings],
-            "directions": [np.column_stack([column[f"contact_dir_{axis}{ending}"] for axis in "xyz"])
-                           for ending in endings]}
-
-
-def jerk(time_s, velocities):
-    """As long as the time: the first and the last cycle have none. Cycles are evenly spaced."""
-    inner = np.diff(velocities, 2, axis=1) / (time_s[1] - time_s[0]) ** 2
-    return np.pad(np.sqrt(np.sum(np.square(inner), axis=0)), 1)
+    return Run(name, summary["scene"], summary, **logs.read(log))
 
 
 def read_summary(path):
@@ -219,37 +179,3 @@ def check_number(path, key, values):
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not is_number or not abs(value) <= sys.float_info.max:
         raise InputError(f"{path}: {key}: {str(value)[:40]}, expected a finite number or null")
-
-
-def export(tactus, log, table):
-    try:
-        subprocess.run([tactus, "export", log, "-o", table], check=True, capture_output=True,
-                       encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise InputError(f"{tactus}: cannot be run ({error.strerror}), expected the tactus program; "
-                         "tools/demo builds it, --tactus names another") from error
-    except subprocess.CalledProcessError as error:
-        raise InputError(first_line(error.stderr) or f"{log}: tactus export failed") from error
-
-
-def read_table(table, log):
-    """Names and values of the columns the report needs."""
-    try:
-        header, *rows = table.read_text(encoding="utf-8").splitlines() or [""]
-        header = header.split(",")
-        wanted = ["t_s", "force_sensor_N", "stiffness_N_per_m"]
-        wanted += [f"tool_error_{axis}_m" for axis in "xyz"]
-        wanted += [name for name in header if name.startswith("dq_")]
-        wanted += [name for name in header if name.startswith(OF_SKINS) and name not in wanted]
-        missing = [name for name in wanted if name not in header]
-        if missing:
-            raise InputError(f"{log}: column {missing[0]} missing, expected it in every log")
-        if len(rows) < 2:
-            raise InputError(f"{log}: fewer than two rows, expected one a cycle")
-        indices = [header.index(name) for name in wanted]
-        values = np.loadtxt(rows, delimiter=",", usecols=indices, ndmin=2)
-    except (OSError, ValueError) as error:
-        raise InputError(f"{log}: not readable as a table: {first_line(error)}") from error
-    if not np.isfinite(values).all():
-        raise InputError(f"{log}: a number that is not finite, expected none in a log")
-    return wanted, values

@@ -1,13 +1,11 @@
 """Runs of arms with several tactile modules: the force of each, a table of the contacts, and the arm drawn
 as it was when they pushed most."""
 
-import dataclasses
 import html
 
 import matplotlib
 import numpy as np
 
-from . import kinematics, log_text
 from .figures import (BLUE, COLOURS, GREEN, INK, RED, STYLE, WIDTH_IN, Curve, Figure, as_figure, as_svg,
                       line_figure)
 
@@ -18,20 +16,6 @@ LONGEST_ARROW_M = 0.3
 VIEWS = (("from the side", 0, 2), ("from above", 0, 1))  # the axes that are seen
 AXES = "xyz"
 HEIGHT_IN = 3.2
-
-
-@dataclasses.dataclass
-class Cover:
-    link: str
-    length_m: float
-    radius_m: float
-
-
-@dataclasses.dataclass
-class Obstacle:
-    start: np.ndarray  # of its axis, base frame, m; the same as `end`: a ball
-    end: np.ndarray
-    radius_m: float
 
 
 def of_skins(runs):
@@ -58,10 +42,9 @@ def force_figure(name, run):
 
 def pictures(name, run):
     """One figure for each moment; none where the log does not say what the arm is like."""
-    arm = read_arm(run.log)
-    if arm is None or run.q is None:
+    if run.arm is None:
         return []
-    chain, covers, obstacles = arm
+    chain, covers, obstacles = run.arm
     figures = []
     for number, (cycle, link) in enumerate(moments(run)):
         time_s = run.time_s[cycle]
@@ -89,58 +72,6 @@ def moments(run):
         if not apart or run.time_s[cycle] - run.time_s[apart[-1][0]] > ONE_MOMENT_S:
             apart.append((cycle, link))
     return apart[:MOST_MOMENTS]
-
-
-def read_arm(log):
-    """Chain, covers and obstacles by the log's own files; None where they do not say it."""
-    urdf = log and log.source(".urdf")
-    tip = log and log_text.tip_of(log)
-    if not urdf or not tip:
-        return None
-    try:
-        chain = kinematics.read_chain(urdf, tip)
-    except ValueError:
-        return None
-    links = log.module_links()
-    covers = [read_cover(log.parameters, i, len(links), link) for i, link in enumerate(links)]
-    if chain.moving() != log.joints() or None in covers:
-        return None
-    return chain, covers, read_obstacles(log.parameters)
-
-
-def read_cover(parameters, index, count, link):
-    key = f"tactile_modules/{index}" if f"tactile_modules/{index}/length_m" in parameters else "tactile_module"
-    if count > 1 and key == "tactile_module" or f"{key}/length_m" not in parameters:
-        return None
-    return Cover(link, parameters[f"{key}/length_m"], parameters[f"{key}/cover_radius_m"])
-
-
-def read_obstacles(parameters):
-    """Lines, posts and spheres; planes have no ends to be drawn."""
-    found = []
-    while any(name.startswith(f"simulation/obstacles/{len(found)}/") for name in parameters):
-        found.append(read_obstacle(parameters, f"simulation/obstacles/{len(found)}"))
-    return [obstacle for obstacle in found if obstacle]
-
-
-def read_obstacle(parameters, key):
-    def vector(name):
-        return np.array([parameters[f"{key}/{name}/{axis}"] for axis in range(3)])
-
-    if f"{key}/x_m" in parameters:
-        foot = np.array([parameters[f"{key}/x_m"], parameters[f"{key}/y_m"], 0.0])
-        return Obstacle(foot, foot + [0.0, 0.0, 1.5], 0.0)
-    if f"{key}/post/radius_m" in parameters:
-        axis, foot = vector("post/axis"), vector("post/foot_m")
-        top = foot + parameters[f"{key}/post/height_m"] * axis / np.linalg.norm(axis)
-        return Obstacle(foot, top, parameters[f"{key}/post/radius_m"])
-    if f"{key}/line/point_m/0" in parameters:
-        axis, point = vector("line/direction"), vector("line/point_m")
-        return Obstacle(point - axis / np.linalg.norm(axis), point + axis / np.linalg.norm(axis), 0.0)
-    if f"{key}/sphere/radius_m" in parameters:
-        return Obstacle(vector("sphere/center_m"), vector("sphere/center_m"),
-                        parameters[f"{key}/sphere/radius_m"])
-    return None
 
 
 def arrows(chain, covers, run, cycle):
