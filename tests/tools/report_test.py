@@ -509,18 +509,23 @@ class Installed(Report):
         share = self.scratch / "usr/share/tactus/tools"
         shutil.copytree(ROOT / "tools/tactus_report", share / "tactus_report")
         shutil.copy(ROOT / "tools/report", share)
+        for folder in ("robots", "scenes"):
+            shutil.copytree(ROOT / "config" / folder, share.parent / folder)
         self.program = self.scratch / "usr/bin/tactus-report"
         self.program.parent.mkdir()
         self.program.symlink_to("../share/tactus/tools/report")
-        write_run(self.runs, "free")
+        write_run(self.runs, "scenario3_acceleration")
 
     def run_with(self, modules):
         return self.report(program=self.program, environment={**os.environ, "PYTHONPATH": str(modules)})
 
-    def test_finds_the_module(self):
+    def test_finds_module_and_scenes(self):
         result = self.run_with(FOLDER)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertIn("sensor force, peak 8.00 N", self.page())
+        row = self.page().split("<h2>Acceleration level</h2>")[1].split("</tbody>")[0]
+        margins = levels.margins("scenario3_acceleration")
+        self.assertEqual(re.findall(r"<td>([^<]*)</td>", row)[-2:], margins)
+        self.assertNotIn("", margins)
 
     def test_says_what_to_install_or_build_without_it(self):
         (self.scratch / "tactus.py").write_text("raise ModuleNotFoundError(\"No module named 'tactus'\")")

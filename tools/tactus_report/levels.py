@@ -5,7 +5,8 @@ import pathlib
 import numpy as np
 import tactus
 
-SCENES = pathlib.Path(__file__).resolve().parents[2] / "config/scenes"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENES = ROOT / ("config/scenes" if (ROOT / "config").is_dir() else "scenes")  # the latter as installed
 PAIRS = [("scenario1_multi_space", "scenario1_acceleration"),
          ("scenario2_estimated", "scenario2_acceleration"),
          ("scenario3_estimated", "scenario3_acceleration")]
