@@ -226,7 +226,7 @@ void ContactController::rest(const ForceGains& gains, const Contact& contact, do
                              ControlLawInput& input) const noexcept {
   const double fade = lagShare(period_s, gains.transition.max_time_constant_s);
   input.integral_decay = input.F_p_N > 0.0 ? 1.0 : 1.0 - fade;
-  state.approach.obstacle.high_s = 0.0;
+  state.approach.obstacle.v_m_per_s = state.approach.obstacle.high_s = 0.0;
   if (is_joint_space_) restTransition(state.joint_space_transition);
   report.gamma = is_joint_space_ ? state.joint_space_transition.gamma : state.transition.gamma;
   report.x_dot_eff_m_per_s = contact.space.x_dot_eff_m_per_s;

@@ -159,7 +159,8 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
                        {F_p_N, share == 0.0 ? 1.0 : state.transition.gamma, share}, commanded.q,
                        period_s, state.approach);
   passTransition(gains.force.transition, F_p_N, place.at.p_Base, period_s, state.transition);
-  if (!commanded.is_followed) state.approach.obstacle.high_s = 0.0;
+  if (!commanded.is_followed)
+    state.approach.obstacle.v_m_per_s = state.approach.obstacle.high_s = 0.0;
   if (module.centre) {
     if (state.approach.memory_N_per_m == 0.0 || reading.is_lost)
       state.centre = {};

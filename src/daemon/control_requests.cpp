@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -15,6 +16,7 @@ namespace tactus {
 namespace {
 
 constexpr std::size_t kKeptForUndo = 16;
+constexpr std::size_t kMaxTrials = 16;  ///< that the loop has not told of
 constexpr double kMaxFor_s = 86400.0;
 
 const char* stateName(GainState state) noexcept {
@@ -109,7 +111,7 @@ ControlRequests::ControlRequests(const Scene& scene, LoopLink& link)
       tool_(started_, link),
       read_hash_(sourceHash(scene.sources.front().text)),
       kept_(scene) {
-  before_.reserve(kKeptForUndo);  // so that settle() never ends halfway
+  before_.reserve(kKeptForUndo);  // so that keep() never ends halfway
 }
 
 std::string ControlRequests::answer(std::string_view request) {
@@ -123,6 +125,7 @@ std::string ControlRequests::answer(std::string_view request) {
 }
 
 Json ControlRequests::dispatch(const Json& request) {
+  notice();  // what is planned is laid over what runs now
   const auto found = request.find("do");
   const std::string what =
       found != request.end() && found->is_string() ? found->get<std::string>() : "";
@@ -148,25 +151,36 @@ Json ControlRequests::tell(const std::string& what, const Json& request) {
   return {{"done", true}, {"task", std::move(task)}};
 }
 
+/// False: what runs is what was kept, or is on its way there.
+bool ControlRequests::isTrying() const {
+  return !trials_.empty() && report_.trouble == GainTrouble::kNone;
+}
+
 Json ControlRequests::set(const Json& request) {
-  return order(planSettings(newest(), settingsOf(request), leastMargin()), request, false);
+  const std::uint32_t over = isTrying() ? trials_.back().number : 0;
+  if (over != 0 && trials_.back().is_for_a_time && duration_s(request) == kNoLimit)
+    refuseRequest("gains are set for a time, which this would keep", "for_s, or undo before");
+  return order(planSettings(newest(), settingsOf(request), leastMargin()), request, false, over);
 }
 
 Json ControlRequests::reload(const Json& request) {
+  duration_s(request);  // a request that is refused has read nothing
   GainPlan plan = planReload(newest(), started_.overrides, leastMargin());
   read_hash_ = sourceHash(plan.scene.sources.front().text);
   if (!plan.keys.empty()) return order(std::move(plan), request, false);
-  (trial_ ? trial_->scene : kept_) = std::move(plan.scene);  // comments may differ
+  newest() = std::move(plan.scene);  // comments may differ
   Json json = showGains();
-  if (!trial_) json["trouble"] = "";  // that of a change before is not this one's
+  json["trouble"] = "";  // that of a change before is not this one's
   json["changes"] = Json::object();
   return json;
 }
 
 Json ControlRequests::undo(const Json& request) {
-  if (!trial_ && before_.empty()) throw InputError("undo: nothing was changed");
-  return order(planChange(newest(), trial_ ? kept_ : before_.back(), leastMargin()), request,
-               !trial_);
+  if (trials_.empty() && before_.empty()) throw InputError("undo: nothing was changed");
+  if (!trials_.empty() && !isTrying()) throw InputError("undo: gains go back already");
+  const bool is_undo = trials_.empty();
+  return order(planChange(newest(), is_undo ? before_.back() : kept_, leastMargin()), request,
+               is_undo);
 }
 
 double ControlRequests::leastMargin() {
@@ -180,7 +194,7 @@ Json ControlRequests::show() {
   return json;
 }
 
-Json ControlRequests::showGains() const {
+Json ControlRequests::showGains() {
   return {{"done", true},
           {"number", number_},
           {"state", stateName(report_.state)},
@@ -191,13 +205,17 @@ Json ControlRequests::showGains() const {
           {"ordered", gainsJson(newest().controller.gains)}};
 }
 
-Json ControlRequests::order(GainPlan plan, const Json& request, bool is_undo) {
-  GainOrder order{.number = ++number_, .gains = plan.scene.controller.gains};
+Json ControlRequests::order(GainPlan plan, const Json& request, bool is_undo, std::uint32_t over) {
+  const double for_s = duration_s(request);  // may refuse, so before anything changes
+  GainOrder order{.number = number_ + 1, .gains = plan.scene.controller.gains};
   order.waits_for_free = plan.waits_for_free;
-  order.for_s = duration_s(request);
+  order.for_s = for_s;
+  order.over = over;
   const Json changes = changesJson(newest().controller.gains, order.gains, plan.keys);
+  if (trials_.size() == kMaxTrials) trials_.erase(trials_.begin());
+  trials_.push_back({order.number, std::move(plan.scene), is_undo, for_s < kNoLimit});
+  number_ = order.number;
   link_.gain_orders.put(order);
-  trial_ = Trial{std::move(plan.scene), is_undo};
   report_ = {.number = number_, .state = GainState::kWaiting};
   Json json = showGains();
   json["changes"] = changes;
@@ -205,17 +223,24 @@ Json ControlRequests::order(GainPlan plan, const Json& request, bool is_undo) {
 }
 
 std::string ControlRequests::look() {
+  notice();
+  return news_.empty() ? tool_.look() : std::exchange(news_, "");
+}
+
+void ControlRequests::notice() {
   const std::string news = lookAtGains();
-  return news.empty() ? tool_.look() : news;
+  if (!news.empty()) news_ += (news_.empty() ? "" : "\ntactusd: ") + news;
 }
 
 std::string ControlRequests::lookAtGains() {
   GainReport report;
-  if (!link_.gain_reports.take(report) || report.number != number_) return "";
+  if (!link_.gain_reports.take(report)) return "";
+  settle(report.kept_number);
+  if (report.number != number_) return "";
   const bool is_new = report.state != report_.state || report.trouble != report_.trouble;
   if (!is_new) return "";
   report_ = report;
-  if (report.state == GainState::kKept && trial_) settle(report);
+  if (report.state == GainState::kKept) trials_.clear();
   const std::string trouble = troubleText(report);
   const bool has_gone_back = report.state == GainState::kKept && !trouble.empty();
   return fmt::format("gains: change {} {}{}{}", report.number,
@@ -223,17 +248,23 @@ std::string ControlRequests::lookAtGains() {
                      trouble.empty() ? "" : ": ", trouble);
 }
 
-void ControlRequests::settle(const GainReport& report) {
-  const bool is_new = report.trouble == GainTrouble::kNone &&
-                      !isSame(trial_->scene.controller.gains, kept_.controller.gains);
-  if (is_new && trial_->is_undo) {
+/// A later order may be on its way when one is kept.
+void ControlRequests::settle(std::uint32_t kept_number) {
+  const auto kept = std::ranges::find(trials_, kept_number, &Trial::number);
+  if (kept == trials_.end()) return;
+  keep(std::move(*kept));
+  trials_.erase(trials_.begin(), std::next(kept));
+}
+
+void ControlRequests::keep(Trial trial) {
+  if (isSame(trial.scene.controller.gains, kept_.controller.gains)) return;
+  if (trial.is_undo) {
     before_.pop_back();
-    kept_ = std::move(trial_->scene);
-  } else if (is_new) {
-    if (before_.size() == kKeptForUndo) before_.erase(before_.begin());
-    before_.push_back(std::exchange(kept_, std::move(trial_->scene)));
+    kept_ = std::move(trial.scene);
+    return;
   }
-  trial_.reset();
+  if (before_.size() == kKeptForUndo) before_.erase(before_.begin());
+  before_.push_back(std::exchange(kept_, std::move(trial.scene)));
 }
 
 }  // namespace tactus

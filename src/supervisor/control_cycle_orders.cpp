@@ -74,6 +74,7 @@ void ControlCycle::goOnWithGains() noexcept {
   for (int i = 0; i < output_.velocity.size(); ++i)
     seen.is_at_limit |= std::abs(output_.velocity[i]) >= kFullSpeed * most[i];
   seen.has_fault = mode_.fault != Fault::kNone;
+  seen.is_running = is_started_ && mode_.mode == Mode::kRunning;
   gain_change_.update(seen);
   if (gain_change_.isChanging()) gains_ = gain_change_.gains();
 }

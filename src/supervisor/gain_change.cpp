@@ -24,9 +24,13 @@ GainChange::GainChange(const Gains& gains, double period_s) noexcept
     : period_s_(period_s), kept_(gains), from_(gains), to_(gains), gains_(gains) {}
 
 void GainChange::order(const GainOrder& order) noexcept {
+  const bool brings_back = report_.trouble != GainTrouble::kNone && order.over >= report_.number;
+  report_.number = order.number;
+  if (brings_back) return;
   order_ = order;
   before_ = largest_;
-  report_ = {.number = order.number, .state = GainState::kWaiting};
+  report_ = {
+      .number = order.number, .kept_number = report_.kept_number, .state = GainState::kWaiting};
 }
 
 void GainChange::ramp(const Gains& to, double duration_s) noexcept {
@@ -48,7 +52,7 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
       if (!trips(seen)) advance(GainState::kOnTrial);
       return;
     case GainState::kOnTrial:
-      if (!trips(seen)) watch();
+      if (!trips(seen)) watch(seen);
       return;
     case GainState::kGoingBack:
       return advance(GainState::kKept);
@@ -72,14 +76,15 @@ void GainChange::advance(GainState next) noexcept {
   report_.state = next;
 }
 
-void GainChange::watch() noexcept {
+void GainChange::watch(const GainWatchInput& seen) noexcept {
   passed_s_ += period_s_;
-  contact_s_ += is_in_contact_ ? period_s_ : 0.0;
+  contact_s_ += is_in_contact_ && seen.is_running ? period_s_ : 0.0;
   if (passed_s_ >= order_.for_s) return goBack(GainTrouble::kTimeIsOver, passed_s_, order_.for_s);
   const double trial_s = std::max(kLeastTrial_s, kTrialTimeConstants * to_.force.time_constant_s);
   if (order_.for_s < kNoLimit || contact_s_ < trial_s) return;
   kept_ = to_;
   report_.state = GainState::kKept;
+  report_.kept_number = report_.number;
 }
 
 double GainChange::wayBack_s(GainTrouble trouble) const noexcept {

@@ -52,6 +52,8 @@ void ToolOrders::forget() noexcept {
   if (count_ > 0) report_.number = waiting_[(first_ + count_ - 1) % kMaxWaiting].number;
   if (count_ > 0 || isUnderWay(report_.state)) report_.state = ToolState::kStopped;
   count_ = 0;
+  silent_s_ = kNoLimit;  // a stream that had been given up has broken off
+  paused_s_ = 0.0;
 }
 
 void ToolOrders::update(const ToolWatch& seen, ToolMotion& motion) noexcept {

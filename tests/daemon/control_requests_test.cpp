@@ -104,10 +104,7 @@ TEST_F(ControlRequestsTest, TellsWhyGainsWentBack) {
 
 TEST_F(ControlRequestsTest, AReloadOfNothingNewHasNoTroubleOfAChangeBefore) {
   set(kDamping, 0.8);
-  pass(0.1);
-  pass(0.01, {.has_fault = true});
-  const Json underway = ask({{"do", "reload"}});
-  EXPECT_FALSE(underway.at("changes").empty()) << "the file's, in place of what goes back";
+  pass(1.0);
   pass(0.01, {.has_fault = true});
   pass(2.0);
   EXPECT_NE(ask({{"do", "show"}}).at("trouble"), "");

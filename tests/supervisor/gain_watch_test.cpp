@@ -256,5 +256,15 @@ TEST(GainWatch, TellsWhenGainsChange) {
   EXPECT_FALSE(watch.change.isChanging());
 }
 
+TEST(GainWatch, AnArmThatHoldsTriesNothing) {
+  GainWatch arm;
+  arm.order();
+  arm.pass(30.0, [](double) { return GainWatchInput{.force_N = 5.0, .is_running = false}; });
+  EXPECT_EQ(arm.change.report().state, GainState::kOnTrial);
+  arm.pass(4.1, pressed);
+  EXPECT_EQ(arm.change.report().state, GainState::kKept);
+  EXPECT_EQ(arm.change.report().kept_number, 1U);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -123,5 +123,29 @@ TEST(ToolOrdersHeld, OneThatStopsShortIsNotThere) {
   EXPECT_EQ(rig.state(), ToolState::kGivenUp);
 }
 
+/// A stream that was given up is over with a stop; one that begins after it is a new one.
+TEST(ToolOrdersHeld, AStreamBeginsAnewAfterAStop) {
+  OrdersRig rig;
+  rig.is_held_off = true;
+  for (int i = 0; i < 300 && rig.state() != ToolState::kGivenUp; ++i) {
+    rig.orders.order(orderTo({0.3, 0, 0}, 1, kStreamed));
+    rig.run(0.02);
+  }
+  ASSERT_EQ(rig.state(), ToolState::kGivenUp);
+  rig.seen.is_running = false;
+  rig.run(60.0);
+  rig.seen.is_running = true;
+  ++rig.seen.run;
+  rig.is_held_off = false;
+  rig.motion = ToolMotion(Pose{Matrix3::Identity(), Vector3::Zero()});
+  for (int i = 0; i < 200; ++i) {
+    ToolOrder order = orderTo({0.1, 0, 0}, 1, kStreamed);
+    order.run = rig.seen.run;
+    rig.orders.order(order);
+    rig.run(0.02);
+  }
+  EXPECT_NEAR(rig.place().x(), 0.1, 1e-3);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -29,8 +29,9 @@ class ControlRequests {
  private:
   /// Gains that were ordered, and are not kept yet.
   struct Trial {
+    std::uint32_t number;
     Scene scene;
-    bool is_undo = false;
+    bool is_undo = false, is_for_a_time = false;
   };
 
   Json dispatch(const Json& request);
@@ -38,13 +39,16 @@ class ControlRequests {
   Json reload(const Json& request);
   Json undo(const Json& request);
   Json tell(const std::string& what, const Json& request);
-  Json showGains() const;
+  Json showGains();
   Json show();
   std::string lookAtGains();
-  Json order(GainPlan plan, const Json& request, bool is_undo);
-  void settle(const GainReport& report);
+  Json order(GainPlan plan, const Json& request, bool is_undo, std::uint32_t over = 0);
+  void notice();
+  void settle(std::uint32_t kept_number);
+  void keep(Trial trial);
   double leastMargin();
-  const Scene& newest() const { return trial_ ? trial_->scene : kept_; }
+  bool isTrying() const;
+  Scene& newest() { return isTrying() ? trials_.back().scene : kept_; }
 
   LoopLink& link_;
   const Scene started_;
@@ -52,10 +56,11 @@ class ControlRequests {
   ToolRequests tool_;
   std::uint64_t read_hash_;  ///< of the scene file as it was last read
   Scene kept_;
-  std::optional<Trial> trial_;
+  std::vector<Trial> trials_;  ///< as ordered; the loop knows first which is kept
   std::vector<Scene> before_;  ///< what was kept, the newest last
   std::uint32_t number_ = 0;
   GainReport report_;
+  std::string news_;
 };
 
 }  // namespace tactus

@@ -13,6 +13,7 @@ struct GainOrder {
   Gains gains;
   bool waits_for_free = false;  ///< begins at the next moment without contact
   double for_s = kNoLimit;      ///< once it is there, it goes back by itself after this time
+  std::uint32_t over = 0;       ///< the order whose gains it keeps otherwise; 0: those kept
 };
 
 /// What the loop sees of the arm in one cycle.
@@ -20,6 +21,7 @@ struct GainWatchInput {
   double force_N = 0.0;      ///< of the module that feels most
   bool is_at_limit = false;  ///< a joint moves as fast as it may
   bool has_fault = false;
+  bool is_running = true;  ///< the law moves the arm: an arm that holds tries no gains
 };
 
 enum class GainState : std::uint8_t {
@@ -34,7 +36,8 @@ enum class GainState : std::uint8_t {
 enum class GainTrouble : std::uint8_t { kNone, kSwings, kLosses, kAtLimits, kFault, kTimeIsOver };
 
 struct GainReport {
-  std::uint32_t number = 0;  ///< of the last order
+  std::uint32_t number = 0;       ///< of the last order
+  std::uint32_t kept_number = 0;  ///< of the order that was kept last
   GainState state = GainState::kKept;
   GainTrouble trouble = GainTrouble::kNone;
   double figure = 0.0;  ///< what tripped: N, losses a second, share of the time
@@ -44,13 +47,14 @@ struct GainReport {
 };
 
 /// Leads the gains of a running arm from one set to the next: on a ramp (gain_ramp.h), then watched
-/// for max(4 s, 10 T) of contact, then kept. Back to what was kept, on a ramp, too, if while they
-/// ramp or are watched
+/// for max(4 s, 10 T) of contact while the arm runs, then kept. Back to what was kept, on a ramp,
+/// too, if while they ramp or are watched
 ///   - the force swings by more than 0.1 F_act, and does not settle,
 ///   - contact is lost four times a second,
 ///   - a joint is at its limit of speed half of the time in contact,
 /// and each of these more than before the change; or if the arm has a fault. A new order counts
-/// from where the gains are, and goes back to what was kept. Pure, and bounded: for the loop.
+/// from where the gains are, and goes back to what was kept. One that keeps gains which have gone
+/// back meanwhile goes back with them. Pure, and bounded: for the loop.
 class GainChange {
  public:
   GainChange(const Gains& gains, double period_s) noexcept;
@@ -75,7 +79,7 @@ class GainChange {
   void observe(const GainWatchInput& seen) noexcept;
   void begin() noexcept;
   void advance(GainState next) noexcept;
-  void watch() noexcept;
+  void watch(const GainWatchInput& seen) noexcept;
   void ramp(const Gains& to, double duration_s) noexcept;
   void goBack(GainTrouble trouble, double figure, double limit) noexcept;
   bool trips(const GainWatchInput& seen) noexcept;

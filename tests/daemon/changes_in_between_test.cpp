@@ -1,0 +1,199 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "support/shipped_scene.h"
+#include "tactus/daemon/control_requests.h"
+#include "tactus/scene/scene_loader.h"
+#include "tactus/scene/source_hash.h"
+
+/// Requests that come while gains go back, are kept unseen, or are refused: what the daemon
+/// believes of the loop's gains is what the loop has.
+namespace tactus {
+namespace {
+
+constexpr const char* kTried = "controller.damping";
+constexpr const char* kOther = "task.drift_gain_per_s";
+
+class ChangesInBetween : public testing::Test {
+ protected:
+  Json ask(const Json& request) { return Json::parse(requests_.answer(request.dump())); }
+  Json show() { return ask({{"do", "show"}}); }
+  Json set(const char* key, double value) {
+    return ask({{"do", "set"}, {"values", {{key, value}}}});
+  }
+  Json setFor(const char* key, double value, double for_s) {
+    return ask({{"do", "set"}, {"values", {{key, value}}}, {"for_s", for_s}});
+  }
+
+  /// The loop alone: the socket's thread does not look.
+  void loop(double duration_s, const GainWatchInput& seen = {.force_N = 5.0}) {
+    for (int i = 0; i < static_cast<int>(1e3 * duration_s); ++i) {
+      takeOrder();
+      change_.update(seen);
+      report();
+    }
+  }
+  void pass(double duration_s, const GainWatchInput& seen = {.force_N = 5.0}) {
+    for (int i = 0; i < static_cast<int>(50.0 * duration_s); ++i) {
+      loop(0.02, seen);
+      requests_.look();
+    }
+  }
+  void takeOrder() {
+    GainOrder order;
+    if (link_->gain_orders.take(order)) change_.order(order);
+  }
+  void report() {
+    if (change_.report() == reported_) return;
+    link_->gain_reports.put(reported_ = change_.report());
+  }
+  void tryGains() {
+    set(kTried, 0.8);
+    pass(2.0);
+    ASSERT_EQ(show().at("state"), "on_trial");
+  }
+  double running() const { return change_.gains().force.damping; }
+  void expectSame(double damping) {
+    EXPECT_EQ(running(), damping);
+    EXPECT_EQ(change_.kept().force.damping, damping);
+    EXPECT_EQ(show().at("kept").at(kTried), damping);
+    EXPECT_EQ(show().at("ordered").at(kTried), damping);
+    EXPECT_EQ(show().at("state"), "kept");
+  }
+
+  const Scene scene_ = test::shippedScene("scenario2_tactus");
+  const double before_ = scene_.controller.gains.force.damping;
+  const std::unique_ptr<LoopLink> link_ = std::make_unique<LoopLink>();
+  ControlRequests requests_{scene_, *link_};
+  GainChange change_{scene_.controller.gains, 0.001};
+  GainReport reported_;
+};
+
+TEST_F(ChangesInBetween, ARefusedDurationLeavesTheTrialAsItWas) {
+  tryGains();
+  EXPECT_EQ(setFor(kTried, 0.9, -1.0).at("done"), false);
+  pass(0.1, {.has_fault = true});
+  EXPECT_EQ(show().at("trouble"), "the arm has a fault");
+  pass(1.0);
+  expectSame(before_);
+  set(kOther, 3.0);
+  pass(10.0);
+  expectSame(before_);
+}
+
+TEST_F(ChangesInBetween, ARefusedUndoLetsTheTrialBeKept) {
+  tryGains();
+  EXPECT_EQ(ask({{"do", "undo"}, {"for_s", "x"}}).at("done"), false);
+  pass(10.0);
+  expectSame(0.8);
+}
+
+TEST_F(ChangesInBetween, WhatGoesBackDoesNotReturnWithTheNext) {
+  tryGains();
+  pass(0.06, {.has_fault = true});
+  ASSERT_EQ(show().at("state"), "going_back");
+  EXPECT_EQ(ask({{"do", "undo"}}).at("done"), false);
+  const Json answer = set(kOther, 3.0);
+  EXPECT_EQ(answer.at("changes").size(), 1U);
+  EXPECT_EQ(answer.at("ordered").at(kTried), before_);
+  pass(20.0);
+  expectSame(before_);
+  EXPECT_EQ(change_.gains().task.drift_gain_per_s, 3.0);
+}
+
+TEST_F(ChangesInBetween, NorDoesWhatWasForATime) {
+  setFor(kTried, 0.8, 3.0);
+  pass(3.8);
+  ASSERT_EQ(show().at("state"), "going_back");
+  set(kOther, 3.0);
+  pass(30.0);
+  expectSame(before_);
+}
+
+TEST_F(ChangesInBetween, WhatIsForATimeIsNotKeptByTheNext) {
+  setFor(kTried, 0.8, 60.0);
+  pass(2.0);
+  const Json answer = set(kOther, 3.0);
+  EXPECT_EQ(answer.at("done"), false);
+  EXPECT_NE(answer.at("error").get<std::string>().find("for_s"), std::string::npos);
+  EXPECT_EQ(setFor(kOther, 3.0, 60.0).at("done"), true);
+  pass(70.0);
+  expectSame(before_);
+}
+
+TEST_F(ChangesInBetween, WhatWasKeptUnseenIsWhereTheNextGoesBackTo) {
+  tryGains();
+  loop(5.0);
+  ASSERT_EQ(change_.report().state, GainState::kKept);
+  set(kOther, 3.0);
+  pass(1.0);
+  pass(0.06, {.has_fault = true});
+  pass(10.0);
+  expectSame(0.8);
+  EXPECT_EQ(ask({{"do", "undo"}}).at("changes").at(kTried).at("to"), before_);
+}
+
+TEST_F(ChangesInBetween, WhatFailedUnseenDoesNotReturn) {
+  tryGains();
+  loop(0.03, {.has_fault = true});
+  loop(0.2);
+  ASSERT_EQ(running(), before_);
+  set(kOther, 3.0);
+  pass(10.0);
+  expectSame(before_);
+}
+
+/// Between the answer and the cycle that takes the order.
+TEST_F(ChangesInBetween, WhatFailsAsTheNextArrivesTakesItAlong) {
+  tryGains();
+  set(kOther, 3.0);
+  change_.update({.has_fault = true});
+  loop(1.0);
+  requests_.look();
+  EXPECT_EQ(show().at("trouble"), "the arm has a fault");
+  expectSame(before_);
+  EXPECT_NE(change_.gains().task.drift_gain_per_s, 3.0);
+}
+
+/// Between the answer and the cycle that takes the order, too.
+TEST_F(ChangesInBetween, WhatIsKeptAsTheNextArrivesIsKnown) {
+  set(kTried, 0.8);
+  pass(5.0);
+  for (int i = 0; i < 5000 && change_.report().state != GainState::kKept; ++i) {
+    change_.update({.force_N = 5.0});
+    if (change_.report().state == GainState::kOnTrial && i == 0) set(kOther, 3.0);
+  }
+  ASSERT_EQ(change_.report().state, GainState::kKept);
+  loop(1.0);
+  requests_.look();
+  pass(0.06, {.has_fault = true});
+  pass(1.0);
+  expectSame(0.8);
+}
+
+TEST_F(ChangesInBetween, ARefusedReloadHasNotReadTheFile) {
+  const std::string folder = testing::TempDir() + "tactus_unread_scene";
+  std::filesystem::create_directories(folder);
+  const std::string path = folder + "/scene.yaml";
+  const auto write = [&](double damping) {
+    const std::string text =
+        fmt::format("extends: {}/config/scenes/scenario2_tactus.yaml\ncontroller:\n  damping: {}\n",
+                    TACTUS_SOURCE_DIR, damping);
+    std::ofstream(path) << text;
+    return fmt::format("{:016x}", sourceHash(text));
+  };
+  const std::string first = write(0.7);
+  ControlRequests requests(loadScene(path, {}), *link_);
+  const auto askThose = [&](const char* request) { return Json::parse(requests.answer(request)); };
+  write(0.9);
+  EXPECT_EQ(askThose(R"({"do": "reload", "for_s": -1})").at("done"), false);
+  EXPECT_EQ(askThose(R"({"do": "show"})").at("scene_hash"), first) << "save would write over it";
+}
+
+}  // namespace
+}  // namespace tactus
