@@ -44,6 +44,7 @@ std::string stateText(const Json& answer) {
   if (state == "waiting") return "waits for a moment without contact\n";
   if (state == "ramping") return "on its way\n";
   if (state == "on_trial") return "there, and watched in contact; `tactus undo` goes back\n";
+  if (state == "going_back") return fmt::format("going back: {}\n", trouble);
   if (!trouble.empty()) return fmt::format("gone back: {}\n", trouble);
   return "kept\n";
 }

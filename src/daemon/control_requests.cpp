@@ -156,21 +156,27 @@ bool ControlRequests::isTrying() const {
   return !trials_.empty() && report_.trouble == GainTrouble::kNone;
 }
 
+/// For a moment without contact: nothing of it has begun.
+bool ControlRequests::isWaiting() const {
+  return isTrying() && trials_.back().place.waits_for_free && report_.state == GainState::kWaiting;
+}
+
 Json ControlRequests::set(const Json& request) {
   const std::uint32_t over = isTrying() ? trials_.back().number : 0;
   if (over != 0 && trials_.back().is_for_a_time && duration_s(request) == kNoLimit)
     refuseRequest("gains are set for a time, which this would keep", "for_s, or undo before");
-  return order(planSettings(newest(), settingsOf(request), leastMargin()), request, false, over);
+  return order(planSettings(newest(), settingsOf(request), leastMargin()), request,
+               {.waits_for_free = isWaiting()}, over);
 }
 
 Json ControlRequests::reload(const Json& request) {
   duration_s(request);  // a request that is refused has read nothing
   GainPlan plan = planReload(newest(), started_.overrides, leastMargin());
   read_hash_ = sourceHash(plan.scene.sources.front().text);
-  if (!plan.keys.empty()) return order(std::move(plan), request, false);
+  if (!plan.keys.empty()) return order(std::move(plan), request, {.waits_for_free = isWaiting()});
   newest() = std::move(plan.scene);  // comments may differ
   Json json = showGains();
-  json["trouble"] = "";  // that of a change before is not this one's
+  if (trials_.empty()) json["trouble"] = "";  // that of a change before is not this one's
   json["changes"] = Json::object();
   return json;
 }
@@ -178,9 +184,11 @@ Json ControlRequests::reload(const Json& request) {
 Json ControlRequests::undo(const Json& request) {
   if (trials_.empty() && before_.empty()) throw InputError("undo: nothing was changed");
   if (!trials_.empty() && !isTrying()) throw InputError("undo: gains go back already");
-  const bool is_undo = trials_.empty();
-  return order(planChange(newest(), is_undo ? before_.back() : kept_, leastMargin()), request,
-               is_undo);
+  if (trials_.empty())
+    return order(planChange(kept_, before_.back(), leastMargin()), request, {.is_undo = true});
+  GainPlan plan = planChange(newest(), kept_, leastMargin());
+  plan.waits_for_free = false;  // as gains go back by themselves
+  return order(std::move(plan), request, {.takes_back = true});
 }
 
 double ControlRequests::leastMargin() {
@@ -205,15 +213,17 @@ Json ControlRequests::showGains() {
           {"ordered", gainsJson(newest().controller.gains)}};
 }
 
-Json ControlRequests::order(GainPlan plan, const Json& request, bool is_undo, std::uint32_t over) {
-  const double for_s = duration_s(request);  // may refuse, so before anything changes
+Json ControlRequests::order(GainPlan plan, const Json& request, Place place, std::uint32_t over) {
   GainOrder order{.number = number_ + 1, .gains = plan.scene.controller.gains};
-  order.waits_for_free = plan.waits_for_free;
-  order.for_s = for_s;
+  order.for_s = duration_s(request);  // may refuse, so before anything changes
   order.over = over;
+  order.waits_for_free = place.waits_for_free = place.waits_for_free || plan.waits_for_free;
+  if (order.waits_for_free && !trials_.empty() && !isWaiting())
+    refuseRequest("a key that waits for a moment without contact, while gains are on trial",
+                  "it once they are kept, or undone");
   const Json changes = changesJson(newest().controller.gains, order.gains, plan.keys);
   if (trials_.size() == kMaxTrials) trials_.erase(trials_.begin());
-  trials_.push_back({order.number, std::move(plan.scene), is_undo, for_s < kNoLimit});
+  trials_.push_back({order.number, std::move(plan.scene), place, order.for_s < kNoLimit});
   number_ = order.number;
   link_.gain_orders.put(order);
   report_ = {.number = number_, .state = GainState::kWaiting};
@@ -252,13 +262,17 @@ std::string ControlRequests::lookAtGains() {
 void ControlRequests::settle(std::uint32_t kept_number) {
   const auto kept = std::ranges::find(trials_, kept_number, &Trial::number);
   if (kept == trials_.end()) return;
+  const auto next = std::next(kept);
+  const bool is_new = !isSame(kept->scene.controller.gains, kept_.controller.gains);
+  if (is_new && next != trials_.end() && next->place.takes_back && !kept->place.is_undo)
+    next->place.is_undo = true;
   keep(std::move(*kept));
-  trials_.erase(trials_.begin(), std::next(kept));
+  trials_.erase(trials_.begin(), next);
 }
 
 void ControlRequests::keep(Trial trial) {
   if (isSame(trial.scene.controller.gains, kept_.controller.gains)) return;
-  if (trial.is_undo) {
+  if (trial.place.is_undo) {
     before_.pop_back();
     kept_ = std::move(trial.scene);
     return;

@@ -28,7 +28,7 @@ void GainChange::order(const GainOrder& order) noexcept {
   report_.number = order.number;
   if (brings_back) return;
   order_ = order;
-  before_ = largest_;
+  if (isSame(gains_, kept_)) before_ = largest_;
   report_ = {
       .number = order.number, .kept_number = report_.kept_number, .state = GainState::kWaiting};
 }
@@ -47,7 +47,9 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
     case GainState::kKept:
       return;
     case GainState::kWaiting:
-      return begin();
+      // Over others that are on trial it waits, too: these are watched as before.
+      if (isSame(gains_, kept_) || !trips(seen)) begin();
+      return;
     case GainState::kRamping:
       if (!trips(seen)) advance(GainState::kOnTrial);
       return;

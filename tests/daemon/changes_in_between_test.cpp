@@ -176,6 +176,60 @@ TEST_F(ChangesInBetween, WhatIsKeptAsTheNextArrivesIsKnown) {
   expectSame(0.8);
 }
 
+/// A key that waits for a moment without contact.
+constexpr const char* kFree = "controller.contact_threshold_N";
+
+TEST_F(ChangesInBetween, WhatWaitsWaitsWithTheNextToo) {
+  set(kFree, 0.6);
+  pass(1.0);
+  ASSERT_EQ(show().at("state"), "waiting");
+  set(kOther, 3.0);
+  pass(10.0);
+  EXPECT_EQ(show().at("state"), "waiting");
+  EXPECT_NE(change_.gains().force.contact_threshold_N, 0.6);
+  pass(2.0, {});
+  EXPECT_EQ(change_.gains().force.contact_threshold_N, 0.6);
+  EXPECT_EQ(change_.gains().task.drift_gain_per_s, 3.0);
+}
+
+TEST_F(ChangesInBetween, NothingWaitsWhileGainsAreOnTrialOrGoBack) {
+  tryGains();
+  EXPECT_EQ(set(kFree, 0.6).at("done"), false);
+  pass(0.06, {.has_fault = true});
+  ASSERT_EQ(show().at("state"), "going_back");
+  EXPECT_EQ(set(kFree, 0.6).at("done"), false);
+  pass(1.0);
+  expectSame(before_);
+  EXPECT_EQ(set(kFree, 0.6).at("done"), true);
+}
+
+/// It began unseen, as a contact was lost, and the next waits for another loss.
+TEST_F(ChangesInBetween, WhatIsOnTrialIsWatchedWhileTheNextWaits) {
+  tryGains();
+  GainOrder waiting{.number = 2, .gains = change_.gains()};
+  waiting.gains.force.contact_threshold_N = 0.6;
+  waiting.waits_for_free = true;
+  waiting.over = 1;
+  change_.order(waiting);
+  loop(1.0);
+  EXPECT_EQ(running(), 0.8);
+  loop(0.01, {.force_N = 5.0, .has_fault = true});
+  loop(1.0);
+  EXPECT_EQ(running(), before_);
+  EXPECT_EQ(change_.report().trouble, GainTrouble::kFault);
+}
+
+TEST_F(ChangesInBetween, AnUndoOfWhatIsKeptMeanwhileIsNoChange) {
+  tryGains();
+  ask({{"do", "undo"}});
+  while (change_.report().state != GainState::kKept) change_.update({.force_N = 5.0});
+  report();
+  requests_.look();
+  pass(10.0);
+  expectSame(before_);
+  EXPECT_EQ(ask({{"do", "undo"}}).at("done"), false) << "nothing is left to undo";
+}
+
 TEST_F(ChangesInBetween, ARefusedReloadHasNotReadTheFile) {
   const std::string folder = testing::TempDir() + "tactus_unread_scene";
   std::filesystem::create_directories(folder);

@@ -30,7 +30,7 @@ struct ObstacleSample {
 /// F_act + T m (v_o - v), and on one that stands still F_act. With F_l = F_act + F_th, at each
 /// force sample, with kappa = 1 - exp(-dt / 5T):
 ///   limiting and F_p > F_act + 0.1 F_l for 3T:  v += kappa ((dF_p / m - dx) / dt - v)
-///   F_p < F_act:                                v -= kappa v
+///   F_p < F_act:                                v -= kappa v; v = 0 where the arm is held
 ///   0 <= v <= 0.5 F_l / (T m);  v = 0 for m > 20 kN/m
 /// So it never costs more force than half of F_l, and for m = c_e is nothing where the limit
 /// does what it shall. Derivation and figures: docs/approach_speed_limit.md.

@@ -27,11 +27,18 @@ class ControlRequests {
   std::string look();
 
  private:
+  /// What a change is to those before it.
+  struct Place {
+    bool is_undo = false;         ///< of what was kept
+    bool takes_back = false;      ///< what was on trial
+    bool waits_for_free = false;  ///< begins at a moment without contact
+  };
   /// Gains that were ordered, and are not kept yet.
   struct Trial {
     std::uint32_t number;
     Scene scene;
-    bool is_undo = false, is_for_a_time = false;
+    Place place;
+    bool is_for_a_time;
   };
 
   Json dispatch(const Json& request);
@@ -42,12 +49,13 @@ class ControlRequests {
   Json showGains();
   Json show();
   std::string lookAtGains();
-  Json order(GainPlan plan, const Json& request, bool is_undo, std::uint32_t over = 0);
+  Json order(GainPlan plan, const Json& request, Place place, std::uint32_t over = 0);
   void notice();
   void settle(std::uint32_t kept_number);
   void keep(Trial trial);
   double leastMargin();
   bool isTrying() const;
+  bool isWaiting() const;
   Scene& newest() { return isTrying() ? trials_.back().scene : kept_; }
 
   LoopLink& link_;
