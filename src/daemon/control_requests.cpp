@@ -218,9 +218,9 @@ Json ControlRequests::order(GainPlan plan, const Json& request, Place place, std
   order.for_s = duration_s(request);  // may refuse, so before anything changes
   order.over = over;
   order.waits_for_free = place.waits_for_free = place.waits_for_free || plan.waits_for_free;
-  if (order.waits_for_free && !trials_.empty() && !isWaiting())
-    refuseRequest("a key that waits for a moment without contact, while gains are on trial",
-                  "it once they are kept, or undone");
+  if (order.waits_for_free && !trials_.empty() && !isTrying())  // else they would stay half way
+    refuseRequest("a key that waits for a moment without contact, while gains go back",
+                  "it once they are back");
   const Json changes = changesJson(newest().controller.gains, order.gains, plan.keys);
   if (trials_.size() == kMaxTrials) trials_.erase(trials_.begin());
   trials_.push_back({order.number, std::move(plan.scene), place, order.for_s < kNoLimit});

@@ -47,8 +47,8 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
     case GainState::kKept:
       return;
     case GainState::kWaiting:
-      // Over others that are on trial it waits, too: these are watched as before.
-      if (isSame(gains_, kept_) || !trips(seen)) begin();
+      // Over others that are on trial, which are watched as before.
+      if (isSame(gains_, kept_) || (!trips(seen) && !isOver())) begin();
       return;
     case GainState::kRamping:
       if (!trips(seen)) advance(GainState::kOnTrial);
@@ -65,6 +65,7 @@ void GainChange::begin() noexcept {
   if (order_.waits_for_free && is_in_contact_) return;
   ramp(order_.gains, gainRampDuration_s(gains_, order_.gains));
   contact_s_ = 0.0;
+  for_s_ = order_.for_s;
   report_.state = GainState::kRamping;
 }
 
@@ -79,14 +80,20 @@ void GainChange::advance(GainState next) noexcept {
 }
 
 void GainChange::watch(const GainWatchInput& seen) noexcept {
-  passed_s_ += period_s_;
   contact_s_ += is_in_contact_ && seen.is_running ? period_s_ : 0.0;
-  if (passed_s_ >= order_.for_s) return goBack(GainTrouble::kTimeIsOver, passed_s_, order_.for_s);
+  if (isOver()) return;
   const double trial_s = std::max(kLeastTrial_s, kTrialTimeConstants * to_.force.time_constant_s);
-  if (order_.for_s < kNoLimit || contact_s_ < trial_s) return;
+  if (for_s_ < kNoLimit || contact_s_ < trial_s) return;
   kept_ = to_;
   report_.state = GainState::kKept;
   report_.kept_number = report_.number;
+}
+
+bool GainChange::isOver() noexcept {
+  passed_s_ += period_s_;
+  if (passed_s_ < for_s_) return false;
+  goBack(GainTrouble::kTimeIsOver, passed_s_, for_s_);
+  return true;
 }
 
 double GainChange::wayBack_s(GainTrouble trouble) const noexcept {

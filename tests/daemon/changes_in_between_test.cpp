@@ -192,10 +192,13 @@ TEST_F(ChangesInBetween, WhatWaitsWaitsWithTheNextToo) {
   EXPECT_EQ(change_.gains().task.drift_gain_per_s, 3.0);
 }
 
-TEST_F(ChangesInBetween, NothingWaitsWhileGainsAreOnTrialOrGoBack) {
+TEST_F(ChangesInBetween, WhatIsOnTrialIsWatchedWhileTheNextWaits) {
   tryGains();
-  EXPECT_EQ(set(kFree, 0.6).at("done"), false);
-  pass(0.06, {.has_fault = true});
+  EXPECT_EQ(set(kFree, 0.6).at("done"), true);
+  pass(1.0);
+  EXPECT_EQ(running(), 0.8);
+  EXPECT_EQ(show().at("state"), "waiting");
+  pass(0.06, {.force_N = 5.0, .has_fault = true});
   ASSERT_EQ(show().at("state"), "going_back");
   EXPECT_EQ(set(kFree, 0.6).at("done"), false);
   pass(1.0);
@@ -203,20 +206,24 @@ TEST_F(ChangesInBetween, NothingWaitsWhileGainsAreOnTrialOrGoBack) {
   EXPECT_EQ(set(kFree, 0.6).at("done"), true);
 }
 
-/// It began unseen, as a contact was lost, and the next waits for another loss.
-TEST_F(ChangesInBetween, WhatIsOnTrialIsWatchedWhileTheNextWaits) {
-  tryGains();
-  GainOrder waiting{.number = 2, .gains = change_.gains()};
-  waiting.gains.force.contact_threshold_N = 0.6;
-  waiting.waits_for_free = true;
-  waiting.over = 1;
-  change_.order(waiting);
-  loop(1.0);
+TEST_F(ChangesInBetween, WhatIsForATimeGoesBackWhileTheNextWaits) {
+  setFor(kTried, 0.8, 5.0);
+  pass(2.0);
+  setFor(kFree, 0.6, 5.0);
+  pass(1.0);
   EXPECT_EQ(running(), 0.8);
-  loop(0.01, {.force_N = 5.0, .has_fault = true});
-  loop(1.0);
-  EXPECT_EQ(running(), before_);
-  EXPECT_EQ(change_.report().trouble, GainTrouble::kFault);
+  pass(6.0);
+  expectSame(before_);
+}
+
+TEST_F(ChangesInBetween, AnUndoDoesNotWaitForWhatHasNotBegun) {
+  tryGains();
+  set(kFree, 0.6);
+  pass(1.0);
+  ASSERT_EQ(show().at("state"), "waiting");
+  ask({{"do", "undo"}});
+  pass(8.0);
+  expectSame(before_);
 }
 
 TEST_F(ChangesInBetween, AnUndoOfWhatIsKeptMeanwhileIsNoChange) {

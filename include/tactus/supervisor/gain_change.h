@@ -80,6 +80,7 @@ class GainChange {
   void begin() noexcept;
   void advance(GainState next) noexcept;
   void watch(const GainWatchInput& seen) noexcept;
+  bool isOver() noexcept;
   void ramp(const Gains& to, double duration_s) noexcept;
   void goBack(GainTrouble trouble, double figure, double limit) noexcept;
   bool trips(const GainWatchInput& seen) noexcept;
@@ -93,6 +94,7 @@ class GainChange {
   GainReport report_;
   double duration_s_ = 0.0, passed_s_ = 0.0;  ///< of the ramp
   double contact_s_ = 0.0;                    ///< on trial
+  double for_s_ = kNoLimit;                   ///< of the gains that are there
   bool is_changing_ = false;
   SwingWatch swings_;
   bool is_in_contact_ = false;
