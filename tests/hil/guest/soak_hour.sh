@@ -1,3 +1,3 @@
 # An hour of it, on a machine that does little else.
-LIVES=35 FIRST=200 OTHERS=20
+LIVES=30 FIRST=200 OTHERS=12
 . "$ROOT/guest/soak.sh"
