@@ -263,22 +263,24 @@ void ControlRequests::settle(std::uint32_t kept_number) {
   const auto kept = std::ranges::find(trials_, kept_number, &Trial::number);
   if (kept == trials_.end()) return;
   const auto next = std::next(kept);
-  const bool is_new = !isSame(kept->scene.controller.gains, kept_.controller.gains);
-  if (is_new && next != trials_.end() && next->place.takes_back && !kept->place.is_undo)
+  const bool is_undo = kept->place.is_undo;
+  const bool is_new = keep(std::move(*kept));
+  if (is_new && !is_undo && next != trials_.end() && next->place.takes_back)
     next->place.is_undo = true;
-  keep(std::move(*kept));
   trials_.erase(trials_.begin(), next);
 }
 
-void ControlRequests::keep(Trial trial) {
-  if (isSame(trial.scene.controller.gains, kept_.controller.gains)) return;
+/// False: it was kept already.
+bool ControlRequests::keep(Trial trial) {
+  if (isSame(trial.scene.controller.gains, kept_.controller.gains)) return false;
   if (trial.place.is_undo) {
     before_.pop_back();
     kept_ = std::move(trial.scene);
-    return;
+    return true;
   }
   if (before_.size() == kKeptForUndo) before_.erase(before_.begin());
   before_.push_back(std::exchange(kept_, std::move(trial.scene)));
+  return true;
 }
 
 }  // namespace tactus

@@ -34,7 +34,7 @@ double ControlCycle::nextPathTime_s() const noexcept {
 
 void ControlCycle::fill(ToolSight& sight) const noexcept {
   sight.report = tool_orders_->report();
-  sight.is_running = is_started_ && mode_.mode == Mode::kRunning;
+  sight.is_running = isRunning();
   std::copy_n(state_.q_desired.data(), state_.q_desired.size(), sight.q);
   sight.run = runs_;
   Pose X_BaseTool = toolPose();
@@ -61,7 +61,7 @@ void ControlCycle::goOnWithTool() noexcept {
   }
   seen.X_BaseTool = toolPose();
   seen.run = runs_;
-  seen.is_running = is_started_ && mode_.mode == Mode::kRunning;
+  seen.is_running = isRunning();
   tool_orders_->update(seen, *state_.tool_motion);
 }
 
@@ -74,7 +74,7 @@ void ControlCycle::goOnWithGains() noexcept {
   for (int i = 0; i < output_.velocity.size(); ++i)
     seen.is_at_limit |= std::abs(output_.velocity[i]) >= kFullSpeed * most[i];
   seen.has_fault = mode_.fault != Fault::kNone;
-  seen.is_running = is_started_ && mode_.mode == Mode::kRunning;
+  seen.is_running = isRunning();
   gain_change_.update(seen);
   if (gain_change_.isChanging()) gains_ = gain_change_.gains();
 }

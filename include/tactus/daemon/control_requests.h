@@ -52,7 +52,7 @@ class ControlRequests {
   Json order(GainPlan plan, const Json& request, Place place, std::uint32_t over = 0);
   void notice();
   void settle(std::uint32_t kept_number);
-  void keep(Trial trial);
+  bool keep(Trial trial);
   double leastMargin();
   bool isTrying() const;
   bool isWaiting() const;

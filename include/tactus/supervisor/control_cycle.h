@@ -101,6 +101,7 @@ class ControlCycle {
   }
   double nextPathTime_s() const noexcept;
   double toolProgress() const noexcept;
+  bool isRunning() const noexcept { return is_started_ && mode_.mode == Mode::kRunning; }
   Pose toolPose() const noexcept;
   double taskTime_s() const noexcept { return static_cast<double>(task_cycles_) * period_s_; }
   DriveGoal driveGoal() const noexcept;
