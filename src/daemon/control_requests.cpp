@@ -84,6 +84,12 @@ double duration_s(const Json& request) {
   return value_s;
 }
 
+bool isOnlyRead(const Json& request) {
+  const Json value = request.value("only_read", Json(false));
+  if (!value.is_boolean()) refuseRequest("only_read is " + value.dump(), "true or false");
+  return value.get<bool>();
+}
+
 Json gainsJson(const Gains& gains) {
   Json json = Json::object();
   for (const GainKey& key : gainKeys()) json[key.path] = gainAt(gains, key.offset);
@@ -132,7 +138,7 @@ Json ControlRequests::dispatch(const Json& request) {
   if (what == "set") return set(request);
   if (what == "reload") return reload(request);
   if (what == "undo") return undo(request);
-  if (what == "show") return show();
+  if (what == "show") return show(request);
   return tell(what, request);
 }
 
@@ -143,7 +149,7 @@ Json ControlRequests::tell(const std::string& what, const Json& request) {
   } else if (what == "follow") {
     task = tool_.follow(request);
   } else if (what == "hold") {
-    task = tool_.hold();
+    task = tool_.hold(request);
   } else {
     refuseRequest(fmt::format("do is {}", inQuotes(what)),
                   "one of set, reload, undo, show, move, follow, hold, stream");
@@ -162,6 +168,7 @@ bool ControlRequests::isWaiting() const {
 }
 
 Json ControlRequests::set(const Json& request) {
+  refuseUnknown(request, {"do", "values", "for_s"});
   const std::uint32_t over = isTrying() ? trials_.back().number : 0;
   if (over != 0 && trials_.back().is_for_a_time && duration_s(request) == kNoLimit)
     refuseRequest("gains are set for a time, which this would keep", "for_s, or undo before");
@@ -170,8 +177,12 @@ Json ControlRequests::set(const Json& request) {
 }
 
 Json ControlRequests::reload(const Json& request) {
+  refuseUnknown(request, {"do", "for_s", "only_read"});
   duration_s(request);  // a request that is refused has read nothing
   GainPlan plan = planReload(newest(), started_.overrides, leastMargin());
+  if (isOnlyRead(request) && !plan.keys.empty())
+    throw InputError(
+        fmt::format("{} in the scene file is not what was ordered", plan.keys.front()));
   read_hash_ = sourceHash(plan.scene.sources.front().text);
   if (!plan.keys.empty()) return order(std::move(plan), request, {.waits_for_free = isWaiting()});
   newest() = std::move(plan.scene);  // comments may differ
@@ -181,14 +192,22 @@ Json ControlRequests::reload(const Json& request) {
   return json;
 }
 
+std::size_t ControlRequests::nextStepsBack() const {
+  if (trials_.empty()) return 1;
+  const auto& steps = trials_.back().place.steps_back;
+  return steps ? *steps + 1 : 0;
+}
+
 Json ControlRequests::undo(const Json& request) {
-  if (trials_.empty() && before_.empty()) throw InputError("undo: nothing was changed");
+  refuseUnknown(request, {"do"});
   if (!trials_.empty() && !isTrying()) throw InputError("undo: gains go back already");
-  if (trials_.empty())
-    return order(planChange(kept_, before_.back(), leastMargin()), request, {.is_undo = true});
-  GainPlan plan = planChange(newest(), kept_, leastMargin());
-  plan.waits_for_free = false;  // as gains go back by themselves
-  return order(std::move(plan), request, {.takes_back = true});
+  const std::size_t steps = nextStepsBack();
+  if (steps > before_.size()) throw InputError("undo: nothing was changed before");
+  const Scene& target = steps == 0 ? kept_ : before_[before_.size() - steps];
+  GainPlan plan = planChange(newest(), target, leastMargin());
+  // To what was kept gains go at once, as they do by themselves.
+  plan.waits_for_free = steps > 0 && (plan.waits_for_free || isWaiting());
+  return order(std::move(plan), request, {.steps_back = steps});
 }
 
 double ControlRequests::leastMargin() {
@@ -196,7 +215,8 @@ double ControlRequests::leastMargin() {
   return *least_margin_deg_;
 }
 
-Json ControlRequests::show() {
+Json ControlRequests::show(const Json& request) {
+  refuseUnknown(request, {"do"});
   Json json = showGains();
   json["task"] = tool_.show();
   return json;
@@ -258,29 +278,33 @@ std::string ControlRequests::lookAtGains() {
                      trouble.empty() ? "" : ": ", trouble);
 }
 
-/// A later order may be on its way when one is kept.
+/// Later orders may be on their way when one is kept: an undo among them then leads over more steps
+/// or fewer, or, where it leads to what is no longer among those before, is a change as all others.
 void ControlRequests::settle(std::uint32_t kept_number) {
   const auto kept = std::ranges::find(trials_, kept_number, &Trial::number);
   if (kept == trials_.end()) return;
-  const auto next = std::next(kept);
-  const bool is_undo = kept->place.is_undo;
-  const bool is_new = keep(std::move(*kept));
-  if (is_new && !is_undo && next != trials_.end() && next->place.takes_back)
-    next->place.is_undo = true;
-  trials_.erase(trials_.begin(), next);
+  const std::ptrdiff_t more = keep(std::move(*kept));
+  trials_.erase(trials_.begin(), std::next(kept));
+  for (Trial& later : trials_) {
+    auto& steps = later.place.steps_back;
+    if (!steps) continue;
+    const std::ptrdiff_t left = static_cast<std::ptrdiff_t>(*steps) + more;
+    steps = left < 0 ? std::nullopt : std::optional<std::size_t>(left);
+  }
 }
 
-/// False: it was kept already.
-bool ControlRequests::keep(Trial trial) {
-  if (isSame(trial.scene.controller.gains, kept_.controller.gains)) return false;
-  if (trial.place.is_undo) {
-    before_.pop_back();
-    kept_ = std::move(trial.scene);
-    return true;
+/// Returns by how many those before have become more.
+std::ptrdiff_t ControlRequests::keep(Trial trial) {
+  const std::size_t steps = std::min(trial.place.steps_back.value_or(0), before_.size());
+  if (steps == 0 && isSame(trial.scene.controller.gains, kept_.controller.gains)) return 0;
+  std::swap(kept_, trial.scene);
+  if (steps > 0) {
+    before_.erase(before_.end() - static_cast<std::ptrdiff_t>(steps), before_.end());
+    return -static_cast<std::ptrdiff_t>(steps);
   }
   if (before_.size() == kKeptForUndo) before_.erase(before_.begin());
-  before_.push_back(std::exchange(kept_, std::move(trial.scene)));
-  return true;
+  before_.push_back(std::move(trial.scene));
+  return 1;
 }
 
 }  // namespace tactus

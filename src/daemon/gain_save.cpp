@@ -34,6 +34,18 @@ void checkGains(const std::string& path, const Json& running) {
         fmt::format("{}: {} could not be written", escaped(path), differing.items().begin().key()));
 }
 
+/// The daemon reads what was written. Gains that went back meanwhile may not return by that, nor
+/// stay in the file.
+void takeNote(const ControlClient& daemon, const std::string& path, const std::string& before) {
+  try {
+    daemon.ask({{"do", "reload"}, {"only_read", true}});
+  } catch (const InputError& refused) {
+    replaceFile(path, before, [](const std::string&) {});
+    throw RunError(fmt::format("{}: is as it was, for what runs was changed meanwhile: {}",
+                               escaped(path), refused.what()));
+  }
+}
+
 }  // namespace
 
 Json gainDifferences(const std::string& path, const Json& running) {
@@ -61,7 +73,7 @@ SavedGains saveGains(const ControlClient& daemon) {
   if (changed == text) return {path, false, is_kept};
   replaceFile(path, changed,
               [&](const std::string& next) { checkGains(next, answer.at("ordered")); });
-  daemon.ask({{"do", "reload"}});  // it has read what is there now
+  takeNote(daemon, path, text);
   return {path, true, is_kept};
 }
 

@@ -77,14 +77,6 @@ void setSpeed(const Json& request, const char* name, MotionLimits& limits) {
   limits.max_speed = numberOf(*found, name, kLeastSpeed, limits.max_speed);
 }
 
-void refuseUnknown(const Json& request, std::initializer_list<const char*> known) {
-  for (const auto& [name, value] : request.items()) {
-    if (std::ranges::find(known, name) == known.end())
-      refuseRequest(fmt::format("{} is not known here", inQuotes(name)),
-                    fmt::format("{}", fmt::join(known, ", ")));
-  }
-}
-
 Json vectorJson(const Vector3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
 Pose poseOf(const ToolSight& sight) {
@@ -200,7 +192,8 @@ Json ToolRequests::follow(const Json& request) {
   return show();
 }
 
-Json ToolRequests::hold() {
+Json ToolRequests::hold(const Json& request) {
+  refuseUnknown(request, {"do"});
   requireArm();
   ToolOrder hold;
   hold.limits = scene_.controller.task.commands->limits;

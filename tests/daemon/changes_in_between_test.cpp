@@ -1,15 +1,12 @@
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "support/shipped_scene.h"
+#include "support/written_scene.h"
 #include "tactus/daemon/control_requests.h"
 #include "tactus/scene/scene_loader.h"
-#include "tactus/scene/source_hash.h"
 
 /// Requests that come while gains go back, are kept unseen, or are refused: what the daemon
 /// believes of the loop's gains is what the loop has.
@@ -29,6 +26,8 @@ class ChangesInBetween : public testing::Test {
   Json setFor(const char* key, double value, double for_s) {
     return ask({{"do", "set"}, {"values", {{key, value}}}, {"for_s", for_s}});
   }
+
+  Json undo() { return ask({{"do", "undo"}}); }
 
   /// The loop alone: the socket's thread does not look.
   void loop(double duration_s, const GainWatchInput& seen = {.force_N = 5.0}) {
@@ -56,6 +55,13 @@ class ChangesInBetween : public testing::Test {
     set(kTried, 0.8);
     pass(2.0);
     ASSERT_EQ(show().at("state"), "on_trial");
+  }
+  void keepGains(std::initializer_list<double> values) {
+    for (const double value : values) {
+      set(kTried, value);
+      pass(10.0);
+      ASSERT_EQ(show().at("kept").at(kTried), value);
+    }
   }
   double running() const { return change_.gains().force.damping; }
   void expectSame(double damping) {
@@ -97,7 +103,7 @@ TEST_F(ChangesInBetween, WhatGoesBackDoesNotReturnWithTheNext) {
   tryGains();
   pass(0.06, {.has_fault = true});
   ASSERT_EQ(show().at("state"), "going_back");
-  EXPECT_EQ(ask({{"do", "undo"}}).at("done"), false);
+  EXPECT_EQ(undo().at("done"), false);
   const Json answer = set(kOther, 3.0);
   EXPECT_EQ(answer.at("changes").size(), 1U);
   EXPECT_EQ(answer.at("ordered").at(kTried), before_);
@@ -135,7 +141,7 @@ TEST_F(ChangesInBetween, WhatWasKeptUnseenIsWhereTheNextGoesBackTo) {
   pass(0.06, {.has_fault = true});
   pass(10.0);
   expectSame(0.8);
-  EXPECT_EQ(ask({{"do", "undo"}}).at("changes").at(kTried).at("to"), before_);
+  EXPECT_EQ(undo().at("changes").at(kTried).at("to"), before_);
 }
 
 TEST_F(ChangesInBetween, WhatFailedUnseenDoesNotReturn) {
@@ -221,39 +227,116 @@ TEST_F(ChangesInBetween, AnUndoDoesNotWaitForWhatHasNotBegun) {
   set(kFree, 0.6);
   pass(1.0);
   ASSERT_EQ(show().at("state"), "waiting");
-  ask({{"do", "undo"}});
+  undo();
   pass(8.0);
   expectSame(before_);
 }
 
 TEST_F(ChangesInBetween, AnUndoOfWhatIsKeptMeanwhileIsNoChange) {
   tryGains();
-  ask({{"do", "undo"}});
+  undo();
   while (change_.report().state != GainState::kKept) change_.update({.force_N = 5.0});
   report();
   requests_.look();
   pass(10.0);
   expectSame(before_);
-  EXPECT_EQ(ask({{"do", "undo"}}).at("done"), false) << "nothing is left to undo";
+  EXPECT_EQ(undo().at("done"), false) << "nothing is left to undo";
 }
 
-TEST_F(ChangesInBetween, ARefusedReloadHasNotReadTheFile) {
-  const std::string folder = testing::TempDir() + "tactus_unread_scene";
-  std::filesystem::create_directories(folder);
-  const std::string path = folder + "/scene.yaml";
-  const auto write = [&](double damping) {
-    const std::string text =
-        fmt::format("extends: {}/config/scenes/scenario2_tactus.yaml\ncontroller:\n  damping: {}\n",
-                    TACTUS_SOURCE_DIR, damping);
-    std::ofstream(path) << text;
-    return fmt::format("{:016x}", sourceHash(text));
-  };
-  const std::string first = write(0.7);
-  ControlRequests requests(loadScene(path, {}), *link_);
-  const auto askThose = [&](const char* request) { return Json::parse(requests.answer(request)); };
-  write(0.9);
-  EXPECT_EQ(askThose(R"({"do": "reload", "for_s": -1})").at("done"), false);
-  EXPECT_EQ(askThose(R"({"do": "show"})").at("scene_hash"), first) << "save would write over it";
+TEST_F(ChangesInBetween, AnUndoOfAnUndoOnItsWayLeadsFurtherBack) {
+  keepGains({0.7, 0.8, 0.9});
+  undo();
+  pass(2.0);
+  ASSERT_EQ(show().at("state"), "on_trial");
+  undo();
+  pass(10.0);
+  expectSame(0.7);
+  undo();
+  pass(10.0);
+  expectSame(before_);
+  EXPECT_EQ(undo().at("done"), false);
+}
+
+TEST_F(ChangesInBetween, AnUndoOfATrialAndAnotherLeadFurtherBackToo) {
+  keepGains({0.7, 0.8});
+  set(kTried, 0.9);
+  pass(2.0);
+  undo();
+  undo();
+  pass(10.0);
+  expectSame(0.7);
+  undo();
+  pass(10.0);
+  expectSame(before_);
+}
+
+TEST_F(ChangesInBetween, AnUndoThatIsKeptUnseenIsOneStepLessForTheNext) {
+  keepGains({0.7, 0.8, 0.9});
+  undo();
+  pass(2.0);
+  undo();
+  while (change_.report().state != GainState::kKept) change_.update({.force_N = 5.0});
+  report();
+  requests_.look();
+  EXPECT_EQ(change_.kept().force.damping, 0.8);
+  pass(10.0);
+  expectSame(0.7);
+  undo();
+  pass(10.0);
+  expectSame(before_);
+}
+
+/// Two steps lead from 0.8 over 0.7 to 0.8: no gain differs, but the history is shorter.
+TEST_F(ChangesInBetween, TwoStepsBackToTheSameGainsAreStepsAllTheSame) {
+  keepGains({0.8, 0.7, 0.8});
+  undo();
+  undo();
+  pass(10.0);
+  expectSame(0.8);
+  undo();
+  pass(10.0);
+  expectSame(before_);
+}
+
+TEST_F(ChangesInBetween, AnUndoOfWhatWasKeptWaitsForAKeyThatWaits) {
+  keepGains({0.8});
+  set(kFree, 0.6);
+  pass(10.0, {});
+  keepGains({0.9});
+  undo();
+  undo();
+  pass(1.0);
+  EXPECT_EQ(show().at("state"), "waiting");
+  undo();
+  pass(1.0);
+  EXPECT_EQ(show().at("state"), "waiting") << "what runs has the key, too";
+  EXPECT_EQ(change_.gains().force.contact_threshold_N, 0.6);
+}
+
+TEST_F(ChangesInBetween, NamesThatAreNotKnownAreRefused) {
+  for (const char* what : {"set", "reload", "undo", "show", "hold"}) {
+    Json request = {{"do", what}, {"values", {{kTried, 0.8}}}, {"dry_run", true}};
+    if (request.at("do") != "set") request.erase("values");
+    const Json answer = ask(request);
+    EXPECT_EQ(answer.at("done"), false) << what;
+    EXPECT_NE(answer.at("error").get<std::string>().find("dry_run"), std::string::npos) << what;
+  }
+  EXPECT_EQ(show().at("number"), 0);
+}
+
+TEST(ReadSceneFile, IsNotWhatARefusedReloadSaw) {
+  test::WrittenScene file(0.7);
+  const auto link = std::make_unique<LoopLink>();
+  ControlRequests requests(loadScene(file.path(), {}), *link);
+  const auto ask = [&](const char* request) { return Json::parse(requests.answer(request)); };
+  const std::string first = file.hash();
+  file.write(0.9);
+  for (const char* refused :
+       {R"({"do": "reload", "for_s": -1})", R"({"do": "reload", "only_read": true})",
+        R"({"do": "reload", "only_read": 1})"}) {
+    EXPECT_EQ(ask(refused).at("done"), false) << refused;
+    EXPECT_EQ(ask(R"({"do": "show"})").at("scene_hash"), first) << "save would write over it";
+  }
 }
 
 }  // namespace

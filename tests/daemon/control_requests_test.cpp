@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "support/random.h"
 #include "support/shipped_scene.h"
+#include "support/written_scene.h"
 #include "tactus/scene/scene_loader.h"
-#include "tactus/scene/source_hash.h"
 
 namespace tactus {
 namespace {
@@ -169,27 +168,19 @@ TEST_F(ControlRequestsTest, SurvivesDamage) {
 /// What `tactus save` wrote, and the daemon has read, is no change of somebody else's, whatever
 /// gains come after.
 TEST(SavedSceneFile, IsTheOneThatWasReadAfterAnUndoToo) {
-  const std::string folder = testing::TempDir() + "tactus_saved_scene";
-  std::filesystem::create_directories(folder);
-  const std::string path = folder + "/scene.yaml";
-  const auto write = [&](double damping) {
-    const std::string text =
-        fmt::format("extends: {}/config/scenes/scenario2_tactus.yaml\ncontroller:\n  damping: {}\n",
-                    TACTUS_SOURCE_DIR, damping);
-    std::ofstream(path) << text;
-    return fmt::format("{:016x}", sourceHash(text));
-  };
-  const std::string first = write(0.7);
+  test::WrittenScene file(0.7);
+  const std::string first = file.hash();
   const auto link = std::make_unique<LoopLink>();
-  ControlRequests requests(loadScene(path, {}), *link);
+  ControlRequests requests(loadScene(file.path(), {}), *link);
   const auto ask = [&](const char* request) { return Json::parse(requests.answer(request)); };
   ask(R"({"do": "set", "values": {"controller.damping": 0.8}})");
   EXPECT_EQ(ask(R"({"do": "show"})").at("scene_hash"), first);
-  const std::string saved = write(0.8);
+  file.write(0.8);
+  const std::string saved = file.hash();
   EXPECT_EQ(ask(R"({"do": "reload"})").at("scene_hash"), saved);
   EXPECT_EQ(ask(R"({"do": "undo"})").at("scene_hash"), saved);
   EXPECT_EQ(ask(R"({"do": "set", "values": {"controller.damping": 0.9}})").at("scene_hash"), saved);
-  std::ofstream(path) << "controller: [";
+  std::ofstream(file.path()) << "controller: [";
   EXPECT_EQ(ask(R"({"do": "reload"})").at("done"), false);
   EXPECT_EQ(ask(R"({"do": "show"})").at("scene_hash"), saved);
 }

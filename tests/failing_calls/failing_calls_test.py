@@ -121,7 +121,7 @@ def running_trouble(call, done, answers, folder):
         return f"ends ({done.returncode}): {done.stderr[-300:]}"
     lost = [(request, answer and answer.get("error")) for request, answer in zip(REQUESTS * 2, answers)
             if not answer or not answer["done"]]
-    if lost and lost[0][0]["do"] == "set" and lost[-1][1] == "undo: nothing was changed":
+    if lost and lost[0][0]["do"] == "set" and lost[-1][1] == "undo: nothing was changed before":
         lost.pop()
     if len(lost) > 1:
         return f"does not do {lost}: {done.stderr[-300:]}"

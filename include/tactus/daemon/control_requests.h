@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -29,9 +30,8 @@ class ControlRequests {
  private:
   /// What a change is to those before it.
   struct Place {
-    bool is_undo = false;         ///< of what was kept
-    bool takes_back = false;      ///< what was on trial
-    bool waits_for_free = false;  ///< begins at a moment without contact
+    std::optional<std::size_t> steps_back{};  ///< an undo: of before_; 0: of what was on trial
+    bool waits_for_free = false;              ///< begins at a moment without contact
   };
   /// Gains that were ordered, and are not kept yet.
   struct Trial {
@@ -47,12 +47,13 @@ class ControlRequests {
   Json undo(const Json& request);
   Json tell(const std::string& what, const Json& request);
   Json showGains();
-  Json show();
+  Json show(const Json& request);
   std::string lookAtGains();
   Json order(GainPlan plan, const Json& request, Place place, std::uint32_t over = 0);
   void notice();
   void settle(std::uint32_t kept_number);
-  bool keep(Trial trial);
+  std::ptrdiff_t keep(Trial trial);
+  std::size_t nextStepsBack() const;
   double leastMargin();
   bool isTrying() const;
   bool isWaiting() const;

@@ -1,10 +1,17 @@
 #pragma once
 
+#include <initializer_list>
 #include <string>
+
+#include "tactus/scene/json.h"
 
 namespace tactus {
 
 /// Throws the InputError of what is wrong with a request itself.
 [[noreturn]] void refuseRequest(const std::string& problem, const std::string& expectation);
+
+/// For an object with a name that is not one of these. A name that is passed over would be a wish
+/// that is silently not met.
+void refuseUnknown(const Json& request, std::initializer_list<const char*> known);
 
 }  // namespace tactus

@@ -18,7 +18,7 @@ class ToolRequests {
 
   Json move(const Json& request);  ///< also for `stream`
   Json follow(const Json& request);
-  Json hold();
+  Json hold(const Json& request);
 
   /// The member "task" of `show`: null for a task that nobody tells.
   Json show();

@@ -1,0 +1,96 @@
+#include "tactus/daemon/gain_save.h"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "support/written_scene.h"
+#include "tactus/daemon/control_requests.h"
+#include "tactus/io/packet_socket.h"
+#include "tactus/record/run_error.h"
+#include "tactus/scene/scene_loader.h"
+
+namespace tactus {
+namespace {
+
+constexpr const char* kSet = R"({"do": "set", "values": {"controller.damping": 0.8}})";
+
+/// Answers two requests, show and the reload behind what was written, and lets something happen
+/// between them.
+class Daemon {
+ public:
+  Daemon(const std::string& path, ControlRequests& requests, std::function<void()> between)
+      : listening_(PacketSocket::listenAt(path, 1)), thread_([this, &requests, between] {
+          const PacketSocket client = accepted();
+          answer(client, requests);
+          between();
+          answer(client, requests);
+        }) {}
+  ~Daemon() { thread_.join(); }
+
+ private:
+  static void await(int fd) {
+    pollfd waiting{fd, POLLIN, 0};
+    ::poll(&waiting, 1, 10000);
+  }
+  PacketSocket accepted() const {
+    await(listening_.fd());
+    return listening_.accept();
+  }
+  static void answer(const PacketSocket& client, ControlRequests& requests) {
+    std::array<char, 4096> room{};
+    await(client.fd());
+    const long size = client.receive(room);
+    if (size > 0) client.send(requests.answer({room.data(), static_cast<std::size_t>(size)}));
+  }
+
+  const PacketSocket listening_;
+  std::thread thread_;
+};
+
+class SavedGainsTest : public testing::Test {
+ protected:
+  SavedGains save(std::function<void()> between) {
+    const std::string socket = file_.folder().path() + "/asked";
+    const Daemon daemon(socket, requests_, std::move(between));
+    return saveGains(ControlClient(socket));
+  }
+
+  test::WrittenScene file_{0.7};
+  const std::unique_ptr<LoopLink> link_ = std::make_unique<LoopLink>();
+  ControlRequests requests_{loadScene(file_.path(), {}), *link_};
+};
+
+TEST_F(SavedGainsTest, AreInTheFileWhichTheDaemonHasRead) {
+  requests_.answer(kSet);
+  const SavedGains saved = save([] {});
+  EXPECT_TRUE(saved.is_new);
+  EXPECT_FALSE(saved.is_kept) << "they are on trial";
+  EXPECT_NE(file_.text().find("damping: 0.8"), std::string::npos);
+  const Json shown = Json::parse(requests_.answer(R"({"do": "show"})"));
+  EXPECT_EQ(shown.at("scene_hash"), file_.hash());
+  EXPECT_EQ(shown.at("number"), 1) << "nothing was ordered by that";
+}
+
+TEST_F(SavedGainsTest, ThatWentBackMeanwhileNeitherReturnNorStayInTheFile) {
+  const std::string before = file_.text();
+  requests_.answer(kSet);
+  const auto fail = [&] {
+    link_->gain_reports.put(
+        {.number = 1, .state = GainState::kKept, .trouble = GainTrouble::kFault});
+  };
+  EXPECT_THROW(save(fail), RunError);
+  EXPECT_EQ(file_.text(), before);
+  const Json shown = Json::parse(requests_.answer(R"({"do": "show"})"));
+  EXPECT_EQ(shown.at("scene_hash"), file_.hash());
+  EXPECT_EQ(shown.at("ordered").at("controller.damping"), 0.7);
+  EXPECT_EQ(shown.at("number"), 1);
+}
+
+}  // namespace
+}  // namespace tactus
