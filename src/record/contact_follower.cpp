@@ -32,8 +32,11 @@ void describeRest(const std::vector<double>& rest_N, double rest_s, ContactFigur
 }  // namespace
 
 ContactFollower::ContactFollower(const ControllerConfig& config, std::size_t expected_cycles,
-                                 int module)
-    : config_(config), module_(module), list_(contactList(config, expected_cycles, module)) {}
+                                 int module, TouchFits fits)
+    : config_(config),
+      module_(module),
+      fits_(fits),
+      list_(contactList(config, expected_cycles, module)) {}
 
 void ContactFollower::Sums::add(const Cycle& cycle) noexcept {
   if (cycle.force_N > peak_N) position_m = cycle.position_m;
@@ -55,7 +58,7 @@ std::optional<ContactFigures> ContactFollower::add(const CycleRecord& record) {
   const bool is_touching = list_.isTouching() || over;
   if (is_touching && !is_touching_) begin(record);
   is_touching_ = is_touching;
-  keepTouch(record);
+  if (fits_ == TouchFits::kMade) keepTouch(record);
   if (!is_touching) return std::nullopt;
   recent_.push_back(cycleOf(record));
   while (recent_.front().t_s < record.t_s - kRecent_s) {

@@ -5,9 +5,10 @@
 
 namespace tactus {
 
-ContactWatch::ContactWatch(const ControllerConfig& config, std::size_t expected_cycles) {
+ContactWatch::ContactWatch(const ControllerConfig& config, std::size_t expected_cycles,
+                           TouchFits fits) {
   for (int i = 0; i < static_cast<int>(config.tactile_modules.size()); ++i)
-    modules_.emplace_back(config, expected_cycles, i);
+    modules_.emplace_back(config, expected_cycles, i, fits);
 }
 
 std::vector<ContactFigures> ContactWatch::add(const CycleRecord& record) {

@@ -61,10 +61,10 @@ void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
 
 }  // namespace
 
-RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles)
+RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles, TouchFits fits)
     : limits_(config.limits),
       modules_(static_cast<int>(config.tactile_modules.size())),
-      contacts_(config, expected_cycles) {
+      contacts_(config, expected_cycles, fits) {
   if (config.task.hasRotation()) figures_.tcp_rotation_error.emplace();
 }
 

@@ -90,9 +90,11 @@ std::vector<double> filtered(const Touch& touch, double cutoff_hz, Function func
   std::optional<ButterworthLowPass> filter;
   if (2.0 * cutoff_hz * touch.period_s < 0.99) filter.emplace(cutoff_hz, 1.0 / touch.period_s);
   const double first = function(touch.way_m.front());
+  bool has_changed = false;  // before, a filter answers nothing with nothing
   for (const double x_m : touch.way_m) {
     const double input = function(x_m) - first;
-    result.push_back(first + (filter ? filter->update(input) : input));
+    has_changed = has_changed || input != 0.0;
+    result.push_back(first + (filter && has_changed ? filter->update(input) : input));
   }
   return result;
 }

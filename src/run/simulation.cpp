@@ -44,12 +44,12 @@ std::size_t cyclesToReserve(const Scene& scene) {
   return static_cast<std::size_t>(std::min(cycles, kMaxReservedCycles));
 }
 
-SimulationResult simulate(const Scene& scene, const CycleSink& sink) {
+SimulationResult simulate(const Scene& scene, const CycleSink& sink, TouchFits fits) {
   const auto cycles = std::llround(scene.duration_s / scene.period_s);
   const auto cycles_at_rest = std::llround(kRest_s / scene.period_s);
   VirtualCycle cycle(scene);
   SimulatedRobot robot(scene.controller, scene.plant, scene.period_s);
-  RunSummary summary(scene.controller, cyclesToReserve(scene));
+  RunSummary summary(scene.controller, cyclesToReserve(scene), fits);
   ToolRotationError rotation_error(scene.controller);
   RobotInput input;
   CycleRecord record;

@@ -8,12 +8,17 @@
 
 namespace tactus {
 
+/// Whether contacts are told with the stiffness that they were found to have, fitTouch(), or as if
+/// that were unknown. A fit takes as long as a thousand cycles of a run.
+enum class TouchFits { kMade, kLeftOut };
+
 /// Figures of the contacts of one tactile module, each once it is over, in one pass. Memory is that
 /// of 1.3 s, and of the samples of ContactList.
 class ContactFollower {
  public:
   /// `expected_cycles` as of contactList().
-  ContactFollower(const ControllerConfig& config, std::size_t expected_cycles, int module);
+  ContactFollower(const ControllerConfig& config, std::size_t expected_cycles, int module,
+                  TouchFits fits = TouchFits::kMade);
 
   /// The contact that is over with this cycle.
   std::optional<ContactFigures> add(const CycleRecord& record);
@@ -47,6 +52,7 @@ class ContactFollower {
 
   ControllerConfig config_;
   int module_;
+  TouchFits fits_;
   ContactList list_;
   bool is_touching_ = false;
   double before_s_ = 0.0, period_s_ = 0.0;

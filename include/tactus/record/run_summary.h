@@ -58,7 +58,8 @@ struct RunFigures {
 class RunSummary {
  public:
   /// `expected_cycles` is only used to allocate in advance.
-  RunSummary(const ControllerConfig& config, std::size_t expected_cycles);
+  RunSummary(const ControllerConfig& config, std::size_t expected_cycles,
+             TouchFits fits = TouchFits::kMade);
 
   void add(const CycleRecord& record);
   /// All but contacts and losses, so that memory does not grow.

@@ -24,7 +24,8 @@ using CycleSink = std::function<void(const CycleRecord& record)>;
 std::size_t cyclesToReserve(const Scene& scene);
 
 /// Runs a scene in virtual time. A fault ends the run as soon as the arm is at rest.
-SimulationResult simulate(const Scene& scene, const CycleSink& sink);
+SimulationResult simulate(const Scene& scene, const CycleSink& sink,
+                          TouchFits fits = TouchFits::kMade);
 
 /// The same, and logs every cycle to log_path. Throws InputError or RunError if the log can't be
 /// written.
