@@ -143,18 +143,19 @@ std::string differenceText(const std::string& before, const std::string& after) 
 
 /// Tried, as permissions do not tell of a file system that is read-only.
 void refuseUnwritable(const SourceFile& robot) {
-  for (const std::string& path : {robot.path, statePath(robot)})
-    fs::remove(writtenBeside(path, ""));
-  const std::string copy = robot.path + "~";
+  const std::string target = fs::canonical(robot.path).string();  // of a link, as it is written
+  for (const std::string& path : {target, statePath(robot)}) fs::remove(writtenBeside(path, ""));
+  const std::string copy = target + "~";
   if (fs::exists(copy) && !std::ofstream(copy, std::ios::app))
     throw InputError(fmt::format("{}: cannot be written, expected a file that can", escaped(copy)));
 }
 
 void writeRobot(const SourceFile& robot, bool keeps_copy) {
   if (keeps_copy) return replaceFile(robot.path, robot.text);
-  const std::string next = writtenBeside(robot.path, robot.text);
-  fs::permissions(next, fs::status(robot.path).permissions());
-  fs::rename(next, robot.path);
+  const std::string target = fs::canonical(robot.path).string();  // a link stays one
+  const std::string next = writtenBeside(target, robot.text);
+  fs::permissions(next, fs::status(target).permissions());
+  fs::rename(next, target);
 }
 
 std::string statePath(const SourceFile& robot) { return robot.path + ".commission.json"; }

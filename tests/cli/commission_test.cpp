@@ -180,6 +180,20 @@ TEST(Commission, WritesWhatItFindsAndKeepsTheRest) {
   EXPECT_NE(before, after);
 }
 
+/// All joints go into the file that the link leads to, not the first one alone.
+TEST(Commission, ALinkToTheRobotStaysALink) {
+  const CommissionFolder folder;
+  std::filesystem::rename(folder.path("robot.yaml"), folder.path("mine.yaml"));
+  std::filesystem::create_symlink("mine.yaml", folder.path("robot.yaml"));
+  const std::string before = folder.content("mine.yaml");
+  VirtualDesk desk(folder.scene());
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path("robot.yaml")));
+  expectFileIsRight(folder);
+  EXPECT_NE(folder.content("mine.yaml").find("position_lag_s: 0.00"), std::string::npos);
+  EXPECT_EQ(folder.content("mine.yaml~"), before);
+}
+
 TEST(Commission, GoesOnWhereItWasLeft) {
   const CommissionFolder folder;
   VirtualDesk desk(folder.scene());
