@@ -110,14 +110,23 @@ class Recording {
     }
   }
 
+  /// As a whole or not at all: half of a record would make the file useless.
   void append(const std::string& record) {
     const bool is_new = !std::filesystem::exists(session_.path);
+    const auto size = is_new ? 0 : std::filesystem::file_size(session_.path);
     std::ofstream out(session_.path, std::ios::binary | std::ios::app);
     out << (is_new ? pushFileBeginning(session_.link) : needs_line_break_ ? "\n" : "") << record;
     out.close();
+    const std::string problem = out ? "" : std::strerror(errno);
+    if (!problem.empty()) {
+      std::error_code ignored;  // the first one is told
+      if (is_new)
+        std::filesystem::remove(session_.path, ignored);
+      else
+        std::filesystem::resize_file(session_.path, size, ignored);
+      throw RunError(escaped(session_.path) + ": cannot be written: " + problem);
+    }
     needs_line_break_ = false;
-    if (!out)
-      throw RunError(escaped(session_.path) + ": cannot be written: " + std::strerror(errno));
   }
 
   const RecordSession& session_;

@@ -1,3 +1,7 @@
+#include <sys/resource.h>
+
+#include <csignal>
+
 #include "support/calibrate_session.h"
 #include "tactus/cli/calibrate_fit.h"
 #include "tactus/cli/push_file.h"
@@ -80,6 +84,23 @@ TEST_F(CalibrateTest, ARecordingIsContinuedFromANewZero) {
   const Json found = fit({"--write"});
   EXPECT_EQ(found["pushes"].size(), 12u);
   EXPECT_LT(largestMiss(random, module, written(), 4), 0.03);
+}
+
+/// What was measured before the disk was full can still be gone on with.
+TEST_F(CalibrateTest, AFullDiskLeavesNoHalfARecord) {
+  test::Random random(49);
+  test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);
+  const std::deque<test::ScriptedAnswer> script = scriptOf(random, false);
+  record(module, {script.begin(), script.begin() + 11});
+  const std::string first = folder_.content("pushes.yaml");
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit nearly_full{first.size() + 100, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &nearly_full);
+  EXPECT_THROW(record(module, {{""}}), RunError);
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(folder_.content("pushes.yaml"), first);
 }
 
 TEST_F(CalibrateTest, OfSeveralModulesOnlyTheOneThatWasPushedIsWritten) {
