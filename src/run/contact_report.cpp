@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tactus/scene/located_error.h"
+
 namespace tactus {
 namespace {
 
@@ -78,7 +80,7 @@ Json peakJson(const Scene& scene, const PeakReport& peak) {
 }  // namespace
 
 std::string textLine(const std::string& name, const std::string& value) {
-  return fmt::format("{:<9}{}\n", name, value);
+  return fmt::format("{:<9}{}\n", name, escaped(value));
 }
 
 std::string coversText(const std::vector<CoverReport>& covers) {

@@ -7,6 +7,7 @@
 
 #include "support/scene_files.h"
 #include "support/shipped_scene.h"
+#include "tactus/run/scene_check.h"
 
 namespace tactus {
 namespace {
@@ -48,6 +49,21 @@ TEST(ArmCheck, HasNothingButEffortsAgainstTheArmsThatComeAlong) {
     ++scenes;
   }
   EXPECT_GT(scenes, 20);
+}
+
+/// A URDF's names are somebody else's, and go to a terminal.
+TEST(ArmCheck, NamesOfAUrdfReachNoTerminalAsCommands) {
+  SceneFiles files;
+  files.urdf =
+      std::regex_replace(files.urdf, std::regex("<robot name=\""), "<robot name=\"&#27;[31m&#10;");
+  files.urdf = std::regex_replace(files.urdf, std::regex("joint name=\"lift\""),
+                                  "joint name=\"li&#27;[2Jft\"");
+  const Scene scene = files.load();
+  ASSERT_NE(scene.robot_name.find('\x1b'), std::string::npos);
+  const std::string text = checkText(scene, examine(scene));
+  EXPECT_EQ(text.find('\x1b'), std::string::npos);
+  EXPECT_NE(text.find("\\x1b[31m\\x0a"), std::string::npos) << text;
+  EXPECT_NE(text.find("li\\x1b[2Jft"), std::string::npos) << text;
 }
 
 TEST(ArmCheck, TellsBothEndsOfEachCover) {
