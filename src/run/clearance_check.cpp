@@ -73,11 +73,15 @@ std::vector<NamedLinkCapsule> capsulesOf(const Scene& scene) {
   return named;
 }
 
+/// In place of an empty list that robot.yaml may have.
 Scene withCapsules(const Scene& scene, const std::string& proposed) {
-  if (!scene.plant.capsules.empty()) return scene;
-  std::vector<SourceFile> sources = scene.sources;
-  sources[scene.scene_sources].text += "\n" + proposed;
-  return loadScene(sources, scene.overrides, SceneUse::kSimulation);
+  const std::string_view key = "collision_capsules:\n";
+  const std::string list = proposed.substr(proposed.find(key) + key.size());
+  const bool has_some = list.starts_with("  - ") || list.find("\n  - ") != std::string::npos;
+  if (!has_some || !scene.plant.capsules.empty()) return scene;
+  std::vector<Override> overrides = scene.overrides;
+  overrides.push_back({"robot.collision_capsules", list});
+  return loadScene(scene.sources, overrides, SceneUse::kSimulation);
 }
 
 }  // namespace
