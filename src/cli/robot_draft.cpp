@@ -38,10 +38,14 @@ std::string chooseTip(const SourceFile& urdf, const std::vector<ArmEnd>& ends,
          "expected --tip with the tool's link");
 }
 
-/// The file as robot.yaml in a folder names it.
+/// The file as robot.yaml in a folder names it. Where the way to the folder has a link in it, ".."
+/// would lead elsewhere by the folder's name than on the disk.
 std::string referenceFrom(const std::string& folder, const std::string& path) {
-  const fs::path from = fs::weakly_canonical(fs::absolute(folder));
-  return fs::weakly_canonical(fs::absolute(path)).lexically_relative(from).string();
+  const fs::path robot = fs::absolute(folder) / "robot.yaml";
+  const fs::path from = fs::weakly_canonical(robot).parent_path();
+  const fs::path urdf = fs::weakly_canonical(fs::absolute(path));
+  const bool is_behind_link = from != robot.lexically_normal().parent_path();
+  return (is_behind_link ? urdf : urdf.lexically_relative(from)).string();
 }
 
 std::vector<double> assumedAcceleration(const UrdfChain& chain) {

@@ -138,6 +138,17 @@ TEST_F(InitTest, SaysWhatItAssumedWhereItStands) {
       std::string::npos);
 }
 
+/// There "..", by the names, leads to another folder than on the disk.
+TEST_F(InitTest, FolderBehindALinkHasARobotThatLoads) {
+  std::filesystem::create_directories(folder_.path() + "/disk/deep");
+  std::filesystem::create_symlink("disk/deep", folder_.path() + "/arm");
+  std::filesystem::copy_file(TACTUS_SOURCE_DIR "/config/robots/planar2/planar2.urdf",
+                             folder_.path() + "/planar2.urdf");
+  init(folder_.path() + "/planar2.urdf");
+  EXPECT_EQ(written().joint_names.size(), 2u);
+  EXPECT_EQ(loadScene(folder_.path() + "/disk/deep/scene.yaml", {}).joint_names.size(), 2u);
+}
+
 TEST_F(InitTest, NothingIsOverwrittenOrLeftHalfDone) {
   const std::string urdf = TACTUS_SOURCE_DIR "/config/robots/planar2/planar2.urdf";
   std::filesystem::create_directory(folder_.path() + "/arm");
