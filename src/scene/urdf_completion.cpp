@@ -31,17 +31,20 @@ void setNumber(pugi::xml_node limit, const char* name, double value) {
   attribute.set_value(fmt::format("{:g}", value).c_str());
 }
 
-/// Of lower and upper; one that is there holds, unless both are zero.
-bool completePositions(pugi::xml_node limit, double reach) {
+/// One that is there holds as it is written, unless both are zero. Names what was set.
+void completePositions(pugi::xml_node limit, double reach, std::vector<std::string>& set) {
   const pugi::xml_attribute lower = limit.attribute("lower"), upper = limit.attribute("upper");
-  const bool has_both = lower && upper && !(isUnsaid(lower) && isUnsaid(upper));
-  if (has_both) return false;
-  const double from =
-      isUnsaid(lower) ? std::min(-reach, upper.as_double() - reach) : lower.as_double();
-  const double to = isUnsaid(upper) ? std::max(reach, from + reach) : upper.as_double();
-  setNumber(limit, "lower", from);
-  setNumber(limit, "upper", to);
-  return true;
+  const bool are_both_zero = lower && upper && isUnsaid(lower) && isUnsaid(upper);
+  const bool has_lower = lower && !are_both_zero, has_upper = upper && !are_both_zero;
+  const double from = has_lower ? lower.as_double() : std::min(-reach, upper.as_double() - reach);
+  if (!has_lower) {
+    setNumber(limit, "lower", from);
+    set.emplace_back("lower");
+  }
+  if (!has_upper) {
+    setNumber(limit, "upper", std::max(reach, from + reach));
+    set.emplace_back("upper");
+  }
 }
 
 /// What was set; empty: nothing.
@@ -50,8 +53,7 @@ std::string completeJoint(pugi::xml_node joint, const std::string& type) {
   pugi::xml_node limit = joint.child("limit");
   if (!limit) limit = joint.append_child("limit");
   std::vector<std::string> set;
-  if (type != "continuous" && completePositions(limit, is_prismatic ? 0.25 : 2.5))
-    set = {"lower", "upper"};
+  if (type != "continuous") completePositions(limit, is_prismatic ? 0.25 : 2.5, set);
   if (isUnsaid(limit.attribute("velocity"))) {
     setNumber(limit, "velocity", is_prismatic ? 0.1 : 0.5);
     set.emplace_back("velocity");

@@ -138,6 +138,29 @@ TEST_F(InitTest, SaysWhatItAssumedWhereItStands) {
       std::string::npos);
 }
 
+/// A file that says one end has said it, also where that is zero.
+TEST_F(InitTest, AnEndThatTheUrdfHasIsNeverMoved) {
+  const auto limitsBy = [&](const std::string& written) {
+    const Json said = init(put("ends.urdf", R"(<robot name="r"><link name="a"/><link name="b"/>
+  <link name="c"/><joint name="slide" type="prismatic"><parent link="a"/><child link="b"/>
+    <axis xyz="0 1 0"/><limit )" + written + R"( velocity="0.1"/></joint>
+  <joint name="turn" type="revolute"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>
+    <origin xyz="0.3 0 0"/><limit lower="-1" upper="1" velocity="1"/></joint></robot>)"));
+    clear();
+    const Json& joint = said["joints"][0];
+    const Json assumed =
+        said["assumed_limits"].empty() ? Json::object() : said["assumed_limits"][0];
+    return Json{joint["lower"], joint["upper"], assumed.value("limits", "")};
+  };
+  EXPECT_EQ(limitsBy(R"(lower="0")"), (Json{0.0, 0.25, "upper"}));
+  EXPECT_EQ(limitsBy(R"(upper="0")"), (Json{-0.25, 0.0, "lower"}));
+  EXPECT_EQ(limitsBy(R"(upper="0.123456789")"), (Json{-0.25, 0.123456789, "lower"}));
+  EXPECT_EQ(limitsBy(R"(lower="0.5")"), (Json{0.5, 0.75, "upper"}));
+  EXPECT_EQ(limitsBy(R"(lower="0" upper="0")"), (Json{-0.25, 0.25, "lower, upper"}));
+  EXPECT_EQ(limitsBy(""), (Json{-0.25, 0.25, "lower, upper"}));
+  EXPECT_EQ(limitsBy(R"(lower="0" upper="0.3")"), (Json{0.0, 0.3, ""}));
+}
+
 /// There "..", by the names, leads to another folder than on the disk.
 TEST_F(InitTest, FolderBehindALinkHasARobotThatLoads) {
   std::filesystem::create_directories(folder_.path() + "/disk/deep");
