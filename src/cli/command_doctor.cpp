@@ -12,6 +12,7 @@
 #include "tactus/canopen/bus_load.h"
 #include "tactus/cli/commands.h"
 #include "tactus/cli/doctor_report.h"
+#include "tactus/cli/number_within.h"
 #include "tactus/cli/scene_step.h"
 #include "tactus/doctor/inspection.h"
 #include "tactus/doctor/loop_measurement.h"
@@ -103,7 +104,7 @@ void addDoctorCommand(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<DoctorOptions>();
   command->add_option("SCENE", options->scene, "Scene file whose robot and cycle are meant");
   command->add_option("--duration", options->duration_s, "Seconds that the loop runs; default 60")
-      ->check(CLI::Range(0.01, 1e6));
+      ->check(numberWithin(0.01, 1e6));
   command->add_option("-o,--output", options->log_folder, "Folder of the logs; default: this one");
   command->add_flag("--json", options->json, "Print JSON");
   command->callback(

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "support/allocation_guard.h"
+#include "support/command_run.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/cli/doctor_report.h"
@@ -46,6 +48,17 @@ TEST(DoctorReport, TextSaysTheVerdictLast) {
   EXPECT_TRUE(doctorText(worse, someMeasurement()).ends_with("NOT FIT: 1 to mend, 1 warning\n"));
   EXPECT_NE(jsonText(doctorJson(worse, someMeasurement())).find("\"fit\": false"),
             std::string::npos);
+}
+
+/// Of a loop that ran for no time nothing is known.
+TEST(Doctor, DurationsThatAreNoneAreRefused) {
+  for (const char* const word : {"nan", "-nan", "0", "-1", "inf", "2e6"}) {
+    std::string output;
+    EXPECT_THROW(
+        test::runCommand(addDoctorCommand, {"doctor", std::string("--duration=") + word}, output),
+        CLI::ValidationError)
+        << word;
+  }
 }
 
 TEST(DoctorReport, ARunWithoutACycleIsReportedToo) {
