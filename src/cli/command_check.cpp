@@ -21,7 +21,10 @@ struct CheckOptions {
 };
 
 void runCheck(const CheckOptions& options) {
-  const Scene scene = loadScene(options.scene, parseOverrides(options.settings));
+  std::vector<Override> settings = parseOverrides(options.settings);
+  // Whose section needs them before the scene loads.
+  if (options.capsules) settings.push_back({"clearance", "~"});
+  const Scene scene = loadScene(options.scene, settings);
   if (options.capsules) {
     const std::string proposed = proposeCapsules(scene);
     std::fputs((proposed + touchingCapsules(scene, proposed)).c_str(), stdout);
