@@ -118,7 +118,7 @@ SourcePosition positionAt(std::shared_ptr<const std::string> file, std::string_v
 }
 
 std::size_t offsetAt(std::string_view text, const SourcePosition& at) {
-  std::size_t offset = 0;
+  std::size_t offset = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // a byte order mark
   for (int line = 1; line < at.line; ++line) offset = text.find('\n', offset) + 1;
   return offset + static_cast<std::size_t>(at.column) - 1;
 }

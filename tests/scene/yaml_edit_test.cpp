@@ -21,6 +21,14 @@ TEST(YamlEdit, ReplacesAValueAndNothingElse) {
   EXPECT_EQ(edited("a:\n  b: ~\n", "a.b"), "a:\n  b: 0.6\n");
 }
 
+/// Columns do not count it, bytes do.
+TEST(YamlEdit, IsRightBehindAByteOrderMark) {
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(edited(mark + "a: {b: 0.5}\n", "a.b"), mark + "a: {b: 0.6}\n");
+  EXPECT_EQ(edited(mark + "a: {c: 1}\n", "a.b"), mark + "a: {b: 0.6, c: 1}\n");
+  EXPECT_EQ(edited(mark + "x: 1\na: {b: 0.5}\n", "a.b"), mark + "x: 1\na: {b: 0.6}\n");
+}
+
 TEST(YamlEdit, PutsANewOneIntoItsSection) {
   EXPECT_EQ(edited("controller:\n    # law\n    order: 2\n", "controller.damping"),
             "controller:\n    # law\n    damping: 0.6\n    order: 2\n");

@@ -27,7 +27,7 @@ SourcePosition beginOf(std::string path);
 /// The position of a byte of `text`.
 SourcePosition positionAt(std::shared_ptr<const std::string> file, std::string_view text,
                           std::size_t offset);
-/// The byte of `text` at a position that is in it.
+/// The byte of `text` at a position that is in it, whose column counts no byte order mark.
 std::size_t offsetAt(std::string_view text, const SourcePosition& at);
 
 /// Text of a user as errors show it: in quotes, shortened, on one line.
