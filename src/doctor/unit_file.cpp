@@ -18,6 +18,17 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
 }
 
+/// Sets that each line adds to, until an empty one begins them anew (systemd.exec(5)).
+bool isAdded(std::string_view key) {
+  return key == "AmbientCapabilities" || key == "CapabilityBoundingSet";
+}
+
+void addValue(const std::string& key, const std::string& text, UnitFile& unit) {
+  std::string& value = unit.values[key];
+  const bool is_more = isAdded(key) && !text.empty() && !value.empty();
+  value = is_more ? value + " " + text : text;
+}
+
 void addValues(const std::string& text, UnitFile& unit) {
   bool is_service = false;
   for (const std::string_view part : split(text, "\n")) {
@@ -25,7 +36,7 @@ void addValues(const std::string& text, UnitFile& unit) {
     const std::size_t equals = line.find('=');
     if (line.starts_with('[')) is_service = line == "[Service]";
     if (!is_service || equals == line.npos || line[0] == '#' || line[0] == ';') continue;
-    unit.values[trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
+    addValue(trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1)), unit);
   }
 }
 

@@ -70,6 +70,13 @@ TEST(ServiceRights, ComeFromTheUnit) {
                        "should say RestrictRealtime=no"));
 }
 
+TEST(ServiceRights, CapabilitiesOfSeveralLinesAddUp) {
+  const MachineTree machine;
+  const std::string both = "AmbientCapabilities=CAP_SYS_NICE\nAmbientCapabilities=CAP_IPC_LOCK\n";
+  EXPECT_EQ(service(machine, both).level, Level::kOk);
+  EXPECT_EQ(service(machine, both + "AmbientCapabilities=\n").level, Level::kNotFit);
+}
+
 TEST(ServiceRights, WithoutAUserAreThoseOfRoot) {
   const MachineTree machine;
   machine.write(kUnit, "[Service]\nExecStart=x\n");

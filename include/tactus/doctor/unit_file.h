@@ -19,7 +19,8 @@ struct UnitFile {
     const std::string text = value(key);
     return text == "yes" || text == "true" || text == "on" || text == "1";
   }
-  /// Empty if it is not given, or reset. Of a key given several times the last.
+  /// Empty if it is not given, or reset. Of a key given several times the last,
+  /// of capabilities all.
   std::string value(const std::string& key) const {
     const auto found = values.find(key);
     return found == values.end() ? "" : found->second;
