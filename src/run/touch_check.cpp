@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "tactus/analysis/contact_peak.h"
@@ -119,20 +120,57 @@ std::optional<PeakReport> worstPeak(const Scene& scene, const PathContacts& cont
   return worst;
 }
 
-/// Where a tool that is told leads the arm is not known: covers may be as fast as it.
-void assumeSpeeds(const ControllerConfig& config, PathContacts& contacts) {
+/// Across its axis: the way in which the joints move a cover's middle best, and the one in which
+/// they do worst. As columns, base frame.
+Eigen::Matrix<double, 3, 2> waysAcross(const ControllerConfig& config, const ChainPose& pose,
+                                       const FastestCover& cover, const Pose& X_BaseModule) {
+  const Eigen::Matrix<double, 3, 2> across = X_BaseModule.R_AB.rightCols<2>();
+  const int joints = config.chain.size();
+  Eigen::MatrixXd speeds(joints, 2);  // of the joints at their largest, m/s
+  for (int k = 0; k < 2; ++k) {
+    ScaledVector a;
+    applyPointJacobianTranspose(config.chain, pose, config.tactile_modules[cover.module].link.joint,
+                                cover.p_Base, across.col(k), a);
+    speeds.col(k) = a.head(joints).cwiseProduct(config.limits.max_velocity);
+  }
+  const Eigen::Matrix2d gram = speeds.transpose() * speeds;
+  return across * Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(gram).eigenvectors();
+}
+
+/// With all joints at their largest speeds, m/s.
+double reachableSpeed(const ControllerConfig& config, const ChainPose& pose,
+                      const FastestCover& cover) {
+  ScaledVector a;
+  applyPointJacobianTranspose(config.chain, pose, config.tactile_modules[cover.module].link.joint,
+                              cover.p_Base, cover.direction, a);
+  return a.head(config.chain.size()).cwiseAbs().dot(config.limits.max_velocity);
+}
+
+/// Where a tool that is told leads the arm is not known: a cover may be as fast as it, wherever the
+/// joints can move it so. Of such ways the one with the most mass.
+FastestCover assumedFastest(const Scene& scene, int module) {
+  constexpr double kAtRest_m_per_s = 1e-6;
+  const ControllerConfig& config = scene.controller;
+  const TactileModuleConfig& read = config.tactile_modules[module];
   ChainPose pose;
   config.chain.computePose(config.q_start, pose);
-  for (std::size_t i = 0; i < contacts.fastest.size(); ++i) {
-    FastestCover& fastest = contacts.fastest[i];
-    const TactileModuleConfig& module = config.tactile_modules[i];
-    const Pose X_BaseModule = framePose(pose, module.link);
-    fastest.speed_m_per_s = config.task.commands->limits.position.max_speed;
-    fastest.module = static_cast<int>(i);
-    fastest.q = config.q_start;
-    fastest.p_Base = X_BaseModule.p_AB + 0.5 * module.length_m * X_BaseModule.R_AB.col(0);
-    fastest.direction = X_BaseModule.R_AB.col(1);
+  const Pose X_BaseModule = framePose(pose, read.link);
+  FastestCover cover{.module = module, .q = config.q_start};
+  cover.p_Base = X_BaseModule.p_AB + 0.5 * read.length_m * X_BaseModule.R_AB.col(0);
+  const Eigen::Matrix<double, 3, 2> ways = waysAcross(config, pose, cover, X_BaseModule);
+  FastestCover fastest = cover;
+  double most_kg = 0.0;
+  for (int k = 0; k < 2; ++k) {
+    cover.direction = ways.col(k);
+    cover.speed_m_per_s = std::min(config.task.commands->limits.position.max_speed,
+                                   reachableSpeed(config, pose, cover));
+    if (cover.speed_m_per_s < std::max(kAtRest_m_per_s, fastest.speed_m_per_s)) continue;
+    const double mass_kg = scene.arm ? massAt(scene, cover) : 0.0;
+    if (cover.speed_m_per_s == fastest.speed_m_per_s && mass_kg < most_kg) continue;
+    fastest = cover;
+    most_kg = mass_kg;
   }
+  return fastest;
 }
 
 MovingObstacle bearableMotion(const ForceGains& gains, double stiffest_N_per_m) {
@@ -208,7 +246,8 @@ ExpectedContact checkContacts(const Scene& scene, double stiffest_N_per_m) {
   if (scene.controller.tactile_modules.empty() && scene.plant.capsules.empty()) return report;
   PathContacts contacts =
       followPath(scene.controller, scene.plant, scene.period_s, scene.duration_s);
-  if (scene.controller.task.commands) assumeSpeeds(scene.controller, contacts);
+  for (std::size_t i = 0; scene.controller.task.commands && i < contacts.fastest.size(); ++i)
+    contacts.fastest[i] = assumedFastest(scene, static_cast<int>(i));
   if (scene.controller.force_control) {
     report.touches = touchesOf(scene, contacts);
     report.peak = worstPeak(scene, contacts, stiffest_N_per_m);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "support/closed_loop.h"
+#include "support/scene_files.h"
 #include "support/shipped_scene.h"
 #include "tactus/control/controller.h"
 #include "tactus/control/obstacle_speed.h"
@@ -208,6 +209,35 @@ TEST(TouchCheck, WarnsOfAPeakThatTheSensorCannotShow) {
 }
 
 /// Speeds of zero, and paths that never end, are no numbers to divide by.
+/// The mass that a contact is said to meet, of an arm that is told where to go.
+double massOfTold(const test::SceneFiles& files, const std::string& rotors) {
+  const Scene scene = files.load({{"task.trajectory", "~"},
+                                  {"task.source", "commands"},
+                                  {"task.wait_beyond_m", "0.02"},
+                                  {"task.max_return_speed_m_per_s", "0.05"},
+                                  {"robot.dynamics", "{rotor_inertia: " + rotors + "}"}});
+  const ExpectedContact expected = checkContacts(scene, kStiffest_N_per_m);
+  EXPECT_TRUE(expected.peak && expected.peak->mass_kg);
+  EXPECT_EQ(expected.peak->fastest.speed_m_per_s, 0.1);
+  return expected.peak->mass_kg.value_or(0.0);
+}
+
+/// However a module is turned about its link. Its middle is 0.25 m from the shoulder's axis.
+TEST(TouchCheck, MassOfAnArmThatIsToldIsThatOfWaysThatItHas) {
+  for (const char* const roll : {"0", "0.4", "1.5707963267948966", "1.5707963", "-2.2"}) {
+    test::SceneFiles files;
+    files.urdf = test::replaced(files.urdf, "<origin xyz=\"0.05 0 0\"/>",
+                                std::string("<origin xyz=\"0.05 0 0\" rpy=\"") + roll + " 0 0\"/>");
+    EXPECT_NEAR(massOfTold(files, "[9, 0.5, 0.1]"), 9.0, 1e-6) << roll;  // the lift's
+    EXPECT_NEAR(massOfTold(files, "[7, 0.5, 0.1]"), 8.0, 1e-6) << roll;  // the shoulder's
+    files.urdf = test::replaced(files.urdf, "axis xyz=\"0 0 2\"", "axis xyz=\"2 0 0\"");
+    const double lift = std::sin(0.2);
+    EXPECT_NEAR(massOfTold(files, "[9, 0.5, 0.1]"), 1.0 / (lift * lift / 9.0 + 0.25 * 0.25 / 0.5),
+                1e-6)
+        << "in a plane alone, " << roll;
+  }
+}
+
 TEST(TouchCheck, StandsAnArmThatHolds) {
   const ExpectedContact held = expectedOf(
       "scenario1_null_space",
