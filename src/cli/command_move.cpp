@@ -162,7 +162,8 @@ void addFollowCommand(CLI::App& app, int& exit_code) {
   command->add_flag("--wait", options->waits, "Until it has arrived at the last, or given up");
   command->callback([options, &exit_code] {
     const std::string& path = options->waypoints;
-    const Json waypoints = jsonOf(parseYaml({path, readFromDisk(path)}));
+    SourceReader reader(readFromDisk);
+    const Json waypoints = jsonOf(parseYaml(reader.readFirst(path)));
     exit_code = tell({{"do", "follow"}, {"waypoints", waypoints}}, *options);
   });
 }

@@ -221,7 +221,8 @@ class Commissioning {
 
   static void refuseChanges(const std::string& path, const std::string& before,
                             const std::string& after) {
-    const std::string now = readFromDisk(path);
+    SourceReader reader(readFromDisk);
+    const std::string now = reader.readFirst(path).text;
     if (now == before || now == after) return;
     throw InputError(fmt::format("{}: was changed meanwhile, expected no change", escaped(path)));
   }

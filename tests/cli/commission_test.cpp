@@ -246,6 +246,25 @@ TEST(Commission, RefusesAFileThatChangedMeanwhile) {
   EXPECT_FALSE(std::filesystem::exists(statePath(robotFile(scene))));
 }
 
+TEST(Commission, FilesThatCannotBeReadAreNamed) {
+  const CommissionFolder folder;
+  const Scene scene = folder.scene();
+  VirtualDesk desk(scene);
+  desk.on_write = [&] { std::filesystem::remove(folder.path("robot.yaml")); };
+  EXPECT_EQ(runCommission(scene, {}, desk), kExitFault);
+  EXPECT_NE(desk.said.find(folder.path("robot.yaml") + ":1:1: -: No such file"), std::string::npos)
+      << desk.said;
+  const std::string state = statePath(robotFile(scene));
+  std::filesystem::create_directory(state);
+  try {
+    readState(state);
+    ADD_FAILURE() << "a folder was read";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(state + ":1:1: -: is a folder"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Commission, WhatCannotBeWrittenIsSaidBeforeAnythingMoves) {
   for (const char* name : {"robot.yaml.next", "robot.yaml.commission.json.next", "robot.yaml~"}) {
     const CommissionFolder folder;
