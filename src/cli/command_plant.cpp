@@ -14,6 +14,7 @@
 #include "tactus/record/unsensed_text.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/json.h"
+#include "tactus/scene/located_error.h"
 
 namespace tactus {
 namespace {
@@ -40,7 +41,7 @@ void printCounters(const PlantRunResult& result, const Scene& scene) {
   fmt::print("{:<26}{}\n", "frames not taken", result.plant.frames_not_taken);
   fmt::print("{:<26}{}\n", "refused by interfaces", result.interface_refused);
   if (result.unsensed && result.unsensed->force_N > 0.0)
-    fmt::print("{}\n", unsensedText(*result.unsensed, scene));
+    fmt::print("{}\n", escaped(unsensedText(*result.unsensed, scene)));
 }
 
 void play(const PlantOptions& options) {
