@@ -11,7 +11,7 @@
 #include "tactus/cli/commands.h"
 #include "tactus/cli/commission_run.h"
 #include "tactus/cli/commission_terminal.h"
-#include "tactus/cli/number_within.h"
+#include "tactus/daemon/number_within.h"
 #include "tactus/record/run_error.h"
 #include "tactus/rt/scheduling.h"
 #include "tactus/scene/command_scene.h"

@@ -4,6 +4,7 @@
 
 #include "tactus/cli/commands.h"
 #include "tactus/cli/scope_run.h"
+#include "tactus/daemon/number_within.h"
 #include "tactus/scene/exit_code.h"
 
 /// An oscilloscope for contacts.
@@ -29,19 +30,19 @@ void addScopeCommand(CLI::App& app, int& exit_code) {
                       "FIELD > NUMBER, also < >= <=, as 'force_N[0] > 1.2'; else force of any "
                       "module above F_th");
   command->add_option("--pre", options->pre_s, "Seconds before the trigger")
-      ->check(CLI::Range(0.0, 5.0))
+      ->check(numberWithin(0.0, 5.0))
       ->capture_default_str();
   command->add_option("--post", options->post_s, "Seconds behind the trigger")
-      ->check(CLI::Range(0.05, 20.0))
+      ->check(numberWithin(0.05, 20.0))
       ->capture_default_str();
   command
       ->add_option("--hysteresis", options->hysteresis,
                    "How far the field has to go back behind the level before the next trigger")
-      ->check(CLI::Range(0.0, 1e9));
+      ->check(numberWithin(0.0, 1e9));
   command
       ->add_option("--holdoff", options->holdoff_s,
                    "Seconds without another trigger; --post at least")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(numberWithin(0.0, 1e6));
   CLI::Option* const single =
       command->add_flag("--single", options->is_single, "End after the first trigger");
   CLI::Option* const normal =

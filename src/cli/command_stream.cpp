@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
+#include "tactus/daemon/number_within.h"
 #include "tactus/daemon/running_log.h"
 #include "tactus/io/datagram_socket.h"
 #include "tactus/record/growing_file.h"
@@ -101,7 +102,7 @@ void addStreamCommand(CLI::App& app, int& exit_code) {
       ->expected(0, 1)
       ->capture_default_str();
   command->add_option("--rate", options->rate_hz, "Cycles a second")
-      ->check(CLI::Range(0.1, 1000.0))
+      ->check(numberWithin(0.1, 1000.0))
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = stream(*options); });
 }

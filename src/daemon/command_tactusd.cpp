@@ -11,6 +11,7 @@
 #include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/daemon_program.h"
 #include "tactus/daemon/daemon_run.h"
+#include "tactus/daemon/number_within.h"
 #include "tactus/record/log_size.h"
 #include "tactus/record/run_folder.h"
 #include "tactus/scene/command_scene.h"
@@ -61,7 +62,7 @@ int runArguments(int argc, char** argv) {
                  "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files");
   app.add_option("--name", options.name, kNameHelp);
   app.add_option("--duration", options.duration_s, "End after so many seconds of motion")
-      ->check(CLI::Range(1e-3, 1e9));
+      ->check(numberWithin(1e-3, 1e9));
   app.add_option("--set", options.settings, kSetHelp)->allow_extra_args(false);
   try {
     app.parse(argc, argv);

@@ -4,11 +4,13 @@
 
 #include <cstdio>
 
+#include "tactus/scene/located_error.h"
+
 namespace tactus {
 
 void JournalSink::onMode(const ModeReport& report, const std::string& description) {
   service_.onMode(report.mode, description);
-  std::fputs(fmt::format("tactusd: {}\n", description).c_str(), stderr);
+  std::fputs(fmt::format("tactusd: {}\n", escaped(description)).c_str(), stderr);
 }
 
 }  // namespace tactus

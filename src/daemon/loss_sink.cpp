@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "tactus/record/run_summary.h"
+#include "tactus/scene/located_error.h"
 
 namespace tactus {
 
@@ -13,7 +14,7 @@ void LossSink::add(const LoopRecord& record) {
   if (now == modules_lost_) return;
   const auto say = [&](std::uint64_t modules, const std::string& what) {
     for (const std::string& link : lostModules(scene_, modules))
-      std::fputs(fmt::format("tactusd: tactile module {} {} at {:.9g} s{}\n", link, what,
+      std::fputs(fmt::format("tactusd: tactile module {} {} at {:.9g} s{}\n", escaped(link), what,
                              record.cycle.t_s, what == "lost" ? ", the arm goes on slowly" : "")
                      .c_str(),
                  stderr);

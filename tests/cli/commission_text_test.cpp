@@ -10,7 +10,7 @@
 #include "tactus/cli/commission_file.h"
 #include "tactus/cli/commission_report.h"
 #include "tactus/cli/commission_run.h"
-#include "tactus/cli/number_within.h"
+#include "tactus/daemon/number_within.h"
 
 /// What commissioning says, and makes of what is typed and of files.
 namespace tactus {

@@ -95,6 +95,14 @@ class BadInput(unittest.TestCase):
         scene = self.write("start: [9, 0, 0, 0, 0, 0, 0, 0, 0]\n")
         self.expect_refused(scene, "scene.yaml:2:9: start[0]: ")
 
+    def test_numbers_that_are_nan(self):
+        """CLI11's own range lets them through."""
+        for arguments in (["scope", "--pre"], ["scope", "--hysteresis"], ["stream", "--rate"],
+                          ["set", "controller.damping=0.7", "--for"], ["doctor", "--duration"]):
+            result = self.run_tactus(*arguments, "nan")
+            self.assertEqual(result.returncode, 2, arguments)
+            self.assertIn("nan not in", result.stderr)
+
     def test_usage_as_json(self):
         for command in (["check", "--json"], ["check", "a", "--json", "--no-such"], ["--json"]):
             result = self.run_tactus(*command)

@@ -1,4 +1,4 @@
-#include "tactus/cli/number_within.h"
+#include "tactus/daemon/number_within.h"
 
 #include <fmt/format.h>
 
