@@ -56,7 +56,7 @@ GrowingFile::int_type GrowingFile::underflow() {
     }
     is_live_ = true;
     if (size < 0 || is_other || is_over) {
-      goes_on_ = is_other && !is_over;
+      goes_on_ = is_other;  // also of a run that is over: its last file
       return traits_type::eof();
     }
     std::this_thread::sleep_for(kPause);
