@@ -7,6 +7,7 @@ usage: daemon_test.py FOLDER TACTUS VIRTUAL_DAEMON"""
 import json
 import os
 import pathlib
+import signal
 import socket
 import sys
 import tempfile
@@ -155,6 +156,22 @@ class NoDaemon(unittest.TestCase):
         daemon = tactus.Daemon(self.path, timeout_s=0.05)
         with self.assertRaisesRegex(tactus.RunError, "does not answer"):
             daemon.show()
+
+    def test_answers_nobody_who_was_interrupted(self):
+        """Its answer would be taken for that to the next request."""
+        self.serve(None)
+        daemon = tactus.Daemon(self.path)
+
+        def interrupt(*_):
+            raise KeyboardInterrupt
+
+        before = signal.signal(signal.SIGALRM, interrupt)
+        self.addCleanup(signal.signal, signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_REAL, 0.1)
+        with self.assertRaises(KeyboardInterrupt):
+            daemon.show()
+        with self.assertRaisesRegex(ValueError, "closed"):
+            daemon.hold()
 
     def test_has_no_status(self):
         self.serve(b"{}")

@@ -67,6 +67,9 @@ class Daemon:
         except OSError as error:
             self.close()  # an answer that comes late would be taken for the next one
             raise RunError(f"{self.path}: the daemon does not answer: {error}") from error
+        except BaseException:  # Ctrl-C, likewise
+            self.close()
+            raise
         try:
             answer = json.loads(packet)
         except ValueError:
