@@ -186,6 +186,7 @@ class BadStudies(Sweeps):
                 (begin + "grid: {controller.damping: {from: 0.5, to: .inf, count: 2}}", r"'.inf', expected a f"),
                 (begin + "grid: {controller.damping: {from: 0.5, to: 1, count: 1}}", r"'1', expected a whole"),
                 (begin + "grid: {controller.damping: {from: 0, to: 1, count: 2, scale: log}}", r"scale is log"),
+                (begin + "grid: {controller.damping: {from: 0.7, to: 0.700002, count: 5}}", r"5 values that 6 dig"),
                 (begin + "sobol: {points: 3, keys: {controller.damping: [1]}}", r":2:17: .*a power of 2"),
                 (begin + "sobol: {points: 4}", r"sobol: without keys"),
                 (begin + "disturbances: {draws: 2, keys: {controller.damping: {mean: 1, "

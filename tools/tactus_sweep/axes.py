@@ -144,4 +144,6 @@ def read_grid(entry):
         raise entry.error("without count", "how many values there are from from to to")
     count = known["count"].whole(2, MAX_VALUES)
     texts = [as_setting(axis.value(number / (count - 1)), axis) for number in range(count)]
+    if len(set(texts)) < count:
+        raise known["count"].error(f"{count} values that {DIGITS} digits do not tell apart", "fewer, or farther apart")
     return Axis(entry, texts)
