@@ -6,8 +6,14 @@ bool resetsController(Mode mode, Mode before) noexcept {
   return !isCommanding(mode) && isCommanding(before);
 }
 
+void forgetMotionWhileBooting(Mode mode, Mode before, ControllerState& state) noexcept {
+  if (mode != Mode::kBoot && before != Mode::kBoot) return;
+  for (TactileReading& reading : state.modules) reading.cover.has_started = false;
+}
+
 void applyMode(const Controller& controller, Mode mode, Mode before, const RobotInput& input,
                const Gains& gains, ControllerState& state) noexcept {
+  forgetMotionWhileBooting(mode, before, state);
   if (resetsController(mode, before)) controller.restart(gains, state);
   // Where drives stop by themselves, the arm is where they say.
   if (!isCommanding(mode) || !isCommanding(before))

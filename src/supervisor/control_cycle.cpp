@@ -184,6 +184,7 @@ ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept
 void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   const bool is_running = mode_.mode == Mode::kRunning;
   if (!is_started_ && !is_running) {
+    forgetMotionWhileBooting(mode_.mode, before, state_);
     controller_.watchSensors(input_, period_s_, state_);
     output_.q_desired = robot_.hasPositions() ? input_.q_measured : places_.commanded();
     return;

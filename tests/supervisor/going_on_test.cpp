@@ -125,5 +125,39 @@ TEST(GoingOn, ASilentModuleInContactMovesNothingLater) {
   }
 }
 
+/// A module under a cover of weight. While drives boot nobody knows where joints are.
+Scene sceneWithCover(int tare_samples) {
+  Scene scene = sceneOf("null_limit");
+  for (TactileModuleConfig& module : scene.controller.tactile_modules)
+    module.cover = CoverConfig{0.4, Vector3(0.19, 0.0, 0.0)};
+  scene.controller.gravity_Base = Vector3(0.0, 0.0, -9.81);
+  for (CanTactileConfig& module : scene.hardware->tactile_modules)
+    module.tare_samples = tare_samples;
+  return scene;
+}
+
+TEST(GoingOn, DrivesThatBootAreNoPushOnACover) {
+  VirtualRobotCell cell(sceneWithCover(50));
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  step(cell, 500);
+  for (int restart = 0; restart < 2; ++restart) {
+    cell.input.lines.emergency_stop = true;
+    step(cell, 1000);
+    cell.input.lines.emergency_stop = false;
+    const double before_N = cell.record().force_sensor_N[0];
+    cell.switchEnable();
+    for (int i = 0; i < 300; ++i) {
+      cell.step();
+      ASSERT_NEAR(cell.record().force_sensor_N[0], before_N, 0.5) << i;
+    }
+    EXPECT_EQ(cell.cycle.report().mode, Mode::kRunning) << faultName(cell.cycle.report().fault);
+  }
+}
+
+TEST(GoingOn, DrivesThatBootAreNoPushOnACoverThatIsTaredInNoTime) {
+  VirtualRobotCell cell(sceneWithCover(1));
+  EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000)) << faultName(cell.cycle.report().fault);
+}
+
 }  // namespace
 }  // namespace tactus
