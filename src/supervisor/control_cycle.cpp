@@ -161,8 +161,9 @@ void ControlCycle::rememberPlaces() noexcept {
     places_.observe(joint, input_.q_measured[joint], robot_.isHolding(joint),
                     is_let_go && !is_commanding);
   }
-  // It may have been its feedback that stood still.
-  if (mode_.fault == Fault::kFollowingError && report_.joint >= 0) places_.doubt(report_.joint);
+  // It may have been its feedback that stood still, whatever other drive's fault was the first.
+  for (int joint = 0; joint < places_.commanded().size(); ++joint)
+    if (robot_.drive(joint).fault == Fault::kFollowingError) places_.doubt(joint);
 }
 
 ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept {

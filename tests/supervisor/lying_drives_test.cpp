@@ -143,6 +143,41 @@ TEST(LyingDrive, WhosePositionStoodStillIsNotInPlaceThere) {
   EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart);
 }
 
+/// The same where another drive fails in that very cycle, and is the one that is named.
+TEST(LyingDrive, WhosePositionStoodStillIsNotInPlaceThereThoughAnotherOneFailed) {
+  Scene scene = sceneWith({}, true);
+  for (DriveConfig& drive : scene.hardware->drives) drive.max_following_error = 0.05;
+  scene.hardware->start_tolerance = 0.02;
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  std::array<std::uint8_t, 4> kept{};
+  bool has_kept = false, has_failed = false;
+  cell.on_frame = [&](int bus, CanFrame& frame) {
+    if (bus == 0 && frame.id == 0x181 && has_failed) frame.data[0] = 0x18;  // fault
+    if (bus != 0 || frame.id != 0x182) return;
+    if (!has_kept) std::copy_n(frame.data.begin() + 2, 4, kept.begin());
+    has_kept = true;
+    std::copy_n(kept.begin(), 4, frame.data.begin() + 2);
+  };
+  for (int i = 0; i < 10000 && cell.cycle.report().mode == Mode::kRunning; ++i) {
+    const CycleRecord record = cell.record();
+    const double q_next = record.q[1] + scene.period_s * record.dq[1];
+    has_failed = std::abs(q_next - record.q_measured[1]) > 0.05;
+    cell.step();
+  }
+  ASSERT_EQ(cell.cycle.report().fault, Fault::kDriveFault);
+  ASSERT_EQ(cell.cycle.robot().drive(1).fault, Fault::kFollowingError);
+  passCycles(cell, 1000);
+  has_failed = false;
+  cell.switchEnable();
+  for (int i = 0; i < 1000; ++i) {
+    cell.step();
+    ASSERT_NE(cell.cycle.report().mode, Mode::kEnabling) << i;
+  }
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart);
+  EXPECT_EQ(cell.cycle.report().joint, 1);
+}
+
 TEST(LyingDrive, ThatMovesOnIsBrakedAndStoppedInTime) {
   for (const int joint : {0, 3, 8}) {
     const int bus = joint / 3;
