@@ -38,8 +38,7 @@ Fault ControlCycle::judge(const CycleInput& input) noexcept {
 /// Of the last cycle. At rest nothing starts on a reading that would stop it.
 Fault ControlCycle::judgeController() noexcept {
   if (mode_.mode == Mode::kBoot) return Fault::kNone;
-  if (mode_.mode == Mode::kRunning || mode_.mode == Mode::kRetreating ||
-      mode_.mode == Mode::kHolding) {
+  if (isHeldByDrives()) {
     if (output_.fault == Fault::kNone) return Fault::kNone;
     judged_.detail = output_.fault_detail;
     judged_.joint = judged_.detail.joint;
@@ -73,12 +72,29 @@ Fault ControlCycle::judgeDrives() noexcept {
                                 (mode_.mode == Mode::kBoot && areConfigured());
   if (drives.fault != Fault::kNone) judged_.detail = robot_.drive(drives.joint).detail;
   if (drives.fault == Fault::kFollowingError) judged_.detail.unit = joint_units_[drives.joint];
-  if (drives.fault != Fault::kNone || !is_about_to_move) return drives.fault;
+  if (drives.fault != Fault::kNone) return drives.fault;
+  if (isHeldByDrives() && !drives.are_enabled) {
+    judged_.joint = firstNotFollowing();
+    return Fault::kDriveStateLost;
+  }
+  if (!is_about_to_move) return Fault::kNone;
   const int joint = judged_.joint = places_.outOfPlace(input_.q_measured);
   if (joint < 0) return Fault::kNone;
   judged_.detail = {std::abs(input_.q_measured[joint] - places_.commanded()[joint]),
                     places_.tolerance(), joint_units_[joint]};
   return Fault::kNotAtStart;
+}
+
+bool ControlCycle::isHeldByDrives() const noexcept {
+  return mode_.mode == Mode::kRunning || mode_.mode == Mode::kRetreating ||
+         mode_.mode == Mode::kHolding;
+}
+
+/// Drives themselves forgive what is lost in the first cycles of operation, as on the way there.
+int ControlCycle::firstNotFollowing() const noexcept {
+  for (int joint = 0; joint < places_.commanded().size(); ++joint)
+    if (robot_.drive(joint).state != DriveState::kOperationEnabled) return joint;
+  return -1;
 }
 
 Fault ControlCycle::judgeTactile() noexcept {

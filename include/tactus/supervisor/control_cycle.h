@@ -72,6 +72,8 @@ class ControlCycle {
   Fault judge(const CycleInput& input) noexcept;
   Fault judgeBuses(const CycleInput& input) noexcept;
   Fault judgeDrives() noexcept;
+  bool isHeldByDrives() const noexcept;
+  int firstNotFollowing() const noexcept;
   Fault judgeTactile() noexcept;
   Fault judgeModule(int module) noexcept;
   bool isLeftOut(int module, Fault fault) const noexcept;
