@@ -226,8 +226,9 @@ DriveGoal ControlCycle::driveGoal() const noexcept {
     case Mode::kRetreating:
     case Mode::kHolding:
       return DriveGoal::kEnabled;
-    case Mode::kStopping:
-      return mayLetGo(brake_config_, brake_) ? DriveGoal::kDisabled : DriveGoal::kEnabled;
+    case Mode::kStopping:  // of a start cut short nothing has to be held, and no drive gets power
+      return mayLetGo(brake_config_, brake_) || !have_brakes_opened_ ? DriveGoal::kDisabled
+                                                                     : DriveGoal::kEnabled;
     case Mode::kFault:
       return DriveGoal::kQuickStop;
     case Mode::kReady:
@@ -245,6 +246,8 @@ void ControlCycle::updateBrakes() noexcept {
   input.is_any_moving_on = drives.is_any_moving_on;
   input.is_at_rest = output_.velocity.isZero(0.0);
   updateBrake(brake_config_, mode_, input, brake_);
+  const bool is_off = mode_.mode == Mode::kBoot || mode_.mode == Mode::kReady;
+  have_brakes_opened_ = brake_.is_open || (have_brakes_opened_ && !is_off);
 }
 
 GpioOutputs ControlCycle::lines() const noexcept {

@@ -133,6 +133,7 @@ class ControlCycle {
   BrakeConfig brake_config_;
   ModeState mode_;
   BrakeState brake_;
+  bool have_brakes_opened_ = false;  ///< since drives were off: joints may need them to close
   Judged judged_;
   ModeReport report_;
   ControllerState state_;
