@@ -110,11 +110,13 @@ void TactileReceiver::finish() noexcept {
   publish(Wrench5{{known[0], known[1], known[2], known[3], moment_x_Nm}});
 }
 
+/// What a broken cable says is left out of the filters: it would ring on once the cable is whole.
 void TactileReceiver::publish(const Wrench5& raw) noexcept {
   if (tare_state_ == TareState::kAveraging) average(raw);
   Wrench5 wrench = raw - offset_;
+  const bool is_read = fault_ != Fault::kTactileCableBreak;
   for (int i = 0; i < kReadings; ++i) {
-    if (filters_[i]) wrench[i] = filters_[i]->update(wrench[i]);
+    if (filters_[i] && is_read) wrench[i] = filters_[i]->update(wrench[i]);
   }
   if (++counters_.samples == 0) counters_.samples = 1;  // 0 says that there is none
   sample_ = {wrench[0], wrench[1], wrench[2], wrench[3], counters_.samples, wrench[4]};

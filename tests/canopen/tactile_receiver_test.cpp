@@ -493,6 +493,24 @@ TEST(TactileReceiver, TheOffsetDoesNotRingInTheFilterAfterATare) {
   }
 }
 
+/// Once the cable is whole again nothing is felt that nobody pushed: that would be retreated from.
+TEST(TactileReceiver, WhatABrokenCableSaysDoesNotRingInTheFilter) {
+  CanTactileConfig config = tactileConfig();
+  config.filter_cutoff_hz = 15.0;
+  for (const int broken_samples : {1, 10}) {
+    TactileReceiver receiver(config, kPeriod_s);
+    int sequence = 0;
+    for (int i = 0; i < 100; ++i) receive(receiver, tactileFrames(++sequence, forceY(0.5)));
+    for (int i = 0; i < broken_samples; ++i)
+      receive(receiver, tactileFrames(++sequence, forceY(200.0), 0x02));
+    EXPECT_EQ(receiver.fault(), Fault::kTactileCableBreak);
+    for (int i = 0; i < 50; ++i) {
+      receive(receiver, tactileFrames(++sequence, forceY(0.5)));
+      EXPECT_NEAR(receiver.sample().force_y_N, 0.5, 1e-3) << i;
+    }
+  }
+}
+
 /// One frame, most of them of the module, some of anything.
 CanFrame randomFrame(std::mt19937& random, int& sequence) {
   CanFrame frame = tactileFrames(sequence, kTouch)[random() % 4];
