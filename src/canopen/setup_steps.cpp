@@ -14,6 +14,9 @@ using Kind = SetupStep::Kind;
 /// COB-id of a TPDO: no remote frames (CiA 301, 7.5.2.37, bit 30).
 constexpr std::uint32_t kNoRemote = 0x40000000;
 constexpr std::uint32_t kEverySync = 1;  // transmission type
+/// Unit of velocities: increments (0xB5) a second (0x03), without a power of ten before them.
+constexpr std::uint32_t kCountsPerSecond = 0x00B50300;
+constexpr std::uint32_t kUnitBits = 0xFFFFFF00;
 
 SetupStep write(std::uint16_t index, std::uint8_t subindex, int size, std::uint32_t value) {
   return {Kind::kWrite, {index, subindex, size}, value};
@@ -110,6 +113,8 @@ SetupSteps setupSteps(const DriveConfig& drive, const CanopenConfig& canopen, do
       write(0x1800, 1, 4, kNoRemote | (cob_id::kTpdo1 + node)),
       write(0x6060, 0, 1, 9),           // cyclic synchronous velocity
       expect({0x6061, 0, 1}, 9, 0xFF),  // some drives show it only after a while
+      // Drives that know units mostly come with turns a minute, and so fast 60FF would be.
+      ifThere(expect({0x60A9, 0, 4}, kCountsPerSecond, kUnitBits)),
       write(0x60C2, 1, 1, period.value),
       write(0x60C2, 2, 1, static_cast<std::uint8_t>(period.exponent)),
   });

@@ -255,6 +255,26 @@ TEST(DriveSetup, RefusesADriveThatDoesNotTakeTheMode) {
   EXPECT_EQ(rig.report().setup_failure.index, 0x6061);
 }
 
+/// Drives of several vendors come with 60FF in turns a minute, which would be some hundred times as
+/// fast as what was meant.
+TEST(DriveSetup, RefusesADriveWhoseVelocitiesAreNotCounts) {
+  constexpr std::uint32_t kCountsPerSecond = 0x00B50300;
+  for (const std::uint32_t unit : {0x00B44700u, 0xFDB44700u, 0x00B40300u, 0xFDB50300u}) {
+    DriveRig rig;
+    rig.slave.objects[{0x60A9, 0}] = unit;
+    rig.configure();
+    EXPECT_FALSE(rig.report().is_configured) << std::hex << unit;
+    EXPECT_EQ(rig.report().fault, Fault::kDriveSetupRefused);
+    EXPECT_EQ(rig.report().setup_failure.index, 0x60A9);
+    EXPECT_EQ(rig.report().setup_failure.value, unit);
+    EXPECT_EQ(rig.report().setup_failure.expected, kCountsPerSecond);
+  }
+  DriveRig rig;
+  rig.slave.objects[{0x60A9, 0}] = kCountsPerSecond;
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+}
+
 TEST(DriveSetup, WaitsForADriveThatShowsItsModeLate) {
   DriveRig rig;
   rig.slave.shows_mode = false;

@@ -67,8 +67,9 @@ int bytesOf(const ObjectEntry& entry) {
   const bool is_pdo = (entry.index & 0xFE00) == 0x1400 || (entry.index & 0xFE00) == 0x1800;
   if (is_pdo) return entry.subindex == 1 ? 4 : entry.subindex == 2 ? 1 : 2;
   switch (entry.index) {
-    case 0x1000:  // device type, consumer heartbeat time
+    case 0x1000:  // device type, consumer heartbeat time, unit of velocities
     case 0x1016:
+    case 0x60A9:
       return 4;
     case 0x6060:  // modes of operation, and its display
     case 0x6061:
