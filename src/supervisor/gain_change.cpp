@@ -47,6 +47,8 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
     case GainState::kKept:
       return;
     case GainState::kWaiting:
+      // The way back that was begun goes on, or it would wait on half of it.
+      if (mustWait() && isGoingBack()) return advance(GainState::kWaiting);
       // Over others that are on trial, which are watched as before.
       if (isSame(gains_, kept_) || (!trips(seen) && !isOver())) begin();
       return;
@@ -61,8 +63,14 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
   }
 }
 
+bool GainChange::mustWait() const noexcept { return order_.waits_for_free && is_in_contact_; }
+
+bool GainChange::isGoingBack() const noexcept {
+  return isSame(to_, kept_) && !isSame(gains_, kept_);
+}
+
 void GainChange::begin() noexcept {
-  if (order_.waits_for_free && is_in_contact_) return;
+  if (mustWait()) return;
   ramp(order_.gains, gainRampDuration_s(gains_, order_.gains));
   contact_s_ = 0.0;
   for_s_ = order_.for_s;
@@ -103,6 +111,7 @@ double GainChange::wayBack_s(GainTrouble trouble) const noexcept {
 
 void GainChange::goBack(GainTrouble trouble, double figure, double limit) noexcept {
   ramp(kept_, wayBack_s(trouble));
+  for_s_ = kNoLimit;  // their time is over for whatever is ordered on the way
   report_.state = GainState::kGoingBack;
   report_.trouble = trouble;
   report_.figure = figure;

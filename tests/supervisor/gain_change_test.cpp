@@ -201,5 +201,29 @@ TEST_F(GainChangeTest, ForgetsDownToZeroAndNotToSubnormalNumbers) {
   EXPECT_EQ(std::fetestexcept(FE_UNDERFLOW), 0);
 }
 
+/// On the way back of gains whose time was over: it is gone to its end while the next change waits,
+/// and that change is not over with them.
+TEST_F(GainChangeTest, WhatIsOrderedOnTheWayBackIsNeitherLostNorHoldsItUp) {
+  for (const bool waits : {false, true}) {
+    change_ = GainChange(Gains{}, kPeriod_s);
+    GainOrder first = order(1, 0.3);
+    first.for_s = 1.0;
+    change_.order(first);
+    for (int i = 0; i < 10000 && state() != GainState::kGoingBack; ++i) pass(kPeriod_s);
+    pass(1.2);
+    ASSERT_EQ(state(), GainState::kGoingBack) << "longer than the time that is over";
+    GainOrder next = order(2, 0.2);
+    next.waits_for_free = waits;
+    change_.order(next);
+    pass(5.0);
+    EXPECT_EQ(state(), waits ? GainState::kWaiting : GainState::kOnTrial);
+    EXPECT_EQ(T_s(), waits ? 0.1 : 0.2);
+    pass(5.0, {});
+    EXPECT_EQ(T_s(), 0.2);
+    EXPECT_EQ(change_.report().number, 2u);
+    EXPECT_EQ(change_.report().trouble, GainTrouble::kNone);
+  }
+}
+
 }  // namespace
 }  // namespace tactus
