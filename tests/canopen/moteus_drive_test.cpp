@@ -135,6 +135,37 @@ TEST(MoteusDrive, RestsBeforeItLetsGo) {
   EXPECT_TRUE(rig.drive.report().is_off);
 }
 
+/// A controller's velocity is as noisy as its encoder, also at rest: one that stands has to be let
+/// go, and one that creeps is not for the same noise.
+TEST(MoteusDrive, RestsByItsPositionWhereItsVelocityIsNoisy) {
+  for (const float creep_turns_per_s : {0.0F, 0.025F}) {  // 0.05 rad/s
+    MoteusRig rig;
+    rig.enable();
+    rig.mode = 12;
+    bool was_stopped = false;
+    for (int i = 0; i < 600; ++i) {
+      rig.turns += 0.001F * creep_turns_per_s;
+      const float noise = i % 2 == 0 ? 0.05F : -0.05F;
+      rig.drive.receive(moteusReply(rig.mode, rig.turns, creep_turns_per_s + noise, 0));
+      was_stopped |= rig.quietCycle(DriveGoal::kDisabled).mode == 0;
+    }
+    EXPECT_EQ(was_stopped, creep_turns_per_s == 0.0F) << creep_turns_per_s;
+  }
+}
+
+/// That it stood still before it moved does not count.
+TEST(MoteusDrive, IsNotAtRestAtOnceAfterItHasBegunToMove) {
+  MoteusRig rig;
+  rig.enable();
+  for (int i = 0; i < 300; ++i) rig.cycle(DriveGoal::kEnabled);
+  rig.drive.receive(moteusReply(10, 0.0F, 0.3F, 0));
+  rig.quietCycle(DriveGoal::kEnabled, 0.6);
+  for (int i = 0; i < 100; ++i) {
+    rig.drive.receive(moteusReply(12, 0.0F, 0.2F, 0));
+    ASSERT_EQ(rig.quietCycle(DriveGoal::kQuickStop).mode, 12) << i;
+  }
+}
+
 TEST(MoteusDrive, LeavesAFaultAsItIsUntilARestart) {
   MoteusRig rig;
   rig.enable();
