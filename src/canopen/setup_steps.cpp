@@ -113,11 +113,11 @@ SetupSteps setupSteps(const DriveConfig& drive, const CanopenConfig& canopen, do
       write(0x1800, 1, 4, kNoRemote | (cob_id::kTpdo1 + node)),
       write(0x6060, 0, 1, 9),           // cyclic synchronous velocity
       expect({0x6061, 0, 1}, 9, 0xFF),  // some drives show it only after a while
-      // Drives that know units mostly come with turns a minute, and so fast 60FF would be.
-      ifThere(expect({0x60A9, 0, 4}, kCountsPerSecond, kUnitBits)),
       write(0x60C2, 1, 1, period.value),
       write(0x60C2, 2, 1, static_cast<std::uint8_t>(period.exponent)),
   });
+  // Drives that know units mostly come with turns a minute, and so fast 60FF would be.
+  if (drive.has_velocity_unit) add({ifThere(expect({0x60A9, 0, 4}, kCountsPerSecond, kUnitBits))});
   // Quick stop: its own ramp, then disabled.
   if (drive.has_quick_stop_option) add({write(0x605A, 0, 2, 2)});
   add({

@@ -9,20 +9,25 @@
 namespace tactus {
 namespace {
 
-constexpr const char* kQuickStopOption = "quick_stop_option";
+/// What of the profile a word of `without` switches off; null: it is no such word.
+bool* switchedOff(const YamlNode& word, DriveProfile& profile) {
+  if (word.kind != YamlNode::Kind::kScalar) return nullptr;
+  if (word.text == "quick_stop_option") return &profile.has_quick_stop_option;
+  if (word.text == "velocity_unit") return &profile.has_velocity_unit;
+  return nullptr;
+}
 
 void readWithout(const YamlNode& list, DriveProfile& profile) {
-  const char* const expectation = "expected a list of words: quick_stop_option";
+  const char* const expectation = "expected a list of words: quick_stop_option, velocity_unit";
   if (list.kind != YamlNode::Kind::kList || list.items.empty())
     failAt(list.at, "without", describe(list), expectation);
   for (std::size_t i = 0; i < list.items.size(); ++i) {
     const YamlNode& word = list.items[i];
     const std::string key = fmt::format("without[{}]", i);
-    if (word.kind != YamlNode::Kind::kScalar || word.text != kQuickStopOption)
-      failAt(word.at, key, describe(word), expectation);
-    if (!profile.has_quick_stop_option)
-      failAt(word.at, key, inQuotes(word.text) + " is given twice", expectation);
-    profile.has_quick_stop_option = false;
+    bool* const has = switchedOff(word, profile);
+    if (!has) failAt(word.at, key, describe(word), expectation);
+    if (!*has) failAt(word.at, key, inQuotes(word.text) + " is given twice", expectation);
+    *has = false;
   }
 }
 

@@ -275,6 +275,15 @@ TEST(DriveSetup, RefusesADriveWhoseVelocitiesAreNotCounts) {
   EXPECT_TRUE(rig.report().is_configured);
 }
 
+TEST(DriveSetup, DoesNotAskForAUnitThatAProfileSaysMeansNothing) {
+  DriveConfig config = test::driveConfig();
+  config.has_velocity_unit = false;
+  DriveRig rig(config);
+  rig.slave.objects[{0x60A9, 0}] = 0x00B44700;
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+}
+
 TEST(DriveSetup, WaitsForADriveThatShowsItsModeLate) {
   DriveRig rig;
   rig.slave.shows_mode = false;

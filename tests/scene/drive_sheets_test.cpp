@@ -126,6 +126,10 @@ TEST(DriveProfile, IsASourceAndAListOfWords) {
   };
   EXPECT_TRUE(parse("source: its manual\n"));
   EXPECT_FALSE(parse("source: its manual\nwithout: [quick_stop_option]\n"));
+  const DriveProfile both = parseDriveProfile(
+      {"odd.yaml", "source: its manual\nwithout: [velocity_unit, quick_stop_option]\n"});
+  EXPECT_FALSE(both.has_velocity_unit || both.has_quick_stop_option);
+  EXPECT_TRUE(parse("source: its manual\nwithout: [velocity_unit]\n"));
   const auto error = [&](const std::string& text) -> std::string {
     try {
       parse(text);

@@ -46,6 +46,7 @@ struct DriveConfig {
   std::optional<std::uint32_t> vendor_id{}, product_code{};
   int transmit_pdos = 4;              ///< all but the first are switched off, those that are there
   bool has_quick_stop_option = true;  ///< entry 605A; else its quick stop is its own affair
+  bool has_velocity_unit = true;      ///< entry 60A9, if it is there, says what 60FF is in
 };
 
 /// CANopen settings common to all drives.
