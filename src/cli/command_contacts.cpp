@@ -5,6 +5,7 @@
 #include <istream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "tactus/record/contact_json.h"
 #include "tactus/record/contact_watch.h"
 #include "tactus/record/growing_file.h"
+#include "tactus/record/log_parts.h"
 #include "tactus/record/logged_scene.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/run/logged_contacts.h"
@@ -81,12 +83,14 @@ void printContacts(const Scene& scene, const std::vector<ContactFigures>& contac
 void followContacts(const std::string& path, bool as_json) {
   const Scene scene = loadLogged(path);
   ContactWatch watch(scene.controller);
+  std::optional<std::string> run;
   if (!as_json) std::fputs(headerText().c_str(), stdout);
   std::fflush(stdout);
   for (bool goes_on = true; goes_on;) {
     GrowingFile file(path);
     std::istream in(&file);
     UlogReader reader(in, path);
+    if (!isOfRun(reader.description(), path, run)) break;
     reader.assumeGains(scene.controller.gains);
     CycleRecord record;
     while (reader.next(record)) printContacts(scene, watch.add(record), as_json);

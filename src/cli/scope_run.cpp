@@ -10,12 +10,14 @@
 #include <istream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "tactus/cli/scope_page.h"
 #include "tactus/cli/scope_text.h"
 #include "tactus/daemon/running_log.h"
 #include "tactus/record/growing_file.h"
+#include "tactus/record/log_parts.h"
 #include "tactus/record/logged_scene.h"
 #include "tactus/record/output_file.h"
 #include "tactus/record/ulog_reader.h"
@@ -201,10 +203,9 @@ Scope makeScope(const ScopeOptions& options) {
 }
 
 /// True: no more is wanted.
-template <class Stream, class IsLive>
-bool scopeCycles(Stream& in, const ScopeOptions& options, const Gains& gains, Scope& scope,
+template <class IsLive>
+bool scopeCycles(UlogReader& reader, const ScopeOptions& options, const Gains& gains, Scope& scope,
                  const IsLive& is_live) {
-  UlogReader reader(in, options.log);
   reader.assumeGains(gains);
   CycleRecord record;
   while (reader.next(record))
@@ -229,12 +230,16 @@ void runScope(ScopeOptions options) {
   const Gains gains = scope.gains();
   if (!options.follows) {
     std::ifstream in = openLog(options.log);
-    scopeCycles(in, options, gains, scope, [] { return false; });
+    UlogReader reader(in, options.log);
+    scopeCycles(reader, options, gains, scope, [] { return false; });
   }
+  std::optional<std::string> run;
   for (bool goes_on = options.follows; goes_on;) {
     GrowingFile file(options.log);
     std::istream in(&file);
-    if (scopeCycles(in, options, gains, scope, [&file] { return file.isLive(); })) return;
+    UlogReader reader(in, options.log);
+    if (!isOfRun(reader.description(), options.log, run)) break;
+    if (scopeCycles(reader, options, gains, scope, [&file] { return file.isLive(); })) return;
     goes_on = file.goesOn();
   }
   scope.finish();

@@ -46,6 +46,15 @@ LogPart logPart(const LogDescription& description, const std::string& path) {
   return part;
 }
 
+bool isOfRun(const LogDescription& description, const std::string& path,
+             std::optional<std::string>& run) {
+  const std::string found = logPart(description, path).run;
+  // One by tactus simulate has no name, and one file.
+  if (run && (found.empty() || found != *run)) return false;
+  run = found;
+  return true;
+}
+
 std::vector<LogExtent> checkParts(const std::vector<std::string>& paths) {
   std::vector<LogExtent> extents;
   LogPart before;

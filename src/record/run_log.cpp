@@ -22,6 +22,13 @@ namespace fs = std::filesystem;
 
 constexpr double kLookPeriod_s = 1.0;
 
+/// One who still reads the log of a run that was killed keeps that file: in the same one, begun
+/// anew, he would go on in the middle of this run. What is no file, as a device, is written to.
+void removeLogBefore(const std::string& path) {
+  std::error_code error;
+  if (fs::is_regular_file(fs::symlink_status(path, error))) fs::remove(path, error);
+}
+
 std::string newRunName() {
   std::random_device random;
   return fmt::format("{:08x}{:08x}", random(), random());
@@ -55,6 +62,7 @@ RunLog::RunLog(const Scene& scene, std::string folder)
   state_.folder = fs::absolute(folder_).string();
   description_.infos.emplace_back(kRunKey, newRunName());
   description_.infos.emplace_back(kPartKey, "0");
+  removeLogBefore(folder_ + "/" + logName(0));
   writer_ = begin(folder_ + "/" + logName(0));
   attempt([this] { keepReserve(); });
 }

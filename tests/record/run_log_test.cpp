@@ -13,6 +13,7 @@
 #include "tactus/record/log_parts.h"
 #include "tactus/record/run_error.h"
 #include "tactus/record/run_folder.h"
+#include "tactus/record/ulog_format.h"
 #include "tactus/scene/input_error.h"
 
 namespace tactus {
@@ -217,6 +218,33 @@ TEST_F(RunLogFiles, OneThatCannotBeBegunIsAnErrorOfTheStart) {
   } catch (const RunError& error) {
     EXPECT_EQ(error.what(), path("run.ulg") + ": cannot be written: No space left on device");
   }
+}
+
+/// Who reads the log of a run that was killed is not led on in the middle of the next one.
+TEST_F(RunLogFiles, TheLogOfAnEarlierRunIsNotWrittenTo) {
+  const std::string earlier(100000, 'x');
+  std::ofstream(path("run.ulg")) << earlier;
+  std::ifstream reader(path("run.ulg"));
+  RunLog log(scene_, folder_);
+  log.close();
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(reader), {}), earlier);
+  EXPECT_EQ(read("run.ulg").records.size(), 0u);
+}
+
+TEST(LogParts, TellWhetherALogGoesOnWithARun) {
+  const auto of = [](const char* run) {
+    LogDescription description;
+    description.infos = {{kRunKey, run}, {kPartKey, "3"}};
+    return description;
+  };
+  std::optional<std::string> run;
+  EXPECT_TRUE(isOfRun(of("a"), "run.ulg", run));
+  EXPECT_TRUE(isOfRun(of("a"), "run.ulg", run));
+  EXPECT_FALSE(isOfRun(of("b"), "run.ulg", run));
+  EXPECT_FALSE(isOfRun(LogDescription{}, "run.ulg", run));
+  std::optional<std::string> simulated;
+  EXPECT_TRUE(isOfRun(LogDescription{}, "run.ulg", simulated));
+  EXPECT_FALSE(isOfRun(LogDescription{}, "run.ulg", simulated));
 }
 
 TEST_F(RunLogFiles, AnEarlierRunLeavesNoOlderFilesToANewOne) {

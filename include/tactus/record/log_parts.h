@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,11 @@ struct LogPart {
 
 /// `path` is what errors call the log. Throws InputError.
 LogPart logPart(const LogDescription& description, const std::string& path);
+
+/// Whether a file that took the place of another one goes on with its run; no run: it is the first.
+/// Sets the run. Throws as logPart().
+bool isOfRun(const LogDescription& description, const std::string& path,
+             std::optional<std::string>& run);
 
 /// Reads logs to their ends, so that damaged ones, and such as are not the parts of one run in
 /// their order, are refused before anything else happens. Throws InputError, also if no log has a
