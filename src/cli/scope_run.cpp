@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <istream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "tactus/cli/scope_page.h"
@@ -164,8 +166,16 @@ class Scope {
       if (options_.follows) std::fputs((trace.dump() + "\n").c_str(), stdout);
   }
 
-  /// Who reads the page meanwhile has the one before.
+  /// Who reads the page meanwhile has the one before. What is no file, as a pipe or a device, is
+  /// written to, and not replaced.
   void write() const {
+    std::error_code error;
+    const std::filesystem::file_status there = std::filesystem::status(options_.output, error);
+    if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
+      OutputFile file(options_.output);
+      file.append(scopePage(view_));
+      return file.close();
+    }
     const std::string part = options_.output + ".part";
     OutputFile file(part);
     try {

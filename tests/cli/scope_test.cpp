@@ -17,6 +17,7 @@
 #include "tactus/cli/braille_canvas.h"
 #include "tactus/cli/commands.h"
 #include "tactus/cli/scope_page.h"
+#include "tactus/record/run_error.h"
 #include "tactus/run/simulation.h"
 #include "tactus/scene/json.h"
 
@@ -203,6 +204,17 @@ TEST(ScopePage, OfLargeNumbersHasFewLines) {
     EXPECT_LT(lines, 60u) << spread;
     EXPECT_EQ(html.find("nan\""), std::string::npos) << spread;
   }
+}
+
+TEST(Scope, WritesToADeviceAndDoesNotReplaceIt) {
+  const ScopedRun run("scenario3_tactus");
+  const test::RunFolder folder;
+  const std::string full = folder.path() + "/full";
+  std::filesystem::create_symlink("/dev/full", full);
+  std::string output;
+  EXPECT_THROW(test::runCommand(addScopeCommand, {"scope", run.log.path(), "-o", full}, output),
+               RunError);
+  EXPECT_TRUE(std::filesystem::is_symlink(full));
 }
 
 TEST(Scope, RefusesToOverwriteItsLog) {
