@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <istream>
 #include <memory>
@@ -32,9 +33,14 @@ Scene loadLogged(const std::string& path) {
 
 std::string swingText(const ContactFigures& contact) {
   constexpr double kRests_N = 0.1;
+  if (std::isnan(contact.swing_N)) return "-";
   if (contact.swing_N < kRests_N) return "rests";
   if (contact.swing_hz == 0.0) return fmt::format("{:.2f}, moves", contact.swing_N);
   return fmt::format("{:.2f} at {:.1f} Hz", contact.swing_N, contact.swing_hz);
+}
+
+std::string restText(const ContactFigures& contact) {
+  return std::isnan(contact.rest_force_N) ? "-" : fmt::format("{:.2f}", contact.rest_force_N);
 }
 
 /// c_e with its interval.
@@ -54,11 +60,11 @@ std::string headerText() {
 
 std::string contactText(const Scene& scene, const ContactFigures& contact) {
   return fmt::format(
-      "{:8.3f} {:8.3f} {:<10} {:6.0f} {:7.2f} {:7.3f} {:7.3f} {:7.2f} {:<15} {:9.0f} {:<20} "
+      "{:8.3f} {:8.3f} {:<10} {:6.0f} {:7.2f} {:7.3f} {:7.3f} {:>7} {:<15} {:9.0f} {:<20} "
       "{:6.1f} {:5.0f} {:5.0f} {:6.3g} {:5.3g}\n",
       contact.start_s, contact.end_s, escaped(linkOfModule(scene.module_links, contact.module)),
       1e3 * contact.position_m, contact.peak_force_N, contact.time_above_s, contact.settling_s,
-      contact.rest_force_N, swingText(contact), contact.stiffness_N_per_m,
+      restText(contact), swingText(contact), contact.stiffness_N_per_m,
       stiffnessText(contact.touch), 1e3 * contact.tcp_error_max_m, 100.0 * contact.null_share,
       100.0 * contact.task_share, contact.gains.force.time_constant_s, contact.gains.force.damping);
 }

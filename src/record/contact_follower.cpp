@@ -16,7 +16,10 @@ constexpr int kLeastPassages = 3;  ///< a force that only moves has one
 
 /// How it rests.
 void describeRest(const std::vector<double>& rest_N, double rest_s, ContactFigures& figures) {
-  if (rest_N.empty()) return;
+  if (rest_N.empty()) {
+    figures.rest_force_N = figures.swing_N = std::nan("");
+    return;
+  }
   const double mean =
       std::accumulate(rest_N.begin(), rest_N.end(), 0.0) / static_cast<double>(rest_N.size());
   const auto [least, most] = std::minmax_element(rest_N.begin(), rest_N.end());
@@ -51,7 +54,7 @@ void ContactFollower::Sums::add(const Cycle& cycle) noexcept {
 }
 
 std::optional<ContactFigures> ContactFollower::add(const CycleRecord& record) {
-  if (has_before_) period_s_ = record.t_s - before_s_;
+  if (has_before_) passTime(record);
   has_before_ = true;
   before_s_ = record.t_s;
   const std::optional<ContactSummary> over = list_.add(record);
@@ -68,6 +71,13 @@ std::optional<ContactFigures> ContactFollower::add(const CycleRecord& record) {
   if (!over) return std::nullopt;
   is_touching_ = false;
   return figuresOf(*over);
+}
+
+/// Of records that are missing nobody knows what was then: they count for nothing.
+void ContactFollower::passTime(const CycleRecord& record) noexcept {
+  period_s_ = record.t_s - before_s_;
+  if (period_s_ > 0.0) shortest_s_ = std::min(shortest_s_, period_s_);
+  period_s_ = std::min(period_s_, shortest_s_ * (1.0 + static_cast<double>(record.missed_cycles)));
 }
 
 std::optional<ContactFigures> ContactFollower::present() const {

@@ -4,11 +4,13 @@
 
 #include <cmath>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <vector>
 
 #include "support/rail_robot.h"
+#include "tactus/record/contact_json.h"
 
 namespace tactus {
 namespace {
@@ -97,6 +99,39 @@ TEST(ContactFollower, TellsOfAContactThatLasts) {
   EXPECT_NEAR(figures->rest_force_N, 3.0, 1e-12);
   EXPECT_EQ(figures->null_share, 1.0);
   EXPECT_EQ(figures->task_share, 0.0);
+}
+
+/// Of a contact of module 0 from 1 s to 5 s at 6 N, without the records of this stretch of time.
+ContactFigures followedWithout(double from_s, double to_s, int missed) {
+  ContactFollower follower(twoModules(), 0, 0);
+  std::optional<ContactFigures> over;
+  for (int i = 0; i < 6000; ++i) {
+    CycleRecord record;
+    record.t_s = kFollowedCycle_s * i;
+    if (record.t_s >= from_s && record.t_s < to_s) continue;
+    const bool is_behind = record.t_s >= to_s && record.t_s - kFollowedCycle_s < to_s;
+    record.missed_cycles = is_behind ? static_cast<std::uint64_t>(missed) : 0;
+    record.force_sensor_N[0] = i >= 1000 && i < 5000 ? 6.0 : 0.0;
+    if (std::optional<ContactFigures> figures = follower.add(record)) over = figures;
+  }
+  EXPECT_TRUE(over);
+  return over.value_or(ContactFigures{});
+}
+
+/// But of cycles that the loop has missed the next one says so.
+TEST(ContactFollower, CountsNoTimeOfMissingRecords) {
+  EXPECT_NEAR(followedWithout(0.0, 0.0, 0).time_above_s, 4.0, 2e-3);
+  EXPECT_NEAR(followedWithout(2.0, 4.0, 0).time_above_s, 2.0, 3e-3);
+  EXPECT_NEAR(followedWithout(2.0, 2.01, 10).time_above_s, 4.0, 2e-3);
+}
+
+/// The contact ended while nothing was recorded: not at 0 N.
+TEST(ContactFollower, KnowsNoRestOfMissingRecords) {
+  const ContactFigures figures = followedWithout(2.5, 5.5, 0);
+  EXPECT_NEAR(figures.end_s, 5.5, 1e-9);
+  EXPECT_TRUE(std::isnan(figures.rest_force_N));
+  EXPECT_TRUE(std::isnan(figures.swing_N));
+  EXPECT_TRUE(contactJson(figures, {}).at("rest_force_N").is_null());
 }
 
 /// Of a touch of a cycle or two there is hardly anything to say.

@@ -7,7 +7,8 @@
 namespace tactus {
 
 /// What there is to say of one contact. Forces are the sensor's, F_sen. How it rests is of its last
-/// second, or of its second half, without the 0.1 s in which it ended.
+/// second, or of its second half, without the 0.1 s in which it ended; NaN where no record of that
+/// is there.
 struct ContactFigures : ContactSummary {
   double position_m = 0.0;         ///< along the link, at the peak
   double time_above_s = 0.0;       ///< with F_sen > F_act + F_th

@@ -44,6 +44,7 @@ class ContactFollower {
     void add(const Cycle& cycle) noexcept;
   };
 
+  void passTime(const CycleRecord& record) noexcept;
   Cycle cycleOf(const CycleRecord& record) const noexcept;
   void begin(const CycleRecord& record);
   void keepTouch(const CycleRecord& record);
@@ -55,7 +56,8 @@ class ContactFollower {
   TouchFits fits_;
   ContactList list_;
   bool is_touching_ = false;
-  double before_s_ = 0.0, period_s_ = 0.0;
+  double before_s_ = 0.0;
+  double period_s_ = 0.0, shortest_s_ = kNoLimit;  ///< that a record stands for, and of all so far
   bool has_before_ = false;
   Gains gains_;               ///< at the start of the contact
   Sums sums_;                 ///< of its cycles that recent_ no longer has
