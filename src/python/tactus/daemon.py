@@ -61,8 +61,9 @@ class Daemon:
         """One request of docs/control.md as it stands there, and its answer."""
         if self._socket is None:
             raise ValueError("the connection is closed, expected a new tactus.Daemon")
+        text = json.dumps(dict(request), allow_nan=False)
         try:
-            self._socket.send(json.dumps(dict(request), allow_nan=False).encode())
+            self._socket.send(text.encode())
             packet = self._socket.recv(_MAX_ANSWER)
         except OSError as error:
             self.close()  # an answer that comes late would be taken for the next one
