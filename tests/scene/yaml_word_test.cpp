@@ -11,9 +11,10 @@ namespace {
 TEST(YamlWord, IsReadBackAsTextWhateverTheName) {
   test::Random random(3);
   const std::string characters = "aB0_-./ :#,{}[]'\"\\&*!|>%@`~?\n\t=\x7f";
-  std::vector<std::string> names = {"",     "~",    "null", "True",  "no",
-                                    "1",    "0x10", "1e3",  ".inf",  "- a",
-                                    "a: b", "a #b", "ü",    "link1", "../a/b.urdf"};
+  std::vector<std::string> names = {
+      "",    "~",    "null", "True", "no",    "1",           "0x10", "1e3",           ".inf",
+      "- a", "a: b", "a #b", "ü",    "link1", "../a/b.urdf", "🦾", "a\\ud83d🦾b", "\\🦾",
+      "𐀀"};
   for (int i = 0; i < 2000; ++i) {
     std::string name;
     for (int k = random.integer(1, 6); k > 0; --k)
