@@ -4,6 +4,7 @@ whatever else is asked of it, or of another one, in between.
 
 usage: controller_test.py FOLDER TACTUS"""
 
+import copy
 import gc
 import unittest
 
@@ -59,6 +60,11 @@ class Loops(unittest.TestCase):
             if field.startswith("tool_error") and "real" in run.scene.name:
                 continue  # of an arm with gears only the simulation knows where its tool is
             self.assertTrue(np.array_equal(record[field], run[field][-1]), field)
+
+    def test_of_a_copy_would_be_those_of_the_original(self):
+        controller = tactus.Controller(load(SKIN))
+        for copied in (copy.copy, copy.deepcopy):
+            self.assertRaises(TypeError, copied, controller)
 
     def test_of_two_controllers_are_independent(self):
         runs = [tactus.simulate(load("scenario3_tactus")), tactus.simulate(load(SKIN)),

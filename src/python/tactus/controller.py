@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +32,9 @@ class Controller:
             raise TypeError(f"a {type(scene).__name__}, expected a tactus.Scene")
         self.scene = scene
         self._core = _core.make_controller(scene._core, None if q is None else _array("q", q))
+
+    def __copy__(self) -> NoReturn:
+        raise TypeError("a controller cannot be copied, both would have one state; make another of the scene")
 
     def update(self, q_measured: ArrayLike, tactile: ArrayLike | None = None,
                sequence: ArrayLike | None = None) -> NDArray[np.float64]:
