@@ -97,10 +97,13 @@ class BadInput(unittest.TestCase):
 
     def test_numbers_that_are_nan(self):
         """CLI11's own range lets them through."""
-        for arguments in (["scope", "--pre"], ["scope", "--hysteresis"], ["stream", "--rate"],
-                          ["set", "controller.damping=0.7", "--for"], ["doctor", "--duration"]):
-            result = self.run_tactus(*arguments, "nan")
-            self.assertEqual(result.returncode, 2, arguments)
+        daemon = TACTUS.with_name("tactusd")
+        scene = CONFIG / "scenes/free_motion.yaml"
+        for command in ([TACTUS, "scope", "--pre"], [TACTUS, "scope", "--hysteresis"], [TACTUS, "stream", "--rate"],
+                        [TACTUS, "set", "controller.damping=0.7", "--for"], [TACTUS, "doctor", "--duration"],
+                        [daemon, scene, "--duration"]):
+            result = subprocess.run([*command, "nan"], capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual(result.returncode, 2, command)
             self.assertIn("nan not in", result.stderr)
 
     def test_usage_as_json(self):
