@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "tactus/daemon/gain_text.h"
 #include "tactus/daemon/request_refusal.h"
 #include "tactus/scene/gain_keys.h"
 #include "tactus/scene/located_error.h"
@@ -18,45 +19,6 @@ namespace {
 constexpr std::size_t kKeptForUndo = 16;
 constexpr std::size_t kMaxTrials = 16;  ///< that the loop has not told of
 constexpr double kMaxFor_s = 86400.0;
-
-const char* stateName(GainState state) noexcept {
-  switch (state) {
-    case GainState::kWaiting:
-      return "waiting";
-    case GainState::kRamping:
-      return "ramping";
-    case GainState::kOnTrial:
-      return "on_trial";
-    case GainState::kGoingBack:
-      return "going_back";
-    case GainState::kKept:
-      break;
-  }
-  return "kept";
-}
-
-std::string troubleText(const GainReport& report) {
-  switch (report.trouble) {
-    case GainTrouble::kSwings:
-      return fmt::format("the force swings by {:.2f} N, and does not settle (limit {:.2f} N)",
-                         report.figure, report.limit);
-    case GainTrouble::kLosses:
-      return fmt::format("contact is lost {:.1f} times a second (limit {:.1f})", report.figure,
-                         report.limit);
-    case GainTrouble::kAtLimits:
-      return fmt::format(
-          "a joint moves as fast as it may for {:.0f} % of the time in contact "
-          "(limit {:.0f} %)",
-          100.0 * report.figure, 100.0 * report.limit);
-    case GainTrouble::kFault:
-      return "the arm has a fault";
-    case GainTrouble::kTimeIsOver:
-      return fmt::format("{:g} s are over", report.limit);
-    case GainTrouble::kNone:
-      break;
-  }
-  return "";
-}
 
 std::string valueText(const std::string& key, const Json& value) {
   if (value.is_null()) return "~";
@@ -225,8 +187,8 @@ Json ControlRequests::show(const Json& request) {
 Json ControlRequests::showGains() {
   return {{"done", true},
           {"number", number_},
-          {"state", stateName(report_.state)},
-          {"trouble", troubleText(report_)},
+          {"state", gainStateName(report_.state)},
+          {"trouble", gainTroubleText(report_)},
           {"scene", newest().sources.front().path},
           {"scene_hash", fmt::format("{:016x}", read_hash_)},
           {"kept", gainsJson(kept_.controller.gains)},
@@ -271,10 +233,10 @@ std::string ControlRequests::lookAtGains() {
   if (!is_new) return "";
   report_ = report;
   if (report.state == GainState::kKept) trials_.clear();
-  const std::string trouble = troubleText(report);
+  const std::string trouble = gainTroubleText(report);
   const bool has_gone_back = report.state == GainState::kKept && !trouble.empty();
   return fmt::format("gains: change {} {}{}{}", report.number,
-                     has_gone_back ? "gone back" : stateName(report.state),
+                     has_gone_back ? "gone back" : gainStateName(report.state),
                      trouble.empty() ? "" : ": ", trouble);
 }
 
