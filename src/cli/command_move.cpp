@@ -162,8 +162,7 @@ void addFollowCommand(CLI::App& app, int& exit_code) {
   command->add_flag("--wait", options->waits, "Until it has arrived at the last, or given up");
   command->callback([options, &exit_code] {
     const std::string& path = options->waypoints;
-    SourceReader reader(readFromDisk);
-    const Json waypoints = jsonOf(parseYaml(reader.readFirst(path)));
+    const Json waypoints = jsonOf(parseYaml(SourceReader(readFromDisk).readFirst(path)));
     exit_code = tell({{"do", "follow"}, {"waypoints", waypoints}}, *options);
   });
 }

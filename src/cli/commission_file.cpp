@@ -162,8 +162,8 @@ std::string statePath(const SourceFile& robot) { return robot.path + ".commissio
 
 Json readState(const std::string& path) {
   if (!fs::exists(path)) return Json::object();
-  SourceReader reader(readFromDisk);
-  const Json state = Json::parse(reader.readFirst(path).text, nullptr, false);
+  const std::string text = SourceReader(readFromDisk).readFirst(path).text;
+  const Json state = Json::parse(text, nullptr, false);
   const bool is_ours =
       state.is_object() && state.contains("joints") && state.at("joints").is_object();
   if (!is_ours)

@@ -221,8 +221,7 @@ class Commissioning {
 
   static void refuseChanges(const std::string& path, const std::string& before,
                             const std::string& after) {
-    SourceReader reader(readFromDisk);
-    const std::string now = reader.readFirst(path).text;
+    const std::string now = SourceReader(readFromDisk).readFirst(path).text;
     if (now == before || now == after) return;
     throw InputError(fmt::format("{}: was changed meanwhile, expected no change", escaped(path)));
   }

@@ -46,12 +46,6 @@ double duration_s(const Json& request) {
   return value_s;
 }
 
-bool isOnlyRead(const Json& request) {
-  const Json value = request.value("only_read", Json(false));
-  if (!value.is_boolean()) refuseRequest("only_read is " + value.dump(), "true or false");
-  return value.get<bool>();
-}
-
 Json gainsJson(const Gains& gains) {
   Json json = Json::object();
   for (const GainKey& key : gainKeys()) json[key.path] = gainAt(gains, key.offset);
@@ -142,7 +136,7 @@ Json ControlRequests::reload(const Json& request) {
   refuseUnknown(request, {"do", "for_s", "only_read"});
   duration_s(request);  // a request that is refused has read nothing
   GainPlan plan = planReload(newest(), started_.overrides, leastMargin());
-  if (isOnlyRead(request) && !plan.keys.empty())
+  if (flagOf(request, "only_read") && !plan.keys.empty())
     throw InputError(
         fmt::format("{} in the scene file is not what was ordered", plan.keys.front()));
   read_hash_ = sourceHash(plan.scene.sources.front().text);

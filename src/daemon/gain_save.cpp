@@ -62,8 +62,7 @@ Json gainDifferences(const std::string& path, const Json& running) {
 SavedGains saveGains(const ControlClient& daemon) {
   const Json answer = daemon.ask({{"do", "show"}});
   const std::string path = answer.at("scene");
-  SourceReader reader(readFromDisk);
-  const std::string text = reader.readFirst(path).text;
+  const std::string text = SourceReader(readFromDisk).readFirst(path).text;
   if (fmt::format("{:016x}", sourceHash(text)) != answer.at("scene_hash"))
     throw InputError(
         fmt::format("{}: was changed since the daemon read it, expected no change; "

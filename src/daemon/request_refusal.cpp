@@ -22,4 +22,11 @@ void refuseUnknown(const Json& request, std::initializer_list<const char*> known
   }
 }
 
+bool flagOf(const Json& request, const char* name) {
+  const Json value = request.value(name, Json(false));
+  if (!value.is_boolean())
+    refuseRequest(fmt::format("{} is {}", name, value.dump()), "true or false");
+  return value.get<bool>();
+}
+
 }  // namespace tactus

@@ -98,9 +98,7 @@ void ToolRequests::requireArm() {
 
 ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from, Kind kind) const {
   const TaskConfig& task = scene_.controller.task;
-  const Json relative = request.value("relative", Json(false));
-  if (!relative.is_boolean()) refuseRequest("relative is " + relative.dump(), "true or false");
-  const bool is_relative = relative.get<bool>();
+  const bool is_relative = flagOf(request, "relative");
   const auto to_m = vectorOf(request, "to_m", kMaxPosition_m);
   const auto rotate_rad = vectorOf(request, "rotate_rad", kMaxTurn_rad);
   if (!to_m && !rotate_rad) refuseRequest("no target", "to_m or rotate_rad");

@@ -18,8 +18,6 @@ namespace {
 
 constexpr std::size_t kMaxValues = 100;
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 std::vector<Override> settingsOf(const Json& values) {
   if (!values.is_object() || values.size() > kMaxValues)
     throw InputError("values: expected an object of keys and texts");
@@ -51,13 +49,14 @@ Scene withSettings(const Scene& scene, const std::vector<Override>& settings) {
 }
 
 void addMargins(const Scene& scene, Json& answer) {
-  answer["margin_deg"] = finite(phaseMargin_deg(scene));
+  answer["margin_deg"] = finiteOrNull(phaseMargin_deg(scene));
   const std::optional<StabilityReport> report = checkStability(scene);
   if (!report) return;
   for (const LoopReport& loop : report->loops)
-    answer["loops"].push_back({{"name", loop.name},
-                               {"phase_margin_deg", finite(loop.phaseMargin_deg())},
-                               {"largest_ratio", finite(loop.margins.largest_stiffness_ratio)}});
+    answer["loops"].push_back(
+        {{"name", loop.name},
+         {"phase_margin_deg", finiteOrNull(loop.phaseMargin_deg())},
+         {"largest_ratio", finiteOrNull(loop.margins.largest_stiffness_ratio)}});
   answer["warnings"] = report->warnings;
 }
 
@@ -82,8 +81,8 @@ Json GainCheck::check(const std::optional<RunStart>& start, const Json& shown, c
   load(start, shown);
   Json answer = {{"refused", ""},
                  {"margin_deg", nullptr},
-                 {"running_deg", finite(running_deg_)},
-                 {"least_deg", finite(least_deg_)},
+                 {"running_deg", finiteOrNull(running_deg_)},
+                 {"least_deg", finiteOrNull(least_deg_)},
                  {"loops", Json::array()},
                  {"warnings", Json::array()},
                  {"waits_for_free", false}};
@@ -100,7 +99,7 @@ Json GainCheck::check(const std::optional<RunStart>& start, const Json& shown, c
     answer["refused"] = error.what();
   }
   try {
-    answer["margin_deg"] = finite(phaseMargin_deg(withSettings(*running_, settings)));
+    answer["margin_deg"] = finiteOrNull(phaseMargin_deg(withSettings(*running_, settings)));
   } catch (const InputError&) {  // no scene: it has no margin
   }
   return answer;

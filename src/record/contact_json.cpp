@@ -1,14 +1,8 @@
 #include "tactus/record/contact_json.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace tactus {
-namespace {
-
-Json knownFigure(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
-}  // namespace
 
 std::string linkOfModule(const std::vector<std::string>& links, int module) {
   const auto index = static_cast<std::size_t>(module);
@@ -24,8 +18,8 @@ Json contactJson(const ContactFigures& contact, const std::vector<std::string>& 
                {"tactile_module", linkOfModule(links, contact.module)},
                {"position_m", contact.position_m},
                {"time_above_s", contact.time_above_s},
-               {"rest_force_N", knownFigure(contact.rest_force_N)},
-               {"swing_N", knownFigure(contact.swing_N)},
+               {"rest_force_N", finiteOrNull(contact.rest_force_N)},
+               {"swing_N", finiteOrNull(contact.swing_N)},
                {"swing_hz", contact.swing_hz},
                {"stiffness_N_per_m", contact.stiffness_N_per_m},
                {"contact_stiffness_N_per_m", nullptr},

@@ -86,8 +86,7 @@ Fault ControlCycle::judgeDrives() noexcept {
 }
 
 bool ControlCycle::isHeldByDrives() const noexcept {
-  return mode_.mode == Mode::kRunning || mode_.mode == Mode::kRetreating ||
-         mode_.mode == Mode::kHolding;
+  return isCommanding(mode_.mode) && mode_.mode != Mode::kStopping;
 }
 
 /// Drives themselves forgive what is lost in the first cycles of operation, as on the way there.

@@ -208,7 +208,6 @@ TEST(TouchCheck, WarnsOfAPeakThatTheSensorCannotShow) {
       "the sensor's max_force_N is 3"));
 }
 
-/// Speeds of zero, and paths that never end, are no numbers to divide by.
 /// The mass that a contact is said to meet, of an arm that is told where to go.
 double massOfTold(const test::SceneFiles& files, const std::string& rotors) {
   const Scene scene = files.load({{"task.trajectory", "~"},
@@ -238,6 +237,7 @@ TEST(TouchCheck, MassOfAnArmThatIsToldIsThatOfWaysThatItHas) {
   }
 }
 
+/// Speeds of zero, and paths that never end, are no numbers to divide by.
 TEST(TouchCheck, StandsAnArmThatHolds) {
   const ExpectedContact held = expectedOf(
       "scenario1_null_space",

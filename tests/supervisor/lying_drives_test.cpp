@@ -115,7 +115,20 @@ TEST(LyingDrive, ThatWentFurtherThanAnyStopIsNotInPlace) {
   EXPECT_EQ(cell.cycle.report().joint, 4);
 }
 
-/// A fault of another drive while this one ignores what it is told, and moves on.
+/// Of a drive's frames: the position of the first in all.
+class StandingPosition {
+ public:
+  void putInto(CanFrame& frame) {
+    if (!has_kept_) std::copy_n(frame.data.begin() + 2, 4, kept_.begin());
+    has_kept_ = true;
+    std::copy_n(kept_.begin(), 4, frame.data.begin() + 2);
+  }
+
+ private:
+  std::array<std::uint8_t, 4> kept_{};
+  bool has_kept_ = false;
+};
+
 /// Its position stands still from the start of motion on, until that is a following error. Once
 /// limp the joint may be pushed to just where its feedback stood: nobody held it there.
 TEST(LyingDrive, WhosePositionStoodStillIsNotInPlaceThere) {
@@ -124,13 +137,9 @@ TEST(LyingDrive, WhosePositionStoodStillIsNotInPlaceThere) {
   scene.hardware->start_tolerance = 0.02;
   VirtualRobotCell cell(scene);
   ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
-  std::array<std::uint8_t, 4> kept{};
-  bool has_kept = false;
+  StandingPosition position;
   cell.on_frame = [&](int bus, CanFrame& frame) {
-    if (bus != 0 || frame.id != 0x181) return;
-    if (!has_kept) std::copy_n(frame.data.begin() + 2, 4, kept.begin());
-    has_kept = true;
-    std::copy_n(kept.begin(), 4, frame.data.begin() + 2);
+    if (bus == 0 && frame.id == 0x181) position.putInto(frame);
   };
   ASSERT_TRUE(cell.runUntil(Mode::kFault, 10000));
   ASSERT_EQ(cell.cycle.report().fault, Fault::kFollowingError);
@@ -150,14 +159,11 @@ TEST(LyingDrive, WhosePositionStoodStillIsNotInPlaceThereThoughAnotherOneFailed)
   scene.hardware->start_tolerance = 0.02;
   VirtualRobotCell cell(scene);
   ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
-  std::array<std::uint8_t, 4> kept{};
-  bool has_kept = false, has_failed = false;
+  StandingPosition position;
+  bool has_failed = false;
   cell.on_frame = [&](int bus, CanFrame& frame) {
     if (bus == 0 && frame.id == 0x181 && has_failed) frame.data[0] = 0x18;  // fault
-    if (bus != 0 || frame.id != 0x182) return;
-    if (!has_kept) std::copy_n(frame.data.begin() + 2, 4, kept.begin());
-    has_kept = true;
-    std::copy_n(kept.begin(), 4, frame.data.begin() + 2);
+    if (bus == 0 && frame.id == 0x182) position.putInto(frame);
   };
   for (int i = 0; i < 10000 && cell.cycle.report().mode == Mode::kRunning; ++i) {
     const CycleRecord record = cell.record();
@@ -178,6 +184,7 @@ TEST(LyingDrive, WhosePositionStoodStillIsNotInPlaceThereThoughAnotherOneFailed)
   EXPECT_EQ(cell.cycle.report().joint, 1);
 }
 
+/// A fault of another drive while this one ignores what it is told, and moves on.
 TEST(LyingDrive, ThatMovesOnIsBrakedAndStoppedInTime) {
   for (const int joint : {0, 3, 8}) {
     const int bus = joint / 3;

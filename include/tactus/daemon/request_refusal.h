@@ -14,4 +14,7 @@ namespace tactus {
 /// that is silently not met.
 void refuseUnknown(const Json& request, std::initializer_list<const char*> known);
 
+/// True or false; absent: false. Refuses anything else.
+bool flagOf(const Json& request, const char* name);
+
 }  // namespace tactus

@@ -13,4 +13,7 @@ using Json = nlohmann::ordered_json;
 /// bytes that are no UTF-8 become U+FFFD.
 std::string jsonText(const Json& json);
 
+/// The number, or null for what JSON has none for.
+Json finiteOrNull(double value);
+
 }  // namespace tactus
