@@ -29,7 +29,7 @@ void addRun(const std::string& scene, const LoopRun& run, const LoopRun& referen
   const bool is_comparable = !is_reference && run.period_s <= kTraceStep_s;
   runs.rows.push_back(
       {scene, run.period_s / kMillisecond, run.outcome, double(figures.cycles), run.control_time_s,
-       run.run_time_s, double(figures.step_time_ns.median), figures.peak_force_N,
+       run.run_time_s, double(figures.step_time_ns->median), figures.peak_force_N,
        figures.final_force_N, 1e3 * figures.tcp_error_max_m, 1e3 * figures.tcp_error_rms_m,
        toReference(figures.peak_force_N, reference.figures.peak_force_N),
        1e3 * toReference(figures.tcp_error_max_m, reference.figures.tcp_error_max_m),

@@ -79,7 +79,7 @@ LoopRun runWithPeriod(const Scene& original, double period_s) {
   });
   run.figures = result.figures;
   const auto cycles = static_cast<double>(result.figures.cycles);
-  run.control_time_s = 1e-9 * cycles * static_cast<double>(result.figures.step_time_ns.median);
+  run.control_time_s = 1e-9 * cycles * static_cast<double>(result.figures.step_time_ns->median);
   run.run_time_s = cycles * scene.period_s / result.real_time_factor;
   const Ripple ripple = lastRipple(samples, result.figures, scene.period_s);
   run.ripple_N = ripple.deviation;

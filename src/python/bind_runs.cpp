@@ -45,13 +45,14 @@ py::tuple simulateScene(const Scene& scene) {
   return py::make_tuple(std::move(columns), textOf(summary));
 }
 
-/// The summary as JSON, of a run that keeps no cycle and fits no stiffness: half the time.
+/// The summary as JSON, of a run that keeps no cycle and has the figures of sweeps alone: half the
+/// time.
 std::string runFigures(const Scene& scene) {
   long long cycles = 0;
   const auto look = [&](const CycleRecord&) {
     if (++cycles % kCyclesBetweenLooks == 0) lookForSignals();
   };
-  const SimulationResult result = simulate(scene, look, TouchFits::kLeftOut);
+  const SimulationResult result = simulate(scene, look, FigureSet::kOfSweep);
   return jsonText(summaryJson(scene, result.figures, result.real_time_factor));
 }
 

@@ -35,10 +35,10 @@ void describeRest(const std::vector<double>& rest_N, double rest_s, ContactFigur
 }  // namespace
 
 ContactFollower::ContactFollower(const ControllerConfig& config, std::size_t expected_cycles,
-                                 int module, TouchFits fits)
+                                 int module, FigureSet set)
     : config_(config),
       module_(module),
-      fits_(fits),
+      set_(set),
       list_(contactList(config, expected_cycles, module)) {}
 
 void ContactFollower::Sums::add(const Cycle& cycle) noexcept {
@@ -61,7 +61,7 @@ std::optional<ContactFigures> ContactFollower::add(const CycleRecord& record) {
   const bool is_touching = list_.isTouching() || over;
   if (is_touching && !is_touching_) begin(record);
   is_touching_ = is_touching;
-  if (fits_ == TouchFits::kMade) keepTouch(record);
+  if (set_ == FigureSet::kAll) keepTouch(record);
   if (!is_touching) return std::nullopt;
   recent_.push_back(cycleOf(record));
   while (recent_.front().t_s < record.t_s - kRecent_s) {

@@ -6,9 +6,9 @@
 namespace tactus {
 
 ContactWatch::ContactWatch(const ControllerConfig& config, std::size_t expected_cycles,
-                           TouchFits fits) {
+                           FigureSet set) {
   for (int i = 0; i < static_cast<int>(config.tactile_modules.size()); ++i)
-    modules_.emplace_back(config, expected_cycles, i, fits);
+    modules_.emplace_back(config, expected_cycles, i, set);
 }
 
 std::vector<ContactFigures> ContactWatch::add(const CycleRecord& record) {

@@ -56,15 +56,16 @@ void addTo(Json& json, const RunFigures& figures, const Scene& scene) {
   if (scene.controller.module_loss) json["module_losses"] = lossesJson(figures, scene);
   if (figures.further_losses > 0) json["further_module_losses"] = figures.further_losses;
   if (figures.unsensed) json["unsensed_contact"] = unsensedJson(*figures.unsensed, scene);
-  json["step_time_ns"] = timesJson(figures.step_time_ns);
+  if (figures.step_time_ns) json["step_time_ns"] = timesJson(*figures.step_time_ns);
 }
 
 }  // namespace
 
-RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles, TouchFits fits)
+RunSummary::RunSummary(const ControllerConfig& config, std::size_t expected_cycles, FigureSet set)
     : limits_(config.limits),
       modules_(static_cast<int>(config.tactile_modules.size())),
-      contacts_(config, expected_cycles, fits) {
+      contacts_(config, expected_cycles, set),
+      is_timed_(set == FigureSet::kAll) {
   if (config.task.hasRotation()) figures_.tcp_rotation_error.emplace();
 }
 
@@ -92,7 +93,7 @@ void RunSummary::addFigures(const CycleRecord& record) noexcept {
   figures_.stiffness_final_N_per_m = record.stiffness_N_per_m;
   addToolError(record);
   addJoints(record);
-  step_times_.add(record.step_ns);
+  if (is_timed_) step_times_.add(record.step_ns);
 }
 
 /// Before the cycle's figures: those of the last one tell what is new.
@@ -150,7 +151,7 @@ RunFigures RunSummary::figures() const {
   }
   for (const ContactFigures& contact : contacts_.present()) figures.contacts.push_back(contact);
   std::ranges::stable_sort(figures.contacts, {}, &ContactFigures::start_s);
-  figures.step_time_ns = timeFigures(step_times_);
+  if (is_timed_) figures.step_time_ns = timeFigures(step_times_);
   return figures;
 }
 

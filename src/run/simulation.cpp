@@ -23,18 +23,16 @@ std::int64_t nanoseconds(Clock::duration duration) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
 }
 
-/// As the daemon's receivers find it in the counts of the newest samples.
-void judgeChannels(const SimulatedRobot& robot, VirtualCycle& cycle) {
-  for (int i = 0; i < robot.modules(); ++i)
-    if (robot.module(i).isSaturated()) cycle.note(Fault::kTactileSaturated, i);
-}
-
-/// The newest that the module does not call none, as the daemon's receivers take them.
-void read(SimulatedRobot& robot, RobotInput& input) {
+/// The newest that the module does not call none, as the daemon's receivers take them, and the
+/// fault that they find in the counts of the newest.
+void read(SimulatedRobot& robot, VirtualCycle& cycle, RobotInput& input) {
   const auto before = input.tactile;
   robot.read(input);
-  for (int i = 0; i < robot.modules(); ++i)
-    if (robot.module(i).isSaturated()) input.tactile[i] = before[i];
+  for (int i = 0; i < robot.modules(); ++i) {
+    if (!robot.module(i).isSaturated()) continue;
+    input.tactile[i] = before[i];
+    cycle.note(Fault::kTactileSaturated, i);
+  }
 }
 
 }  // namespace
@@ -44,24 +42,24 @@ std::size_t cyclesToReserve(const Scene& scene) {
   return static_cast<std::size_t>(std::min(cycles, kMaxReservedCycles));
 }
 
-SimulationResult simulate(const Scene& scene, const CycleSink& sink, TouchFits fits) {
+SimulationResult simulate(const Scene& scene, const CycleSink& sink, FigureSet set) {
   const auto cycles = std::llround(scene.duration_s / scene.period_s);
   const auto cycles_at_rest = std::llround(kRest_s / scene.period_s);
   VirtualCycle cycle(scene);
   SimulatedRobot robot(scene.controller, scene.plant, scene.period_s);
-  RunSummary summary(scene.controller, cyclesToReserve(scene), fits);
+  RunSummary summary(scene.controller, cyclesToReserve(scene), set);
   ToolRotationError rotation_error(scene.controller);
   RobotInput input;
   CycleRecord record;
 
+  const bool is_timed = set == FigureSet::kAll;
   const Clock::time_point start = Clock::now();
   long long done = 0, rest = 0;
   for (; done < cycles && rest < cycles_at_rest; ++done) {
-    read(robot, input);
-    judgeChannels(robot, cycle);
-    const Clock::time_point before = Clock::now();
+    read(robot, cycle, input);
+    const Clock::time_point before = is_timed ? Clock::now() : start;
     cycle.update(input);
-    record.step_ns = nanoseconds(Clock::now() - before);
+    if (is_timed) record.step_ns = nanoseconds(Clock::now() - before);
     const ControllerOutput& output = cycle.output();
     const Vector3 error = toolError(scene.controller.task, output.w_d, robot.toolPosition());
     robot.write(output.velocity);

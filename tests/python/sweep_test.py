@@ -142,11 +142,12 @@ class Scenes(unittest.TestCase):
         except tactus.ConfigError as error:
             return str(error), error.line, error.key
 
-    def test_give_the_figures_of_the_module_without_fits(self):
+    def test_give_the_figures_of_the_module_without_fits_and_times(self):
         run = tactus.simulate(tactus.Scene(SCENE))
         figures = json.loads(tactus._core.figures(run.scene._core))
+        del run.summary["step_time_ns"]
         for summary in (figures, run.summary):
-            del summary["step_time_ns"], summary["real_time_factor"]
+            del summary["real_time_factor"]
         self.assertGreater(len(run.contacts), 0)
         for contact in run.summary["contacts"]:
             self.assertIsNotNone(contact["contact_stiffness_N_per_m"])

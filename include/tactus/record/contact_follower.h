@@ -8,9 +8,10 @@
 
 namespace tactus {
 
-/// Whether contacts are told with the stiffness that they were found to have, fitTouch(), or as if
-/// that were unknown. A fit takes as long as a thousand cycles of a run.
-enum class TouchFits { kMade, kLeftOut };
+/// All, or what a sweep shows: contacts without the stiffness that they were found to have,
+/// fitTouch(), which takes as long as a thousand cycles of a run, and no times, for reading the
+/// clock takes a tenth of them.
+enum class FigureSet { kAll, kOfSweep };
 
 /// Figures of the contacts of one tactile module, each once it is over, in one pass. Memory is that
 /// of 1.3 s, and of the samples of ContactList.
@@ -18,7 +19,7 @@ class ContactFollower {
  public:
   /// `expected_cycles` as of contactList().
   ContactFollower(const ControllerConfig& config, std::size_t expected_cycles, int module,
-                  TouchFits fits = TouchFits::kMade);
+                  FigureSet set = FigureSet::kAll);
 
   /// The contact that is over with this cycle.
   std::optional<ContactFigures> add(const CycleRecord& record);
@@ -53,7 +54,7 @@ class ContactFollower {
 
   ControllerConfig config_;
   int module_;
-  TouchFits fits_;
+  FigureSet set_;
   ContactList list_;
   bool is_touching_ = false;
   double before_s_ = 0.0;

@@ -11,7 +11,7 @@ class ContactWatch {
  public:
   /// `expected_cycles` is only used to allocate in advance.
   explicit ContactWatch(const ControllerConfig& config, std::size_t expected_cycles = 0,
-                        TouchFits fits = TouchFits::kMade);
+                        FigureSet set = FigureSet::kAll);
 
   /// Contacts that are over with this cycle.
   std::vector<ContactFigures> add(const CycleRecord& record);

@@ -42,13 +42,13 @@ struct RunFigures {
   /// Cycles with a desired joint within 0.1 mm or 0.1 mrad of a position limit, or beyond it.
   long long joints_at_limit_cycles = 0;
   double stiffness_final_N_per_m = 0.0;
-  double stiffness_at_peak_N_per_m = 0.0;  ///< in the (first) cycle of the peak force
-  std::vector<ContactFigures> contacts;    ///< in the order of their start
-  long long further_contacts = 0;          ///< behind the first 10000, of which no more is known
-  std::uint64_t modules_lost = 0;          ///< in the last cycle; bit i: module i
-  std::vector<ModuleLoss> module_losses;   ///< in the order of their start
-  long long further_losses = 0;            ///< behind the first 10000, likewise
-  TimeFigures step_time_ns;
+  double stiffness_at_peak_N_per_m = 0.0;   ///< in the (first) cycle of the peak force
+  std::vector<ContactFigures> contacts;     ///< in the order of their start
+  long long further_contacts = 0;           ///< behind the first 10000, of which no more is known
+  std::uint64_t modules_lost = 0;           ///< in the last cycle; bit i: module i
+  std::vector<ModuleLoss> module_losses;    ///< in the order of their start
+  long long further_losses = 0;             ///< behind the first 10000, likewise
+  std::optional<TimeFigures> step_time_ns;  ///< absent with FigureSet::kOfSweep
   /// The strongest of the simulated world that no module feels; absent without capsules.
   std::optional<UnsensedContact> unsensed;
   FaultReport end;  ///< the fault that ended the run, for who runs it to fill in; none: as planned
@@ -59,7 +59,7 @@ class RunSummary {
  public:
   /// `expected_cycles` is only used to allocate in advance.
   RunSummary(const ControllerConfig& config, std::size_t expected_cycles,
-             TouchFits fits = TouchFits::kMade);
+             FigureSet set = FigureSet::kAll);
 
   void add(const CycleRecord& record);
   /// All but contacts and losses, so that memory does not grow.
@@ -81,6 +81,7 @@ class RunSummary {
       0;  ///< modules whose present loss is the last one of theirs listed
   ContactWatch contacts_;
   double squared_error_sum_m2_ = 0.0, squared_rotation_sum_rad2_ = 0.0;
+  bool is_timed_;
   Histogram step_times_;
 };
 

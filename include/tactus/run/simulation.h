@@ -25,7 +25,7 @@ std::size_t cyclesToReserve(const Scene& scene);
 
 /// Runs a scene in virtual time. A fault ends the run as soon as the arm is at rest.
 SimulationResult simulate(const Scene& scene, const CycleSink& sink,
-                          TouchFits fits = TouchFits::kMade);
+                          FigureSet set = FigureSet::kAll);
 
 /// The same, and logs every cycle to log_path. Throws InputError or RunError if the log can't be
 /// written.
