@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "support/period.h"
+#include "tactus/canopen/rest_watch.h"
 
 namespace tactus {
 namespace {
@@ -154,6 +155,35 @@ TEST(MoteusDrive, RestsByItsPositionWhereItsVelocityIsNoisy) {
 }
 
 /// That it stood still before it moved does not count.
+/// Each reply is of one period, so that a window is as long as it should be.
+TEST(MoteusDrive, ThatMovesOnInAQuickStopIsSeen) {
+  for (const double share : {0.8, 1.4}) {  // of what is taken for rest
+    MoteusRig rig;
+    rig.enable();
+    const double way = share * RestWatch::kMoved * test::kPeriod_s / RestWatch::kWindow_s;
+    for (int i = 0; i < 150; ++i) {
+      rig.turns += static_cast<float>(0.5 * way);
+      rig.cycle(DriveGoal::kQuickStop);
+    }
+    EXPECT_EQ(rig.drive.report().is_moving_on, share > 1.0);
+  }
+}
+
+/// Enabled is who was seen enabled in three cycles in a row: what came before counts for nothing.
+TEST(MoteusDrive, IsLostOnceItHasSettled) {
+  for (int running = 0; running < 6; ++running) {
+    MoteusRig rig;
+    rig.configure();
+    for (int i = 0; i < 3; ++i) rig.cycle(DriveGoal::kEnabled);
+    rig.mode = 10;
+    for (int i = 0; i < running; ++i) rig.cycle(DriveGoal::kEnabled);
+    rig.mode = 0;
+    rig.cycle(DriveGoal::kEnabled);
+    const Fault expected = running < 3 ? Fault::kNone : Fault::kDriveStateLost;
+    EXPECT_EQ(rig.drive.report().fault, expected) << running;
+  }
+}
+
 TEST(MoteusDrive, IsNotAtRestAtOnceAfterItHasBegunToMove) {
   MoteusRig rig;
   rig.enable();

@@ -17,6 +17,7 @@ TEST(InterpolationPeriod, IsExactOrRefused) {
   EXPECT_EQ(interpolationPeriod(0.01), (InterpolationPeriod{1, -2}));
   EXPECT_EQ(interpolationPeriod(0.00125), (InterpolationPeriod{125, -5}));
   EXPECT_EQ(interpolationPeriod(0.000125), (InterpolationPeriod{125, -6}));
+  EXPECT_EQ(interpolationPeriod(20.0), (InterpolationPeriod{20, 0}));
   for (double period_s : {0.001 / 3.0, 0.00333, 0.0, -0.001, std::nan(""), HUGE_VAL, 1e-12})
     EXPECT_EQ(interpolationPeriod(period_s), std::nullopt) << period_s;
   for (int value = 1; value <= 255; ++value) {

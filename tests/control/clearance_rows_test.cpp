@@ -150,6 +150,27 @@ TEST(ClearanceRows, AreNotAllThatTheGateKeeps) {
   }
 }
 
+/// Of all of the motion: what the task asks for comes near a wall as well.
+TEST(ClearanceRows, AreKeptByTheTask) {
+  RailBeforeAWall rail;
+  rail.config.task.size = 1;
+  const MotionGate gate(rail.config, rail.inv_sqrt);
+  const JointVector q = rail.at(0.06), rest = JointVector::Zero(2);
+  rail.look(*gate.clearance(), q);
+  const WeightedPseudoinverse& J = rail.kinematics.pseudoinverse;
+  const double v_max = 5.0 * (0.06 - kSafe_m - 0.001) / 0.5;
+  for (const double speed : {0.9 * v_max, 1.2 * v_max, -1.2 * v_max}) {
+    SpeedRows rows;
+    Motion motion;
+    motion.v_scaled.setZero();
+    motion.y = J.project(ScaledVector::Unit(0));
+    motion.y *= speed / (rail.inv_sqrt[0] * J.expand(motion.y)[0]);
+    gate.keep({q, rest, true}, rail.kinematics, 1.0, kRail_s, rows, motion);
+    const ScaledVector velocity = rail.inv_sqrt.cwiseProduct(motion.v_scaled + J.expand(motion.y));
+    EXPECT_NEAR(velocity[0], std::min(speed, v_max), 1e-6 * v_max);
+  }
+}
+
 /// The largest share that can still be stopped, found to a thirty-second, between the stop of the
 /// velocity before and what is wanted.
 TEST(ClearanceRows, HoldBackNoMoreThanIsNeeded) {

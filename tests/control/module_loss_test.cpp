@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "support/controller_run.h"
 #include "support/period.h"
@@ -179,11 +180,14 @@ TEST(ModuleLoss, LeavesTheWayAsItIs) {
     }
     EXPECT_EQ(output.fault, Fault::kNone);
     EXPECT_NEAR(output.path_time_s, is_lost ? kShare * duration_s : duration_s, 0.01);
-    return JointVector(state.q_desired);
+    return std::pair(JointVector(state.q_desired), TaskVector(output.w_d_dot));
   };
-  const JointVector fast = end(false, 3.0);
+  const auto [fast, fast_speed] = end(false, 3.0);
+  const auto [slow, slow_speed] = end(true, 3.0 / kShare);
   EXPECT_GT((fast - config.q_start).norm(), 0.05) << "an arm that does not move goes no way";
-  EXPECT_LT((end(true, 3.0 / kShare) - fast).norm(), 5e-3);
+  EXPECT_LT((slow - fast).norm(), 5e-3);
+  EXPECT_GT(fast_speed.norm(), 1e-2);
+  EXPECT_LT((slow_speed - kShare * fast_speed).norm(), 1e-2 * fast_speed.norm());
 }
 
 TEST(ModuleLoss, EndsASecondAfterTheModuleIsBack) {

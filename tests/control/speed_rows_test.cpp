@@ -195,6 +195,29 @@ TEST(SpeedRows, AreKeptByASlowerMotionWhereTheSolverMustEndEarly) {
   EXPECT_GT(cut, 1000);
 }
 
+/// Room that an earlier cycle has used is no row.
+TEST(SpeedRows, EndWhereTheirNumberSays) {
+  test::Random random(318);
+  int cut = 0;
+  for (int i = 0; i < 2000; ++i) {
+    RowsCase c(random, random.integer(2, kMaxRows - 1));
+    Motion motion = c.motion, other = c.motion;
+    const bool is_whole =
+        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), kBothSpaces, motion, 0).is_whole;
+    cut += is_whole ? 0 : 1;
+    RowProblem(c.rows, c.m).keep(motion, 0);
+    SpeedRow& beyond = c.rows.row[c.rows.size];
+    beyond = c.rows.row[0];
+    beyond.v_max_m_per_s = 0.0;
+    beyond.a_scaled = -c.motion.v_scaled;
+    beyond.a_task = -c.motion.y;
+    RowProblem(c.rows, c.m).keep(other, 0);
+    ASSERT_EQ(other.v_scaled, motion.v_scaled) << i;
+    ASSERT_EQ(other.y, motion.y) << i;
+  }
+  EXPECT_GT(cut, 500);
+}
+
 /// What the bound of the solver's steps is for.
 TEST(SpeedRows, AreSolvedWithinTheirStepsHoweverTheyOpposeEachOther) {
   test::Random random(317);
