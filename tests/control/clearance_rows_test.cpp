@@ -134,19 +134,21 @@ TEST(ClearanceRows, AreNotAllThatTheGateKeeps) {
   const MotionGate gate(rail.config, rail.inv_sqrt);
   const JointVector q = rail.at(0.5), rest = JointVector::Zero(2);
   rail.look(*gate.clearance(), q);
-  for (const double speed : {0.09, 0.11}) {
-    SpeedRows rows;
-    SpeedRow& contact = rows.row[rows.size++];
-    contact.a_scaled = rail.inv_sqrt.cwiseProduct(-ScaledVector::Unit(0));
-    contact.a_task = rail.kinematics.pseudoinverse.project(contact.a_scaled);
-    contact.v_max_m_per_s = 0.1;
-    contact.damping_N_s_per_m = contact.presence = 1.0;
-    Motion motion;
-    motion.y.setZero();
-    motion.v_scaled = speed / rail.inv_sqrt[0] * ScaledVector::Unit(0);
-    const RowVector l = gate.keep({q, rest, true}, rail.kinematics, 1.0, kRail_s, rows, motion);
-    EXPECT_EQ(l[0] > 0.0, speed > 0.1);
-    EXPECT_NEAR(speedAlong(rows.row[0], 1, motion), -std::min(speed, 0.1), 1e-6);
+  for (const double v_max : {0.1, -0.1}) {  // of an approach, and of a way back
+    for (const double excess : {-0.01, 0.01}) {
+      SpeedRows rows;
+      SpeedRow& contact = rows.row[rows.size++];
+      contact.a_scaled = rail.inv_sqrt.cwiseProduct(-ScaledVector::Unit(0));
+      contact.a_task = rail.kinematics.pseudoinverse.project(contact.a_scaled);
+      contact.v_max_m_per_s = v_max;
+      contact.damping_N_s_per_m = contact.presence = 1.0;
+      Motion motion;
+      motion.y.setZero();
+      motion.v_scaled = (v_max + excess) / rail.inv_sqrt[0] * ScaledVector::Unit(0);
+      const RowVector l = gate.keep({q, rest, true}, rail.kinematics, 1.0, kRail_s, rows, motion);
+      EXPECT_EQ(l[0] > 0.0, excess > 0.0);
+      EXPECT_NEAR(speedAlong(rows.row[0], 1, motion), -v_max - std::min(excess, 0.0), 1e-6);
+    }
   }
 }
 
