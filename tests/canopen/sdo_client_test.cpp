@@ -189,7 +189,9 @@ TEST_F(Sdo, CanBeUsedAgainAfterEveryEnd) {
   for (int cycle = 0; cycle < kTimeout; ++cycle) update();
   beginUpload();
   hear({0x80, 0x00, 0x10, 0, 0, 0, 0, 8});
+  EXPECT_NE(client.abortCode(), 0u);
   beginDownload();
+  EXPECT_EQ(client.abortCode(), 0u) << "of what is asked for now";
   hear({0x60, 0x40, 0x60, 0, 0, 0, 0, 0});
   EXPECT_EQ(client.status(), SdoStatus::kDone);
 }
