@@ -184,6 +184,30 @@ TEST(LyingDrive, WhosePositionStoodStillIsNotInPlaceThereThoughAnotherOneFailed)
   EXPECT_EQ(cell.cycle.report().joint, 1);
 }
 
+/// What their drives held while they stopped is where the others are, further from the last command
+/// than an arm may stand that nobody held.
+TEST(LyingDrive, IsNoReasonToDoubtTheOthers) {
+  Scene scene = sceneWith({}, true);
+  scene.hardware->start_tolerance = 2e-4;
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  passCycles(cell, 2000);
+  bool has_failed = true;
+  cell.on_frame = [&](int bus, CanFrame& frame) {
+    if (bus == 0 && frame.id == 0x181 && has_failed) frame.data[0] = 0x18;
+  };
+  const CycleRecord last = cell.record();
+  passCycles(cell, 1000);
+  ASSERT_EQ(cell.cycle.report().fault, Fault::kDriveFault);
+  double furthest = 0.0;
+  for (int joint = 1; joint < 9; ++joint)
+    furthest = std::max(furthest, std::abs(cell.record().q_measured[joint] - last.q[joint]));
+  EXPECT_GT(furthest, 1.5 * scene.hardware->start_tolerance) << "this test is blind";
+  has_failed = false;
+  cell.switchEnable();
+  EXPECT_TRUE(cell.runUntil(Mode::kRunning, 4000)) << faultName(cell.cycle.report().fault);
+}
+
 /// A fault of another drive while this one ignores what it is told, and moves on.
 TEST(LyingDrive, ThatMovesOnIsBrakedAndStoppedInTime) {
   for (const int joint : {0, 3, 8}) {
