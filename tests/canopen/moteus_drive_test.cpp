@@ -154,7 +154,6 @@ TEST(MoteusDrive, RestsByItsPositionWhereItsVelocityIsNoisy) {
   }
 }
 
-/// That it stood still before it moved does not count.
 /// Each reply is of one period, so that a window is as long as it should be.
 TEST(MoteusDrive, ThatMovesOnInAQuickStopIsSeen) {
   for (const double share : {0.8, 1.4}) {  // of what is taken for rest
@@ -184,6 +183,7 @@ TEST(MoteusDrive, IsLostOnceItHasSettled) {
   }
 }
 
+/// That it stood still before it moved does not count.
 TEST(MoteusDrive, IsNotAtRestAtOnceAfterItHasBegunToMove) {
   MoteusRig rig;
   rig.enable();

@@ -51,6 +51,13 @@ struct RailBeforeAWall {
     kinematics.pseudoinverse.factorise(J, 2, 1);
     clearance.findNear(kinematics.pose, kinematics.near);
   }
+  /// The gate of an arm there, whose task is its tip.
+  MotionGate gateAt(double distance_m) {
+    config.task.size = 1;
+    MotionGate gate(config, inv_sqrt);
+    look(*gate.clearance(), at(distance_m));
+    return gate;
+  }
   SpeedRows rows(double distance_m, double velocity_before = 0.0) {
     const Clearance clearance(config);
     const JointVector q = at(distance_m);
@@ -130,10 +137,8 @@ TEST(ClearanceRows, AreKeptByWhatGoesNoFaster) {
 /// Also far from all bodies, where the gate looks at nothing else.
 TEST(ClearanceRows, AreNotAllThatTheGateKeeps) {
   RailBeforeAWall rail;
-  rail.config.task.size = 1;
-  const MotionGate gate(rail.config, rail.inv_sqrt);
+  const MotionGate gate = rail.gateAt(0.5);
   const JointVector q = rail.at(0.5), rest = JointVector::Zero(2);
-  rail.look(*gate.clearance(), q);
   for (const double v_max : {0.1, -0.1}) {  // of an approach, and of a way back
     for (const double excess : {-0.01, 0.01}) {
       SpeedRows rows;
@@ -155,10 +160,8 @@ TEST(ClearanceRows, AreNotAllThatTheGateKeeps) {
 /// Of all of the motion: what the task asks for comes near a wall as well.
 TEST(ClearanceRows, AreKeptByTheTask) {
   RailBeforeAWall rail;
-  rail.config.task.size = 1;
-  const MotionGate gate(rail.config, rail.inv_sqrt);
+  const MotionGate gate = rail.gateAt(0.06);
   const JointVector q = rail.at(0.06), rest = JointVector::Zero(2);
-  rail.look(*gate.clearance(), q);
   const WeightedPseudoinverse& J = rail.kinematics.pseudoinverse;
   const double v_max = 5.0 * (0.06 - kSafe_m - 0.001) / 0.5;
   for (const double speed : {0.9 * v_max, 1.2 * v_max, -1.2 * v_max}) {

@@ -9,8 +9,8 @@
 namespace tactus {
 
 /// All, or what a sweep shows: contacts without the stiffness that they were found to have,
-/// fitTouch(), which takes as long as a thousand cycles of a run, and no times, for reading the
-/// clock takes a tenth of them.
+/// fitTouch(), which takes as long as a thousand cycles of a run, and no times of control steps, as
+/// to read the clock takes a tenth of each cycle.
 enum class FigureSet { kAll, kOfSweep };
 
 /// Figures of the contacts of one tactile module, each once it is over, in one pass. Memory is that
