@@ -13,7 +13,7 @@ namespace {
 constexpr double kWay_m = 0.4436;
 constexpr double kSpeed_m_per_s = 0.0537;
 constexpr double kStartAndRamps_s = 1.5;
-constexpr double kSettling_s = 4.5;
+constexpr double kAfterWay_s = 4.5;
 constexpr double kBaseDuration_s = 13.0;
 
 std::string obstacleText(double x_m, double y_m, double stiffness_N_per_m,
@@ -49,7 +49,7 @@ Override obstaclesAre(const std::vector<std::string>& texts) {
 
 void setSpeed(double factor, std::vector<Override>& overrides) {
   const double speed_m_per_s = factor * kSpeed_m_per_s;
-  const double duration_s = kStartAndRamps_s + kWay_m / speed_m_per_s + kSettling_s;
+  const double duration_s = kStartAndRamps_s + kWay_m / speed_m_per_s + kAfterWay_s;
   overrides.push_back({"task.trajectory.line.speed_m_per_s", fmt::format("{}", speed_m_per_s)});
   overrides.push_back({"simulation.duration_s",
                        fmt::format("{}", std::max(kBaseDuration_s, std::ceil(duration_s)))});

@@ -9,12 +9,12 @@
 namespace tactus {
 namespace {
 
-constexpr double kStep_s = 1e-5;
+constexpr double kEulerStep_s = 1e-5;
 constexpr double kTarget_s = 0.1;          // T
 constexpr double kTargetDamping = 0.5;     // d
 constexpr double kTaken_N_per_m = 7000.0;  // c
 constexpr double kPressed_N = 10.0;        // at the start
-constexpr double kNearby_N = 0.02;         // of Euler steps of kStep_s / T = 1e-4
+constexpr double kNearby_N = 0.02;         // of Euler steps of kEulerStep_s / T = 1e-4
 
 /// x'' + b x' + k x = 0 from x0 at rest.
 double decayed(double b, double k, double x0, double t_s) {
@@ -38,10 +38,11 @@ void runAccelerationLoop(const ControllerConfig& config, double stiffness_N_per_
   state.velocity_before[1] =  // the tool is on its way, the contact rests
       Trajectory(config.task.trajectory, {}).evaluate(0.0).v_BaseTool.y();
   ControllerOutput output;
-  for (int cycle = 0; cycle * kStep_s < 2.0; ++cycle) {
-    const double t_s = cycle * kStep_s;
+  for (int cycle = 0; cycle * kEulerStep_s < 2.0; ++cycle) {
+    const double t_s = cycle * kEulerStep_s;
     if (!check(t_s, world.force_N(state.q_desired), output.contact.u_t)) return;
-    controller.update(world.input(state), controller.initialGains(), t_s, kStep_s, state, output);
+    controller.update(world.input(state), controller.initialGains(), t_s, kEulerStep_s, state,
+                      output);
     ASSERT_EQ(output.fault, Fault::kNone);
   }
 }
@@ -121,7 +122,8 @@ TEST(AccelerationTargetOfTwoSpaces, LeavesTheToolAloneBelowTheActivationForce) {
   ControllerState state = controller.initialState();
   ControllerOutput output;
   for (int cycle = 0; cycle < 20000; ++cycle) {
-    controller.update(world.input(state), controller.initialGains(), 0.0, kStep_s, state, output);
+    controller.update(world.input(state), controller.initialGains(), 0.0, kEulerStep_s, state,
+                      output);
     ASSERT_NEAR(output.error[0], 0.0, 1e-12) << cycle;
   }
 }

@@ -13,9 +13,9 @@ namespace tactus {
 namespace {
 
 constexpr double kCoverLength_m = 0.38;
-constexpr double kSample_s = 0.004;
-constexpr double kMin_N = 0.2;
-constexpr double kThreshold_N = 1.2;
+constexpr double kSmootherSample_s = 0.004;
+constexpr double kLeastForce_N = 0.2;
+constexpr double kTouch_N = 1.2;
 constexpr double kCoverRadius_m = 0.06;
 
 TactileModuleConfig coverOf(double filter_cutoff_hz) {
@@ -36,7 +36,7 @@ class Smoother : public testing::Test {
     sample.moment_y_Nm += 0.15 * noise(sigma_N);
     sample.moment_z_Nm += 0.15 * noise(sigma_N);
     locateContact(sample, test::moduleOfLength(kCoverLength_m), sensor_);
-    sensor_.interval_s = kSample_s;
+    sensor_.interval_s = kSmootherSample_s;
     smoother_.update({}, sensor_, X_BaseModule_, state_);
   }
 
@@ -113,7 +113,7 @@ TEST_F(Smoother, TheNormalOfAPostTurnsAboutALinkThatIsInclined) {
 TEST_F(Smoother, WeighsSamplesByTheSquareOfTheirForce) {
   feel(0.300, 3.0, 0.0);
   feel(0.301, 3.3, 0.0);  // not significant: 3.3 N (0.001 / 0.19)
-  const double old = 9.0 * std::exp(-kSample_s / 1.0);
+  const double old = 9.0 * std::exp(-kSmootherSample_s / 1.0);
   EXPECT_NEAR(state_.contact.position_m, 0.3 + 0.001 * 10.89 / (10.89 + old), 1e-9);
 }
 
@@ -249,14 +249,14 @@ TEST_F(Smoother, LearnsTheNoise) {
     EXPECT_NEAR(state_.significant_N, 6.0 * sigma, 1.5 * sigma) << sigma;
   }
   for (int i = 0; i < 2000; ++i) feel(0.25, 5.0, 0.5, 0.0);
-  EXPECT_EQ(state_.significant_N, kMin_N);
+  EXPECT_EQ(state_.significant_N, kLeastForce_N);
 }
 
 TEST_F(Smoother, DoesNotTakeAnImpactForNoise) {
   for (int i = 0; i < 100; ++i) feel(0.25, 0.0, 0.0, 0.02);
   double force = 0.0;
   for (int i = 0; i < 20; ++i) feel(0.25, force += 0.5 * i, 0.5, 0.02);  // to 95 N in 80 ms
-  EXPECT_LT(state_.significant_N, 1.3 * kMin_N);
+  EXPECT_LT(state_.significant_N, 1.3 * kLeastForce_N);
 }
 
 TEST_F(Smoother, ForgetsDownToZeroAndNotToSubnormalNumbers) {
@@ -280,8 +280,8 @@ TEST_F(Smoother, StaysAUnitVectorOnTheCoverWhateverComes) {
     if (length != 0.0) {
       ASSERT_NEAR(length, 1.0, 1e-12);
     }
-    ASSERT_GE(state_.significant_N, kMin_N);
-    ASSERT_LE(state_.significant_N, 10.0 * kMin_N);
+    ASSERT_GE(state_.significant_N, kLeastForce_N);
+    ASSERT_LE(state_.significant_N, 10.0 * kLeastForce_N);
   }
 }
 
@@ -293,7 +293,7 @@ TEST_F(Smoother, StaysANumberWhereSquaresOfTheForceVanish) {
     sensor_.force_N = force_N;
     sensor_.direction = Vector3::UnitZ();
     sensor_.position_m = 0.1;
-    sensor_.interval_s = kSample_s;
+    sensor_.interval_s = kSmootherSample_s;
     for (int i = 0; i < 3; ++i) smoother_.update(none.force, sensor_, X_BaseModule_, state_);
     ASSERT_TRUE(std::isfinite(state_.contact.position_m)) << force_N;
     // Learnt, or as it was before the first touch.

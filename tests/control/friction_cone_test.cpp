@@ -9,7 +9,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kStep = 1e-6;
+constexpr double kDifference = 1e-6;
 
 struct ConeCase {
   explicit ConeCase(test::Random& random)
@@ -68,10 +68,10 @@ TEST(FrictionCone, CornersAreEdgesAtBothEnds) {
       for (int joint = 0; joint < c.n; ++joint) {
         JointVector before = c.q;
         JointVector after = c.q;
-        before[joint] -= kStep;
-        after[joint] += kStep;
+        before[joint] -= kDifference;
+        after[joint] += kDifference;
         const Vector3 velocity =
-            (c.pointInBase(after, at_m) - c.pointInBase(before, at_m)) / (2.0 * kStep);
+            (c.pointInBase(after, at_m) - c.pointInBase(before, at_m)) / (2.0 * kDifference);
         ASSERT_NEAR(c.rows.row[row].a_scaled[joint], edge.dot(velocity), 1e-8) << i;
       }
       ASSERT_EQ(c.rows.row[row].a_task,

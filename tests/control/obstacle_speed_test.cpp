@@ -9,8 +9,8 @@
 namespace tactus {
 namespace {
 
-const ForceGains kGains;  // F_act 3.8 N, F_th 1.2 N, T 0.1 s
-constexpr double kSample_s = 0.004;
+const ForceGains kForceGains;  // F_act 3.8 N, F_th 1.2 N, T 0.1 s
+constexpr double kForceSample_s = 0.004;
 constexpr double kM_N_per_m = 5000.0;
 constexpr double kComing_m_per_s = 0.006;
 constexpr double kBound_m_per_s = 2.5 / (0.1 * kM_N_per_m);
@@ -18,11 +18,12 @@ constexpr double kBound_m_per_s = 2.5 / (0.1 * kM_N_per_m);
 /// The arm gives way at v_o under a force that stays, for so long.
 void rest(double duration_s, const ObstacleSample& sample, ObstacleSpeedState& state) {
   state.F_before_N = sample.F_p_N;
-  for (double t_s = 0.0; t_s < duration_s; t_s += kSample_s) followObstacle(kGains, sample, state);
+  for (double t_s = 0.0; t_s < duration_s; t_s += kForceSample_s)
+    followObstacle(kForceGains, sample, state);
 }
 
 ObstacleSample coming(double F_p_N) {
-  return {F_p_N, kM_N_per_m, -kComing_m_per_s * kSample_s, kSample_s, true};
+  return {F_p_N, kM_N_per_m, -kComing_m_per_s * kForceSample_s, kForceSample_s, true};
 }
 
 TEST(ObstacleSpeed, IsTheWayThatTheForceDoesNotExplain) {
@@ -53,11 +54,11 @@ TEST(ObstacleSpeed, IsLearntFromATenthOfTheLimitAboveTheActivationForce) {
 TEST(ObstacleSpeed, TakesTheChangeOfForceForAWayToo) {
   // The arm stands still, and the force rises by 1 mm/s.
   ObstacleSpeedState state;
-  ObstacleSample sample{5.0, kM_N_per_m, 0.0, kSample_s, true};
+  ObstacleSample sample{5.0, kM_N_per_m, 0.0, kForceSample_s, true};
   state.F_before_N = sample.F_p_N;
   for (int i = 0; i < 1000; ++i) {
-    sample.F_p_N += kM_N_per_m * 0.001 * kSample_s;
-    followObstacle(kGains, sample, state);
+    sample.F_p_N += kM_N_per_m * 0.001 * kForceSample_s;
+    followObstacle(kForceGains, sample, state);
   }
   EXPECT_NEAR(state.v_m_per_s, 0.001, 1e-6);
 }
@@ -76,7 +77,7 @@ TEST(ObstacleSpeed, IsDroppedWithItsPastOnAStiffContact) {
   ASSERT_GT(state.v_m_per_s, 0.0);
   ObstacleSample sample = coming(6.0);
   sample.m_N_per_m = 1.01 * kSoftContact_N_per_m;
-  followObstacle(kGains, sample, state);
+  followObstacle(kForceGains, sample, state);
   EXPECT_EQ(state.v_m_per_s, 0.0);
 }
 
@@ -89,7 +90,7 @@ TEST(ObstacleSpeed, CostsNoMoreThanHalfOfTheLimitWhateverComes) {
                                 random.logUniform(10.0, 1e6),
                                 random.sign() * random.logUniform(1e-9, 1.0),
                                 random.logUniform(1e-4, 0.1), random.chance(0.99)};
-    followObstacle(kGains, sample, state);
+    followObstacle(kForceGains, sample, state);
     ASSERT_GE(state.v_m_per_s, 0.0);
     ASSERT_LE(state.v_m_per_s * 0.1 * sample.m_N_per_m, 2.5 * (1.0 + 1e-12));
     known += state.v_m_per_s > 0.0;

@@ -12,7 +12,7 @@ namespace {
 
 using test::kPeriod_s;
 constexpr double kAct_N = 3.8;
-constexpr double kC_N_per_m = 1000.0;
+constexpr double kLawStiffness_N_per_m = 1000.0;
 
 class SecondSpace : public testing::Test {
  protected:
@@ -23,7 +23,7 @@ class SecondSpace : public testing::Test {
 
   double update(double F_p_N) {
     ControlLawOutput u;
-    law_.update({}, {F_p_N, kC_N_per_m, 0.0, 1.0}, space_, kPeriod_s, state_, u);
+    law_.update({}, {F_p_N, kLawStiffness_N_per_m, 0.0, 1.0}, space_, kPeriod_s, state_, u);
     return u.u_t;
   }
 
@@ -47,7 +47,7 @@ TEST_F(SecondSpace, SleepsBelowTheActivationForce) {
 
 TEST_F(SecondSpace, AnswersTheExcessAboveTheActivationForce) {
   EXPECT_NEAR(update(kAct_N + 2.0), -0.01 * 2.0, 1e-15);
-  EXPECT_NEAR(state_.It_m_per_s, kPeriod_s * 2.0 / (0.01 * kC_N_per_m), 1e-16);
+  EXPECT_NEAR(state_.It_m_per_s, kPeriod_s * 2.0 / (0.01 * kLawStiffness_N_per_m), 1e-16);
   EXPECT_NEAR(update(kAct_N + 2.0), -0.01 * 2.0 - 0.0002, 1e-15);
 }
 

@@ -9,7 +9,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kSample_s = 0.004;
+constexpr double kCentreSample_s = 0.004;
 
 double normal(test::Random& random) {
   return std::sqrt(-2.0 * std::log(random.uniform(1e-12, 1.0))) *
@@ -51,7 +51,7 @@ class PressedModule {
     sensor.force_N = std::hypot(F_N, F_z_N);
     if (F_N != 0.0) sensor.position_m = std::clamp(M_Nm / F_N, 0.0, config().length_m);
     if (sensor.force_N > 0.0) sensor.direction = Vector3(0.0, -F_N, F_z_N) / sensor.force_N;
-    sensor.interval_s = kSample_s;
+    sensor.interval_s = kCentreSample_s;
     Pose X;
     X.R_AB.setIdentity();
     X.p_AB = Vector3(slide_m, 0.0, 0.0);
@@ -169,7 +169,7 @@ TEST(StiffnessCentre, OfATurningLinkApproachesNoSlower) {
     const double v = 0.005, turn = random.uniform(-0.05, 0.05);  // m/s at the centre, rad/s
     PressedModule module;
     for (int i = 0; i < 500; ++i) {
-      const double t_s = kSample_s * i;
+      const double t_s = kCentreSample_s * i;
       module.press(springs, 0.04 + (v - turn * x_c) * t_s, turn * t_s, 0.0, 0.0, random);
     }
     if (module.centre().weight == 0.0) continue;

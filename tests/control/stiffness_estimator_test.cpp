@@ -10,11 +10,11 @@ namespace tactus {
 namespace {
 
 using test::kPeriod_s;
-constexpr double kAssumed = 7000.0;
+constexpr double kFirstGuess = 7000.0;
 
 StiffnessEstimatorState assumed() {
   StiffnessEstimatorState state;
-  state.stiffness_N_per_m = state.stiffness_raw_N_per_m = kAssumed;
+  state.stiffness_N_per_m = state.stiffness_raw_N_per_m = kFirstGuess;
   return state;
 }
 
@@ -27,13 +27,13 @@ class Estimator : public testing::Test {
   StiffnessEstimatorState state_ = assumed();
 };
 
-const double kShare = 1.0 - std::exp(-kPeriod_s / 0.03);
+const double kPart = 1.0 - std::exp(-kPeriod_s / 0.03);
 
 TEST_F(Estimator, StartsAtTheAssumedStiffness) {
-  EXPECT_EQ(state_.stiffness_N_per_m, kAssumed);
-  EXPECT_EQ(state_.stiffness_raw_N_per_m, kAssumed) << "not zero: the filter would pull c down";
+  EXPECT_EQ(state_.stiffness_N_per_m, kFirstGuess);
+  EXPECT_EQ(state_.stiffness_raw_N_per_m, kFirstGuess) << "not zero: the filter would pull c down";
   update(0.1, 0.05);
-  EXPECT_EQ(state_.stiffness_N_per_m, kAssumed);
+  EXPECT_EQ(state_.stiffness_N_per_m, kFirstGuess);
 }
 
 TEST_F(Estimator, FollowsAlgorithm1ByHand) {
@@ -47,19 +47,19 @@ TEST_F(Estimator, FollowsAlgorithm1ByHand) {
   EXPECT_EQ(state_.x_int_m, 0.0);
   EXPECT_EQ(state_.F_prev_N, 0.3);
   EXPECT_EQ(state_.v_prev_m_per_s, 0.06);
-  const double c = kAssumed + kShare * (0.3 / 1.1e-4 - kAssumed);
+  const double c = kFirstGuess + kPart * (0.3 / 1.1e-4 - kFirstGuess);
   EXPECT_NEAR(state_.stiffness_N_per_m, c, 1e-9) << "the filter sees c_raw in the same cycle";
   update(0.35, 0.02);  // x = 4e-5; filter goes on
   EXPECT_DOUBLE_EQ(state_.x_int_m, 4e-5);
-  EXPECT_NEAR(state_.stiffness_N_per_m, c + kShare * (0.3 / 1.1e-4 - c), 1e-9);
+  EXPECT_NEAR(state_.stiffness_N_per_m, c + kPart * (0.3 / 1.1e-4 - c), 1e-9);
 }
 
 TEST_F(Estimator, ATriggerWithoutWayGivesNoEstimateButReArms) {
   update(1.0, 0.001);  // x = 5e-7
-  EXPECT_EQ(state_.stiffness_raw_N_per_m, kAssumed);
+  EXPECT_EQ(state_.stiffness_raw_N_per_m, kFirstGuess);
   EXPECT_EQ(state_.F_prev_N, 1.0);
   EXPECT_EQ(state_.x_int_m, 0.0);
-  EXPECT_EQ(state_.stiffness_N_per_m, kAssumed);
+  EXPECT_EQ(state_.stiffness_N_per_m, kFirstGuess);
 }
 
 TEST_F(Estimator, FreezesAndRestartsWhileThePointDoesNotApproach) {

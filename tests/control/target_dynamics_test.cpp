@@ -10,11 +10,11 @@ namespace tactus {
 namespace {
 
 constexpr double kFinePeriod_s = 2e-5;
-constexpr double kT_s = 0.1;
+constexpr double kLawT_s = 0.1;
 constexpr double kDamping = 0.5;
 constexpr double kAssumed_N_per_m = 7000.0;
 constexpr double kStart_N = 10.0;
-constexpr double kTolerance_N = 0.02;  // of Euler steps of kFinePeriod_s / kT_s = 2e-4
+constexpr double kTolerance_N = 0.02;  // of Euler steps of kFinePeriod_s / kLawT_s = 2e-4
 
 /// Solution of x'' + b x' + k x = 0.
 class SecondOrder {
@@ -70,7 +70,7 @@ class TargetDynamics : public testing::TestWithParam<std::tuple<Variant, double>
 TEST_P(TargetDynamics, SecondOrderFollowsEquation12) {
   const ControllerConfig config = test::railController(std::get<0>(GetParam()));
   // (13): T_eff = T sqrt(c / c_e), d_eff = d sqrt(c_e / c)
-  const double T_eff_s = kT_s / std::sqrt(ratio());
+  const double T_eff_s = kLawT_s / std::sqrt(ratio());
   const double d_eff = kDamping * std::sqrt(ratio());
   expectForce(config, SecondOrder(2.0 * d_eff / T_eff_s, 1.0 / (T_eff_s * T_eff_s), kStart_N,
                                   -2.0 * d_eff / T_eff_s * kStart_N));
@@ -80,7 +80,7 @@ TEST_P(TargetDynamics, FirstOrderDecaysWithItsTimeConstant) {
   ControllerConfig config = test::railController(std::get<0>(GetParam()));
   config.force_control->order = 1;
   runLoop(config, ratio() * kAssumed_N_per_m, [&](double t_s, double F_N) {
-    EXPECT_NEAR(F_N, kStart_N * std::exp(-ratio() * t_s / kT_s), kTolerance_N) << t_s;
+    EXPECT_NEAR(F_N, kStart_N * std::exp(-ratio() * t_s / kLawT_s), kTolerance_N) << t_s;
     return t_s < 0.3 && !testing::Test::HasFailure();
   });
 }
@@ -92,8 +92,8 @@ TEST_P(TargetDynamics, FeedforwardTakesTheTasksMotionOutOfTheContact) {
   line.displacement_m = Vector3(0.0, 10.0, 0.0);
   config.task.trajectory = {-1.0, {line}};  // in full motion at the start
   const double r = ratio();
-  expectForce(config, SecondOrder(2.0 * kDamping * r / kT_s, r / (kT_s * kT_s), kStart_N,
-                                  -2.0 * kDamping * r / kT_s * kStart_N));
+  expectForce(config, SecondOrder(2.0 * kDamping * r / kLawT_s, r / (kLawT_s * kLawT_s), kStart_N,
+                                  -2.0 * kDamping * r / kLawT_s * kStart_N));
 }
 
 INSTANTIATE_TEST_SUITE_P(SpacesAndStiffnessRatios, TargetDynamics,
@@ -106,8 +106,9 @@ TEST(TargetDynamicsOfTwoSpaces, FollowCaseCOfEquation8) {
     const ControllerConfig config = test::railController(variant);
     const double act_N = config.gains.force.activation_force_N;
     // F'' = -4 d / T F' - 2 / T^2 F + F_act / T^2: about F_act / 2.
-    const SecondOrder expected(4.0 * kDamping / kT_s, 2.0 / (kT_s * kT_s), kStart_N - 0.5 * act_N,
-                               -2.0 * kDamping / kT_s * (kStart_N + (kStart_N - act_N)));
+    const SecondOrder expected(4.0 * kDamping / kLawT_s, 2.0 / (kLawT_s * kLawT_s),
+                               kStart_N - 0.5 * act_N,
+                               -2.0 * kDamping / kLawT_s * (kStart_N + (kStart_N - act_N)));
     int cycles = 0;
     runLoop(config, kAssumed_N_per_m, [&](double t_s, double F_N) {
       EXPECT_NEAR(F_N, expected.at(t_s) + 0.5 * act_N, kTolerance_N) << t_s;
@@ -122,8 +123,8 @@ TEST(TargetDynamicsOfWeights, DoNotChangeTheForce) {
   // W only decides who moves: along the force the dynamics is always the target's.
   ControllerConfig config = test::railController(Variant::kNullSpace);
   config.weights << 4.0, 0.25;
-  const SecondOrder expected(2.0 * kDamping / kT_s, 1.0 / (kT_s * kT_s), kStart_N,
-                             -2.0 * kDamping / kT_s * kStart_N);
+  const SecondOrder expected(2.0 * kDamping / kLawT_s, 1.0 / (kLawT_s * kLawT_s), kStart_N,
+                             -2.0 * kDamping / kLawT_s * kStart_N);
   runLoop(config, kAssumed_N_per_m, [&](double t_s, double F_N) {
     EXPECT_NEAR(F_N, expected.at(t_s), kTolerance_N) << t_s;
     return expected.at(t_s) > 0.1 && !testing::Test::HasFailure();

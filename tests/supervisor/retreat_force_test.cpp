@@ -28,7 +28,7 @@ struct Setting {
   const char* arm;
 };
 
-struct Outcome {
+struct RetreatOutcome {
   double at_fault_N = 0.0;
   double after_1s_N = 0.0, after_2s_N = 0.0;
   double stiffness_N_per_m = 0.0;  ///< of the contact
@@ -41,8 +41,8 @@ double contactStiffness(const Scene& scene) {
 }
 
 /// Nothing where there was no contact, or no such force. The trouble comes so long after it.
-std::optional<Outcome> meet(const Scene& scene, std::uint64_t seed, SampleTrouble trouble,
-                            double at_N, double after_s = 0.0) {
+std::optional<RetreatOutcome> meet(const Scene& scene, std::uint64_t seed, SampleTrouble trouble,
+                                   double at_N, double after_s = 0.0) {
   RetreatArm arm(scene, seed);
   arm.noise_N = kNoise_N;
   const auto has_left = [&] { return arm.mode() != Mode::kRunning; };
@@ -53,7 +53,7 @@ std::optional<Outcome> meet(const Scene& scene, std::uint64_t seed, SampleTroubl
   }
   arm.trouble = trouble;
   if (!arm.runUntil(0.1, has_left)) return {};
-  Outcome outcome{.at_fault_N = arm.force_N(), .stiffness_N_per_m = contactStiffness(scene)};
+  RetreatOutcome outcome{.at_fault_N = arm.force_N(), .stiffness_N_per_m = contactStiffness(scene)};
   arm.run(1.0);
   outcome.after_1s_N = arm.force_N();
   arm.run(1.0);
@@ -78,7 +78,7 @@ void forCases(const Setting& setting, std::uint64_t seed, int count, SampleTroub
                       {{"controller.variant", setting.variant}, {"simulation.arm", setting.arm}});
     scene.plant.obstacles.front().friction_coefficient = kFriction;
     const double at_N = trouble == SampleTrouble::kNone ? kNoLimit : random.uniform(3.0, 60.0);
-    const std::optional<Outcome> outcome = meet(scene, seed + tried, trouble, at_N);
+    const std::optional<RetreatOutcome> outcome = meet(scene, seed + tried, trouble, at_N);
     if (!outcome) continue;
     ++met;
     SCOPED_TRACE(std::string(setting.scene) + ", " + setting.arm + ", case " +
@@ -103,7 +103,7 @@ constexpr Setting kUnyielding[] = {{"scenario1_none", "none", "quasi_static"},
 
 TEST(RetreatForce, AfterTooMuchForceLeavesLessThanTheLawsForce) {
   for (const Setting& setting : kUnyielding) {
-    forCases(setting, 1000, 40, SampleTrouble::kNone, [](const Outcome& outcome) {
+    forCases(setting, 1000, 40, SampleTrouble::kNone, [](const RetreatOutcome& outcome) {
       EXPECT_LE(outcome.after_1s_N, kMaxForce_N);
       EXPECT_LE(outcome.after_2s_N, kMaxForce_N);
       const double depth_m = std::max(100.0, outcome.at_fault_N) / outcome.stiffness_N_per_m;
@@ -119,7 +119,7 @@ TEST(RetreatForce, WithoutReadingsLeavesNothingOfContactsAsAssumed) {
                                       SampleTrouble::kSaturated, SampleTrouble::kCableBreak}) {
     for (const int i : {0, 2}) {
       const std::uint64_t seed = 2000 + 100 * static_cast<std::uint64_t>(trouble);
-      forCases(kUnyielding[i], seed, 15, trouble, [](const Outcome& outcome) {
+      forCases(kUnyielding[i], seed, 15, trouble, [](const RetreatOutcome& outcome) {
         const bool is_as_assumed = outcome.stiffness_N_per_m > kAsAssumed_N_per_m;
         EXPECT_LE(outcome.after_1s_N, is_as_assumed ? kMaxForce_N : outcome.at_fault_N);
         EXPECT_LE(outcome.after_2s_N, is_as_assumed ? kMaxForce_N : outcome.at_fault_N);
@@ -143,7 +143,7 @@ TEST(RetreatForce, WithoutReadingsLeavesNothingWhereALawSwings) {
       scene.plant.obstacles.front().friction_coefficient = kFriction;
       const double after_s = random.chance(0.7) ? random.uniform(0.0, 0.5) : 0.0;
       const double at_N = after_s > 0.0 ? 3.0 : random.uniform(3.0, 20.0);
-      const std::optional<Outcome> outcome =
+      const std::optional<RetreatOutcome> outcome =
           meet(scene, 700 + tried, SampleTrouble::kSilent, at_N, after_s);
       if (!outcome) continue;
       ++met;
@@ -173,7 +173,7 @@ TEST(RetreatForce, WhereJointsAreAtTheirLimits) {
       (random.chance(0.5) ? config.limits.upper : config.limits.lower)[joint] =
           config.q_start[joint];
     }
-    const std::optional<Outcome> outcome =
+    const std::optional<RetreatOutcome> outcome =
         meet(scene, 3000 + tried, SampleTrouble::kNone, kNoLimit);
     if (!outcome) continue;
     ++met;

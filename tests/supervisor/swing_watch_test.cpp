@@ -12,7 +12,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+constexpr double kSwingPeriod_s = 0.001;
 constexpr double kLeast_N = 0.57;
 
 /// Of a force over time, 5 s of it.
@@ -21,7 +21,7 @@ double largestSwing(const Force& force) {
   SwingWatch watch;
   double largest = 0.0;
   for (int i = 0; i < 5000; ++i) {
-    watch.update(force(kPeriod_s * i), kLeast_N, kPeriod_s);
+    watch.update(force(kSwingPeriod_s * i), kLeast_N, kSwingPeriod_s);
     largest = std::max(largest, watch.swing_N());
   }
   return largest;
@@ -56,9 +56,9 @@ TEST(SwingWatch, FindsOneThatGrows) {
     double amplitude = 0.1;
     double force = 4.0;
     for (int i = 0; i < 10000 && watch.swing_N() == 0.0; ++i) {
-      amplitude = 0.1 * std::pow(1.3, hz * kPeriod_s * i);
-      force = 4.0 + amplitude * sine(kPeriod_s * i, hz);
-      watch.update(force, kLeast_N, kPeriod_s);
+      amplitude = 0.1 * std::pow(1.3, hz * kSwingPeriod_s * i);
+      force = 4.0 + amplitude * sine(kSwingPeriod_s * i, hz);
+      watch.update(force, kLeast_N, kSwingPeriod_s);
     }
     EXPECT_GT(watch.swing_N(), 0.0) << hz;
     EXPECT_LT(amplitude, 1.0) << hz;
@@ -69,8 +69,8 @@ TEST(SwingWatch, FindsOneThatGrows) {
 double leastOfSteps(std::initializer_list<double> forces_N, double least_N, double step_s = 0.125) {
   SwingWatch watch;
   for (const double force_N : forces_N)
-    for (int i = 0; i < std::lround(step_s / kPeriod_s); ++i)
-      watch.update(force_N, least_N, kPeriod_s);
+    for (int i = 0; i < std::lround(step_s / kSwingPeriod_s); ++i)
+      watch.update(force_N, least_N, kSwingPeriod_s);
   return watch.swing_N();
 }
 
