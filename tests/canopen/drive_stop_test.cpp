@@ -177,6 +177,18 @@ TEST(DriveStop, OneThatSaysItBootsTwiceButRunsOnIsResetAgain) {
   EXPECT_FALSE(rig.report().is_off);
 }
 
+TEST(DriveStop, OneThatIsHeardByItsFeedbackAloneIsResetAgain) {
+  DriveRig rig = deafDrive(0.1);
+  rig.slave.ignores_nmt = true;
+  rig.slave.sends_heartbeat = false;
+  rig.slave.say(0x700, {0});  // and runs on
+  EXPECT_TRUE(isAmong(kResetNode, rig.cycle(DriveGoal::kQuickStop)));
+  int resets = 0;
+  for (int i = 0; i < 300; ++i)
+    resets += isAmong(kResetNode, rig.cycle(DriveGoal::kQuickStop)) ? 1 : 0;
+  EXPECT_GE(resets, 1);
+}
+
 TEST(DriveStop, ARealRestartEndsOff) {
   DriveRig rig;
   rig.enable();

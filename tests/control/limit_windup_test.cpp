@@ -108,6 +108,22 @@ TEST(LimitWindup, TheWayBackAfterMinutesIsThatAfterAMoment) {
   }
 }
 
+/// An arm on its way back to what it touches cannot stop at once; that is no cut of its retreat.
+TEST(LimitWindup, NorIsTheWayThatAStopTakesACut) {
+  for (const Variant variant : kLaws) {
+    SCOPED_TRACE(static_cast<int>(variant));
+    ArmAtALimit arm(limitedArm(variant, Gate::kAcceleration));
+    arm.run(15.0, 1.0);
+    arm.run(0.0, 2.0);
+    arm.state.is_stopping = true;
+    arm.run(2.0, 0.001);
+    arm.cut_cycles = 0;
+    ASSERT_GT(arm.run(2.0, 0.01), 1e-4) << "it still moves";
+    EXPECT_EQ(arm.cut_cycles, 0);
+    EXPECT_EQ(arm.state.contact.cut_m_per_s, 0.0);
+  }
+}
+
 /// With friction rows keep the joints off their limits, long before the gate would cut.
 TEST(LimitWindup, NorIsAnythingRememberedThatRowsOfJointsCut) {
   for (const double force_N : {2.5, 15.0}) {

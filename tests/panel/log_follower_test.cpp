@@ -78,6 +78,31 @@ TEST(LogFollowerTest, TellsAGrowingLogWithEachPeakAndContact) {
   EXPECT_EQ(follower.start()->sources.size(), scene.sources.size());
 }
 
+/// While it reads the past it looks at them once a minute only.
+TEST(LogFollowerTest, TellsContactsThatLastOnceThePastWasRead) {
+  const Scene scene = test::shippedScene("commands");
+  const test::TemporaryFile file(".ulg");
+  UlogWriter writer(file.path(), describeLog(scene));
+  for (int i = 0; i < 1000; ++i) writer.write(cycleWith(scene, i, 5.0));
+  writer.flush();
+  LogFollower follower(file.path());
+  LogNews news;
+  await([&] { return news = follower.news(), news.is_live; });
+  const auto write = [&](int from, int to) {
+    for (int i = from; i < to; ++i) writer.write(cycleWith(scene, i, 5.0));
+    writer.flush();
+    const double read_s = 0.001 * to - 0.02;  // complete bins
+    await([&] {
+      return news = follower.news(), !news.bins.empty() && news.bins.back().to_s > read_s;
+    });
+  };
+  write(1000, 1050);
+  ASSERT_EQ(news.lasting.size(), 1u);
+  const double first_end_s = news.lasting.front().at("end_s");
+  write(1050, 1150);
+  EXPECT_EQ(news.lasting.front().at("end_s"), first_end_s) << "not at each record";
+}
+
 TEST(LogFollowerTest, EndsWhileALogStandsStill) {
   const Scene scene = test::shippedScene("commands");
   const test::TemporaryFile file(".ulg");

@@ -37,13 +37,15 @@ post() {
   page $file_and_path --header 'Content-Type: application/json' --post-data "$body" "$@"
 }
 
-# panel_shows FILE: the first event of all that there is, once the panel has read the log.
+# panel_shows FILE: the first event of all that there is, once the panel has read the log and a record
+# after it, and knows of the contact that lasts.
 panel_shows() {
   for _ in $(seq 50); do
     wget -q -O "$watching/$1" http://127.0.0.1:$panel_port/api/events & events=$!  # without an end
     sleep 0.2
     kill $events
-    head -n 1 "$watching/$1" | grep -q '"is_reading":false' && return
+    head -n 1 "$watching/$1" >/tmp/shown
+    grep -q '"is_reading":false' /tmp/shown && grep -q '"lasting":\[{' /tmp/shown && return
   done
   fail "the panel does not get to read the log: $(cat "$watching/$1")"
 }
