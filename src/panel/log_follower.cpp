@@ -64,9 +64,7 @@ bool LogFollower::readFile(const std::stop_token& stop) {
 void LogFollower::add(const CycleRecord& record, bool is_live) {
   const std::vector<ContactFigures> over = watch_->add(record);
   const double pause_s = is_live ? kLookAtLasting_s : kLookAtPast_s;
-  const bool has_caught_up = is_live && !is_live_;
-  is_live_ = is_live;
-  const bool looks = has_caught_up || record.t_s >= lasting_s_ + pause_s || !over.empty();
+  const bool looks = record.t_s >= lasting_s_ + pause_s || !over.empty();
   const std::vector<ContactFigures> lasting =
       looks ? watch_->present() : std::vector<ContactFigures>{};
   if (looks) lasting_s_ = record.t_s;

@@ -54,9 +54,8 @@ class LogFollower {
   Json trace(const ContactSummary& contact) const;
 
   const std::string path_;
-  std::optional<ContactWatch> watch_;  ///< of the thread alone, as the three below
+  std::optional<ContactWatch> watch_;  ///< of the thread alone, as the two below
   ForceBins bins_;
-  bool is_live_ = false;    ///< as of the last record
   double lasting_s_ = 0.0;  ///< when contacts that last were looked at
 
   mutable std::mutex mutex_;
