@@ -15,6 +15,7 @@ import time
 CONTROL = os.path.join(os.environ.get("RUNTIME_DIRECTORY", "/run/tactus"), "control")
 CLEARANCE_M = 0.15  # by which a way round leads past a contact
 UNDER_WAY = ("moving", "blocked")
+HELD_OFF = ("blocked", "given_up")  # it may be given up between two looks that see it moving
 
 
 class Arm:
@@ -43,7 +44,7 @@ class Arm:
             task = self.tool()
             if task["number"] != number:
                 raise RuntimeError("somebody else has told the tool where to go")
-            if task["state"] == "blocked":
+            if task["state"] in HELD_OFF:
                 contact = task["contact"] or contact
         return task["state"], contact
 

@@ -17,8 +17,8 @@ POST = ("simulation.obstacles=[{post: {foot_m: [0.70771, -0.08, 0], axis: [0, 0,
         "height_m: 0.62, radius_m: 0.01}, stiffness_N_per_m: 7000}]")  # fmt: skip
 
 
-def pick(folder, *target):
-    return subprocess.run([sys.executable, ROOT / "examples/pick_around.py", *target],
+def pick(folder, *target, python=()):
+    return subprocess.run([sys.executable, *python, ROOT / "examples/pick_around.py", *target],
                           env=os.environ | {"RUNTIME_DIRECTORY": folder}, text=True,
                           capture_output=True, timeout=300)  # fmt: skip
 
@@ -50,6 +50,14 @@ class PickAround(unittest.TestCase):
         self.assertIn("straight on: given_up\n", done.stdout)
         self.assertRegex(done.stdout, r"held off by [45]\.\d N on link4 at \[0\.7")
         self.assertIn("over it: arrived\n", done.stdout)
+
+    def test_learns_from_a_target_given_up_between_two_looks(self):
+        self.start(POST)
+        seldom = ("import runpy, sys, time; sleep = time.sleep; time.sleep = lambda s: sleep(1);"
+                  "sys.argv.pop(0); runpy.run_path(sys.argv[0], run_name='__main__')")  # fmt: skip
+        done = pick(self.folder, "0.9426", "0.75", "0.2421", python=("-c", seldom))
+        self.assertIn("held off by", done.stdout, done)
+        self.assertEqual(done.returncode, 0, done)
 
     def test_says_what_is_out_of_reach(self):
         self.start("simulation.obstacles=[]")
