@@ -79,7 +79,7 @@ class Running(unittest.TestCase):
             self.assertAlmostEqual(there[axis] - start[axis], moved, places=3)
         task = self.daemon.follow([{"to_m": start}, {"to_m": there}, {"to_m": start}], wait=True)
         self.assertEqual((task["state"], task["waiting"]), ("arrived", 0))
-        self.daemon.move([0, 0.2, 0], relative=True, speed_m_per_s=0.01)
+        self.daemon.move([0, 0.2, 0], relative=True, speed_m_per_s=0.002)
         self.assertEqual(self.daemon.task()["state"], "moving")
         self.daemon.hold()
         self.assertNotIn(self.daemon.task()["state"], ("arrived", "blocked"))
