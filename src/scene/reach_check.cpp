@@ -33,6 +33,22 @@ Missing missingTo(const TaskConfig& task, const Pose& target, const Pose& is) {
   return missing;
 }
 
+/// What brings the tool back to its way, and joints out of their limits' zones, must not overshoot
+/// in a step, which may be many cycles.
+Gains slowedFor(double step_s, const ControllerConfig& config) {
+  Gains gains = config.gains;
+  double& beta_per_s = gains.task.drift_gain_per_s;
+  beta_per_s = std::min(beta_per_s, 1.0 / step_s);
+  if (!config.has_joint_limit_avoidance) return gains;
+  const ScaledVector inv_sqrt_weights =
+      scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones());
+  const JointLimitZones zones =
+      JointLimitAvoidance(config.limits, inv_sqrt_weights).zones(gains.joint_limit_avoidance);
+  const double fastest_per_s = zones.slope.cwiseProduct(inv_sqrt_weights).maxCoeff();
+  gains.joint_limit_avoidance.gain /= std::max(1.0, step_s * fastest_per_s);
+  return gains;
+}
+
 bool isAtItsLimit(const ControllerConfig& config, const JointVector& q) {
   constexpr double kClose = 1e-6;
   return ((q - config.limits.lower).array() < kClose).any() ||
@@ -55,9 +71,9 @@ Reach followTo(const ControllerConfig& config, const JointVector& q, const Pose&
   const double way_s = state.tool_motion->end_s();
   const double step_s = std::max(period_s, way_s / kMaxSteps);
   const auto steps = std::llround((way_s + kSettling_s) / step_s);
+  const Gains gains = slowedFor(step_s, alone);
   for (long long i = 0; i < steps; ++i)
-    controller.update(RobotInput{}, alone.gains, static_cast<double>(i) * step_s, step_s, state,
-                      output);
+    controller.update(RobotInput{}, gains, static_cast<double>(i) * step_s, step_s, state, output);
   Reach reach{"", duration_s, state.q_desired};
   const TaskConfig& task = config.task;
   const Missing missing = missingTo(task, target, tipPose(config.chain, state.q_desired));

@@ -7,6 +7,7 @@
 #include "support/random.h"
 #include "support/shipped_scene.h"
 #include "tactus/daemon/control_requests.h"
+#include "tactus/scene/reach_check.h"
 
 namespace tactus {
 namespace {
@@ -82,6 +83,23 @@ TEST_F(ToolRequestsTest, FollowsWaypointsEachFromTheOneBefore) {
     EXPECT_NEAR(order.p_BaseTool_m[1], sight.p_BaseTool_m[1] + 0.05 * i, 1e-12);
     EXPECT_EQ(order.kind, i == 1 ? ToolOrder::Kind::kGo : ToolOrder::Kind::kGoNext);
     EXPECT_EQ(order.pause_s, 0.5);
+  }
+}
+
+/// The way is looked at in steps, which are long where it takes minutes.
+TEST(SlowToolRequests, ReachWhatIsReachedFaster) {
+  const std::vector<std::vector<Override>> gains = {
+      {{"task.drift_gain_per_s", "20"}}, {{"redundancy.joint_limit_avoidance.gain", "5"}}};
+  for (const std::vector<Override>& given : gains) {
+    std::vector<Override> overrides = given;
+    overrides.push_back({"task.commands.max_speed_m_per_s", "0.001"});
+    const Scene scene = test::shippedScene("commands", overrides);
+    Pose target = tipPose(scene.controller.chain, scene.controller.q_start);
+    target.p_AB.y() += 0.3;
+    const Reach reach = followTo(scene.controller, scene.controller.q_start, target,
+                                 scene.controller.task.commands->limits, scene.period_s);
+    EXPECT_EQ(reach.problem, "") << given.front().key;
+    EXPECT_GT(reach.duration_s, 300.0);
   }
 }
 
