@@ -86,6 +86,18 @@ TEST_F(ToolRequestsTest, FollowsWaypointsEachFromTheOneBefore) {
   }
 }
 
+TEST(FreeToolRequests, TellHowLongWhatIsControlledTakes) {
+  const Scene scene = test::shippedScene("commands", {{"task.components", "[x, y]"}});
+  const JointVector& q = scene.controller.q_start;
+  const Pose X_BaseTool = tipPose(scene.controller.chain, q);
+  Pose target = X_BaseTool;
+  target.p_AB += Vector3(0.05, 0.0, 0.3);  // z has drifted meanwhile
+  const Reach reach =
+      followTo(scene.controller, q, target, scene.controller.task.commands->limits, scene.period_s);
+  EXPECT_EQ(reach.problem, "");
+  EXPECT_NEAR(reach.duration_s, 0.05 / 0.1 + 0.3, 1e-9);
+}
+
 /// The way is looked at in steps, which are long where it takes minutes.
 TEST(SlowToolRequests, ReachWhatIsReachedFaster) {
   const std::vector<std::vector<Override>> gains = {
