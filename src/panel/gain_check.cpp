@@ -63,8 +63,10 @@ void addMargins(const Scene& scene, Json& answer) {
 
 void GainCheck::load(const std::optional<RunStart>& start, const Json& shown) {
   std::string wanted = shown.at("scene").get<std::string>() + shown.at("ordered").dump();
-  if (start)
+  if (start) {
     for (const SourceFile& source : start->sources) wanted += source.text;
+    for (const Override& setting : start->overrides) wanted += setting.key + "=" + setting.value;
+  }
   if (running_ && wanted == loaded_) return;
   running_.reset();
   const Scene started = start ? loadScene(start->sources, start->overrides)

@@ -66,6 +66,16 @@ TEST_F(GainCheckTest, CountsFromWhatRunsAndNotFromTheStart) {
   EXPECT_DOUBLE_EQ(checkOf(Json::object(), scene_).at("running_deg"), phaseMargin_deg(scene_));
 }
 
+/// Of the same files and gains, as after a start with another --set.
+TEST_F(GainCheckTest, JudgesByTheSettingsOfTheLastStart) {
+  const Scene other = loadScene(scene_.sources, {{"controller.variant", "null_task"}});
+  checkOf(Json::object());
+  const Json answer =
+      check_.check(RunStart{other.sources, other.overrides}, shown(scene_), Json::object());
+  EXPECT_NE(phaseMargin_deg(other), phaseMargin_deg(scene_));
+  EXPECT_EQ(answer.at("running_deg"), phaseMargin_deg(other));
+}
+
 TEST_F(GainCheckTest, TellsWhatWaitsForAMomentWithoutContact) {
   EXPECT_EQ(checkOf({{"controller.contact_threshold_N", "1.3"}}).at("waits_for_free"), true);
   EXPECT_EQ(checkOf({{"controller.damping", "0.6"}}).at("waits_for_free"), false);
