@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -183,7 +184,7 @@ Json ControlRequests::showGains() {
           {"number", number_},
           {"state", gainStateName(report_.state)},
           {"trouble", gainTroubleText(report_)},
-          {"scene", newest().sources.front().path},
+          {"scene", std::filesystem::absolute(newest().sources.front().path).string()},
           {"scene_hash", fmt::format("{:016x}", read_hash_)},
           {"kept", gainsJson(kept_.controller.gains)},
           {"ordered", gainsJson(newest().controller.gains)}};

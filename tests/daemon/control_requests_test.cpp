@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -42,6 +43,16 @@ class ControlRequestsTest : public testing::Test {
 };
 
 constexpr const char* kDamping = "controller.damping";
+
+/// Clients may be in another folder.
+TEST_F(ControlRequestsTest, NamesItsSceneByTheWholePath) {
+  const test::WrittenScene written(0.7);
+  const std::string path = std::filesystem::relative(written.path()).string();
+  ControlRequests requests(loadScene(path, {}), *link_);
+  const Json answer = Json::parse(requests.answer(R"({"do": "show"})"));
+  EXPECT_EQ(std::filesystem::path(answer.at("scene").get<std::string>()).lexically_normal(),
+            std::filesystem::path(written.path()).lexically_normal());
+}
 
 TEST_F(ControlRequestsTest, SetsAndTellsWhatBecomesOfIt) {
   const double before = damping();
