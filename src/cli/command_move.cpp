@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,6 +13,7 @@
 #include "tactus/daemon/control_client.h"
 #include "tactus/daemon/control_socket.h"
 #include "tactus/scene/located_error.h"
+#include "tactus/scene/number_text.h"
 #include "tactus/scene/source_reader.h"
 #include "tactus/scene/yaml_tree.h"
 
@@ -44,13 +43,11 @@ Json vectorOf(const char* option, const std::string& text) {
       vector.push_back(nullptr);
       continue;
     }
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    const bool is_number = error == std::errc() && end == word.data() + word.size();
-    if (!is_number || !std::isfinite(number))
+    const std::optional<double> number = finiteNumber(word);
+    if (!number)
       throw InputError(fmt::format("{} {}: {} is no number, expected three, such as 0.9,-,0.25",
                                    option, escaped(text), inQuotes(word)));
-    vector.push_back(number);
+    vector.push_back(*number);
   }
   return vector;
 }
@@ -79,8 +76,10 @@ Json jsonOf(const YamlNode& node) {
       return map;
     }
     case YamlNode::Kind::kScalar: {
-      const Json value = Json::parse(node.text, nullptr, false);
-      return !node.quoted && (value.is_number() || value.is_boolean()) ? value : Json(node.text);
+      if (node.quoted) return node.text;
+      if (const std::optional<double> number = finiteNumber(node.text)) return *number;
+      const bool is_flag = node.text == "true" || node.text == "false";
+      return is_flag ? Json(node.text == "true") : Json(node.text);
     }
     default:
       return nullptr;

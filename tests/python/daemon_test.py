@@ -9,13 +9,14 @@ import os
 import pathlib
 import signal
 import socket
+import subprocess
 import sys
 import tempfile
 import threading
 import time
 import unittest
 
-from common import ROOT, program, tactus
+from common import ROOT, TACTUS, program, tactus
 
 sys.path.insert(0, str(ROOT / "tests/support"))
 from panel_rig import Rig  # noqa: E402
@@ -84,6 +85,18 @@ class Running(unittest.TestCase):
         self.daemon.hold()
         self.assertNotIn(self.daemon.task()["state"], ("arrived", "blocked"))
         self.assertIn(self.daemon.stream(start)["state"], ("moving", "holding", "arrived", "late"))
+
+    def test_leads_the_tool_by_the_commands(self):
+        os.environ["RUNTIME_DIRECTORY"] = str(self.rig.runtime)
+        self.addCleanup(os.environ.pop, "RUNTIME_DIRECTORY")
+        waypoints = self.rig.folder / "waypoints.yaml"
+        waypoints.write_text("- {to_m: [0, .02, ~], relative: true}\n- {to_m: [+0., -.02, ~], relative: true}\n")
+        for command in (("follow", "--wait", waypoints), ("move", "--wait", "--relative", "--to", "-,+.02,-")):
+            done = program(*command)
+            self.assertEqual((done.returncode, done.stdout), (0, "arrived\n"), done.stderr)
+        for numbers in ("[0, .inf, 0]", "[0, 0,1, 0]", "[0, nan, 0]", "[0, '0.1', 0]"):
+            waypoints.write_text(f"- {{to_m: {numbers}, relative: true}}\n")
+            self.assertEqual(program("follow", waypoints).returncode, 1, numbers)
 
     def test_says_what_it_does(self):
         status = self.daemon.status()
@@ -172,6 +185,18 @@ class NoDaemon(unittest.TestCase):
             daemon.show()
         with self.assertRaisesRegex(ValueError, "closed"):
             daemon.hold()
+
+    def test_that_may_not_be_looked_at_is_not_taken_for_one_without_a_log(self):
+        self.path.parent.chmod(0o755)
+        status = self.path.parent / "status.json"
+        status.write_text("{}")
+        status.chmod(0)
+        nobody = {"user": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
+        for command in ("contacts", "scope", "stream", "status"):
+            done = subprocess.run([TACTUS, command], text=True, capture_output=True, timeout=60,
+                                  env=os.environ | {"RUNTIME_DIRECTORY": str(self.path.parent)}, **nobody)
+            self.assertEqual(done.returncode, 3, done)
+            self.assertIn("it is for root and the group tactus", done.stderr)
 
     def test_has_no_status(self):
         self.serve(b"{}")
