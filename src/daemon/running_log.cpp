@@ -1,7 +1,9 @@
 #include "tactus/daemon/running_log.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -22,6 +24,11 @@ Json readRunStatus() {
   return status.is_object() ? status : Json();
 }
 
+std::string statusRefusal() {
+  const bool is_refused = ::access(runtimePath(kStatusName).c_str(), R_OK) != 0 && errno == EACCES;
+  return is_refused ? "may not be read; it is for root and the group tactus" : "";
+}
+
 std::string logOf(const Json& status) {
   const auto log = status.is_object() ? status.find("log") : status.end();
   if (log == status.end() || !log->is_object() || !log->contains("folder") ||
@@ -34,6 +41,8 @@ std::string runningLog() {
   const std::string path = runtimePath(kStatusName);
   if (!std::filesystem::exists(path))
     throw RunError(fmt::format("{}: {}; a log may be named, too", escaped(path), kNoDaemon));
+  if (const std::string refusal = statusRefusal(); !refusal.empty())
+    throw RunError(fmt::format("{}: {}", escaped(path), refusal));
   const std::string log = logOf(readRunStatus());
   if (log.empty()) throw RunError(fmt::format("{}: the daemon writes no log", escaped(path)));
   return log;

@@ -42,10 +42,18 @@ Json shownBy(const ControlClient& daemon) {
   return shown;
 }
 
+/// Why the daemon writes no more of its log; empty: it does. Who follows it would wait for ever.
+std::string logStop(const Json& status) {
+  const Json log = entry(status, "log");
+  if (entry(log, "state") != "stopped") return "";
+  const Json reason = entry(log, "reason");
+  return "the daemon's log has stopped: " + (reason.is_string() ? reason.get<std::string>() : "");
+}
+
 /// Gains on their way, where they are.
 Json gainsNow(const LogNews& news, const Json& ordered) {
   Json now = Json::object();
-  if (!news.gains || !news.is_live) return now;
+  if (!news.gains || !news.is_live || !news.problem.empty()) return now;
   for (const GainKey& key : gainKeys()) {
     const Json value = gainAt(*news.gains, key.offset);
     if (ordered.contains(key.path) && value.dump() != ordered.at(key.path).dump())
@@ -121,7 +129,8 @@ void DaemonWatch::look() {
   const double age_s = ageOf_s(status);
   const std::lock_guard lock(mutex_);
   if (age_s <= kMaxAge_s) followLog(status);
-  const LogNews news = log_ ? log_->news() : LogNews{};
+  LogNews news = log_ ? log_->news() : LogNews{};
+  if (news.problem.empty()) news.problem = logStop(status);
   publish(panel_.update(state(status, age_s, news), news));
 }
 
@@ -141,6 +150,7 @@ bool DaemonWatch::isSaid() const {
 /// Why there is no status; empty: there is one.
 std::string DaemonWatch::problem(const Json& status, double age_s) const {
   if (age_s <= kMaxAge_s) return "";
+  if (const std::string refusal = statusRefusal(); !refusal.empty()) return "its status " + refusal;
   if (isSaid()) return "the daemon writes no status";
   const bool is_of_before = status.is_null() || age_s == kNoLimit;
   return is_of_before ? "no daemon is running" : "no word from the daemon";
@@ -148,8 +158,8 @@ std::string DaemonWatch::problem(const Json& status, double age_s) const {
 
 Json DaemonWatch::state(const Json& status, double age_s, const LogNews& news) const {
   const bool is_fresh = age_s <= kMaxAge_s;
-  Json state = {
-      {"run", run_}, {"is_there", is_fresh || isSaid()}, {"problem", problem(status, age_s)}};
+  const bool may_be_there = is_fresh || isSaid() || !statusRefusal().empty();
+  Json state = {{"run", run_}, {"is_there", may_be_there}, {"problem", problem(status, age_s)}};
   if (is_fresh) state["status"] = shortStatus(status);
   state["control_problem"] = isSaid() ? std::string() : said_.problem;
   if (isSaid()) {

@@ -26,7 +26,8 @@ Json PanelState::update(const Json& state, const LogNews& news) {
   for (std::size_t i = 0; i + kContactsWithTrace < contacts_.size(); ++i)
     contacts_[i].erase("trace");
   if (!news.contacts.empty()) event["contacts"] = news.contacts;
-  Json lasting = news.lasting;
+  const bool is_now = news.is_live && news.problem.empty();
+  Json lasting = is_now ? news.lasting : std::vector<Json>{};
   if (lasting != lasting_) event["lasting"] = lasting_ = std::move(lasting);
   return event.empty() ? Json() : event;
 }

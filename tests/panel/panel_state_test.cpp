@@ -50,6 +50,21 @@ TEST(PanelStateTest, TellsThePastOnceItWasRead) {
   EXPECT_EQ(event.at("force").at("t").size(), 110u);
 }
 
+TEST(PanelStateTest, TellsOfNoContactThatLastsWhereTheLogIsBehind) {
+  PanelState state;
+  LogNews news = newsWith(0.0, 100, 5.0);
+  news.lasting = {{{"start_s", 0.5}}};
+  news.is_live = false;  // the past is being read
+  state.update(stateOf("a"), news);
+  EXPECT_TRUE(state.all().at("lasting").empty());
+  news.is_live = true;
+  state.update(stateOf("a"), news);
+  EXPECT_EQ(state.all().at("lasting").size(), 1u);
+  news.problem = "the log has ended";
+  state.update(stateOf("a"), news);
+  EXPECT_TRUE(state.all().at("lasting").empty());
+}
+
 TEST(PanelStateTest, IsBoundedHoweverMuchComes) {
   PanelState state;
   state.update(stateOf("a"), newsWith(0.0, 1, 1.0));

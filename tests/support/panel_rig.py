@@ -49,9 +49,9 @@ class Rig:
             self.daemon.communicate()
         self.daemon = None
 
-    def start_panel(self, *options):
+    def start_panel(self, *options, **more):
         self.panel = subprocess.Popen([self.programs["panel"], *(options or ["--port", "0"])],
-                                      env=self.environment(), text=True, stdout=subprocess.PIPE)
+                                      env=self.environment(), text=True, stdout=subprocess.PIPE, **more)
         self.address = self.panel.stdout.readline().strip()
         match = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/#token=([0-9a-f]{32})", self.address)
         if match:

@@ -24,6 +24,11 @@ PANEL = pathlib.Path(sys.argv.pop(1)).resolve()
 SET = {"do": "set", "values": {"controller.damping": "0.55"}}
 
 
+def nobody():
+    """For Popen: without the rights of root."""
+    return {"user": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
+
+
 class Answers(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -166,6 +171,40 @@ class Places(unittest.TestCase):
         path.write_text("another")
         self.rig.stop_panel()
         self.assertEqual(path.read_text(), "another")
+
+    def test_a_log_that_has_stopped_is_not_taken_for_live(self):
+        self.rig.start_daemon(POST)
+        self.rig.start_panel()
+        self.rig.do({"do": "move", "relative": True, "to_m": [0, 0.35, 0]})
+        events = self.rig.events()
+        wait_for("a contact", lambda: next(events).get("lasting"))
+        status = json.loads((self.rig.runtime / "status.json").read_text())
+        self.rig.stop_daemon(is_killed=True)
+        status["log"] |= {"state": "stopped", "reason": "disk full"}
+        status["monotonic_s"] = time.monotonic()
+        (self.rig.runtime / "status.json").write_text(json.dumps(status))
+        lasting = None
+
+        def problem():
+            nonlocal lasting
+            event = next(events)
+            lasting = event.get("lasting", lasting)
+            return (event.get("state") or {}).get("log_problem")
+        self.assertEqual(wait_for("a word", problem), "the daemon's log has stopped: disk full")
+        self.assertEqual(lasting, [])
+        events.close()
+
+    def test_a_status_that_may_not_be_read_is_no_daemon_that_is_missing(self):
+        self.rig.folder.chmod(0o755)
+        status = self.rig.runtime / "status.json"
+        status.write_text(json.dumps({"monotonic_s": time.monotonic()}))
+        status.chmod(0)
+        self.rig.start_panel(**nobody())
+        events = self.rig.events()
+        state = wait_for("a state", lambda: next(events).get("state"))
+        events.close()
+        self.assertEqual((state["is_there"], state["problem"]),
+                         (True, "its status may not be read; it is for root and the group tactus"))
 
     def test_a_status_of_other_types_ends_nothing(self):
         status = {"pid": "x", "mode": {}, "log": 3, "scene": None}

@@ -73,6 +73,14 @@ class Stories(unittest.TestCase):
         self.leave()
         wait_for("no force", lambda: float(self.page.text("forces").split()[1]) < 1.2)
 
+    def test_01_draws_the_forces_that_the_law_has(self):
+        def limits(variant):
+            return self.page.browser.execute_script(
+                "return forceLimits(state.gains.ordered, arguments[0]).map((limit) => limit[0])", variant)
+        self.assertEqual(limits("null_limit"), ["F_th", "F_act + F_th"])
+        for variant in ("null_space", "joint_space", "none"):
+            self.assertEqual(limits(variant), ["F_th"], variant)
+
     def test_02_sets_a_gain_and_sees_it_ramp_and_be_kept(self):
         self.touch()
         self.page.browser.execute_script(WATCH, f'[data-key="{T}"] td:nth-child(2)')

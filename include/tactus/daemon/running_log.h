@@ -9,6 +9,9 @@ namespace tactus {
 /// status.json of the daemon that runs; null: there is none that can be read.
 Json readRunStatus();
 
+/// Why there is a status that this process may not read; empty: it may, or there is none.
+std::string statusRefusal();
+
 /// Path of the log that a status names; empty: none.
 std::string logOf(const Json& status);
 

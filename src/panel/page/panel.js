@@ -26,7 +26,7 @@ function take(event) {
   if (event.contacts) contacts = contacts.concat(event.contacts).slice(-50);
   if (event.lasting) lasting = event.lasting;
   if (event.state || event.begins) showState();
-  if (event.begins || event.force) drawForce();
+  if (event.begins || event.force || event.state) drawForce();
   if (event.begins || event.contacts || event.lasting) showContacts();
 }
 

@@ -41,20 +41,23 @@ function takeForce(force) {
   rows = rows.filter((row) => row[0] >= last - SHOWN_S);
 }
 
-/** F_th and F_act + F_th, at which contacts begin and rest. */
+/** F_th and F_act + F_th, at which contacts begin and rest; of a law without F_act the first alone. */
+function forceLimits(gains, variant) {
+  const threshold = gains["controller.contact_threshold_N"];
+  const active = gains["controller.activation_force_N"];
+  const hasActive = ["null_task", "null_joint", "null_limit"].includes(variant) && active !== null;
+  return [["F_th", threshold], ...(hasActive ? [["F_act + F_th", active + threshold]] : [])];
+}
+
 function drawLimits(canvas, area, plot) {
   const gains = state && state.gains && state.gains.ordered;
   if (!gains) return;
-  const threshold = gains["controller.contact_threshold_N"];
-  const active = gains["controller.activation_force_N"];
-  const names = [["F_th", threshold]];
-  if (active !== null) names.push(["F_act + F_th", active + threshold]);
   const colour = colours();
   canvas.save();
   canvas.font = "11px sans-serif";
   canvas.strokeStyle = canvas.fillStyle = colour.warn;
   canvas.setLineDash([4, 4]);
-  for (const [name, force] of names) {
+  for (const [name, force] of forceLimits(gains, (state.status || {}).variant)) {
     const y = plot.toDomYCoord(force);
     if (!(y > area.y && y < area.y + area.h)) continue;
     canvas.beginPath();
@@ -109,7 +112,8 @@ function drawForce() {
     const item = element("span");
     const swatch = element("span", "", "swatch");
     swatch.style.background = series[i % series.length];
-    item.append(swatch, `${link} `, element("b", `${fixed(forces[i], 2)} N`));
+    const force = state.log_problem ? undefined : forces[i];  // else it would be taken for what is felt now
+    item.append(swatch, `${link} `, element("b", `${fixed(force, 2)} N`));
     return item;
   }));
   const width = links.length + 1;
