@@ -48,8 +48,7 @@ std::optional<ContactSummary> ContactList::present() const {
 }
 
 bool ContactList::isTouch(const CycleRecord& record) const noexcept {
-  return has_force_control_ ? record.force_contact_N > 0.0
-                            : record.force_sensor_N[module_] > kTouchForce_N;
+  return record.force_sensor_N[module_] > (has_force_control_ ? threshold_N_ : kTouchForce_N);
 }
 
 /// By the mean: single samples of a free arm are above F_rel and those of one that leans on
@@ -122,9 +121,7 @@ ContactSummary ContactList::summarise(bool is_released) const {
 
 ContactList contactList(const ControllerConfig& config, std::size_t expected_cycles, int module) {
   const std::size_t modules = config.tactile_modules.size();
-  // What a law acts on says of several modules only that one of them is touched.
-  const bool is_told_by_law = config.force_control.has_value() && modules == 1;
-  return {is_told_by_law, expected_cycles / modules, module};
+  return {config.force_control.has_value(), expected_cycles / modules, module};
 }
 
 }  // namespace tactus

@@ -134,6 +134,21 @@ TEST(ContactFollower, KnowsNoRestOfMissingRecords) {
   EXPECT_TRUE(contactJson(figures, {}).at("rest_force_N").is_null());
 }
 
+/// A drifted sensor shows some force long before the touch.
+TEST(ContactFollower, OfAnArmWithSeveralModulesBeginsAtTheThreshold) {
+  const double threshold_N = CycleRecord{}.gains.force.contact_threshold_N;
+  const ContactFigures figures = followed([](double) { return kFollowed_N; },
+                                          [threshold_N](CycleRecord& record) {
+                                            if (record.t_s < 0.9995)
+                                              record.force_sensor_N[1] = 0.2 * threshold_N;
+                                            record.tool_error_m[1] =
+                                                record.t_s < 0.9995 ? 1.0 : 0.02;
+                                          });
+  EXPECT_NEAR(figures.start_s, 1.0, 1e-9);
+  EXPECT_NEAR(figures.settling_s, 0.0, 1e-9);
+  EXPECT_EQ(figures.tcp_error_max_m, 0.02);
+}
+
 /// Of a touch of a cycle or two there is hardly anything to say.
 TEST(ContactFollower, OfAShortTouchAreFinite) {
   ContactFollower follower(test::railController(Variant::kNullSpace), 0, 0);
