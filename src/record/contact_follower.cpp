@@ -117,6 +117,7 @@ ContactFollower::Cycle ContactFollower::cycleOf(const CycleRecord& record) const
   const double speed =
       std::abs(record.k_n * record.u_n) + std::abs(record.k_j * record.u_j) + task_speed;
   return {.t_s = record.t_s,
+          .period_s = period_s_,
           .force_N = force_N,
           .position_m = record.contact_position_m[module_],
           .tool_error_m = Eigen::Map<const Vector3>(record.tool_error_m).norm(),
@@ -157,9 +158,13 @@ void ContactFollower::addRest(ContactFigures& figures) const {
       std::max(figures.start_s, figures.end_s - std::min(kEnding_s, 0.1 * length_s));
   const double from_s = to_s - std::min(kRest_s, 0.5 * length_s);
   std::vector<double> rest_N;
-  for (const Cycle& cycle : recent_)
-    if (cycle.t_s >= from_s && cycle.t_s <= to_s) rest_N.push_back(cycle.force_N);
-  describeRest(rest_N, to_s - from_s, figures);
+  double rest_s = 0.0;
+  for (const Cycle& cycle : recent_) {
+    if (cycle.t_s < from_s || cycle.t_s > to_s) continue;
+    rest_N.push_back(cycle.force_N);
+    rest_s += cycle.period_s;
+  }
+  describeRest(rest_N, rest_s, figures);
 }
 
 }  // namespace tactus

@@ -149,6 +149,22 @@ TEST(ContactFollower, OfAnArmWithSeveralModulesBeginsAtTheThreshold) {
   EXPECT_EQ(figures.tcp_error_max_m, 0.02);
 }
 
+/// As often a second of the time that is known.
+TEST(ContactFollower, SwingsAsOftenWhereRecordsAreMissing) {
+  ContactFollower follower(twoModules(), 0, 0);
+  for (int i = 0; i < 6000; ++i) {
+    CycleRecord record;
+    record.t_s = kFollowedCycle_s * i;
+    if (record.t_s > 5.15 && record.t_s < 5.65) continue;
+    record.force_sensor_N[0] =
+        i < 1000 ? 0.0 : kFollowed_N + 0.5 * std::sin(2.0 * std::numbers::pi * 20.0 * record.t_s);
+    EXPECT_FALSE(follower.add(record));
+  }
+  const std::optional<ContactFigures> figures = follower.present();
+  ASSERT_TRUE(figures);
+  EXPECT_NEAR(figures->swing_hz, 20.0, 1.5);
+}
+
 /// Of a touch of a cycle or two there is hardly anything to say.
 TEST(ContactFollower, OfAShortTouchAreFinite) {
   ContactFollower follower(test::railController(Variant::kNullSpace), 0, 0);

@@ -29,7 +29,7 @@ class ContactFollower {
  private:
   /// Of a cycle.
   struct Cycle {
-    double t_s, force_N, position_m, tool_error_m, stiffness_N_per_m;
+    double t_s, period_s, force_N, position_m, tool_error_m, stiffness_N_per_m;
     double above_s;
     bool answers, answers_by_null_space_alone;
     double way_m, task_way_m;  ///< that the law gives the contact point
