@@ -189,7 +189,7 @@ std::optional<StabilityReport> checkStability(const Scene& scene) {
     }
     std::vector<LoopReport> margins = marginsOf(of_module, report.ratio());
     const double ratio = leastStable(margins).margins.largest_stiffness_ratio;
-    if (ratio >= largest_ratio) continue;
+    if (i > 0 && ratio >= largest_ratio) continue;
     largest_ratio = ratio;
     report.module = i;
     report.loops = std::move(margins);

@@ -242,6 +242,15 @@ TEST(StabilityCheck, FindsNothingInTheScenesThatComeAlong) {
   EXPECT_GT(with_force_control, 10);
 }
 
+/// Slow gains with next to no damping are stable in whatever there is.
+TEST(StabilityCheck, TellsOfLoopsThatNothingMakesUnstable) {
+  const Scene scene =
+      assumed().load({{"controller.time_constant_s", "100"}, {"controller.damping", "0.0005"}});
+  const StabilityReport report = check(scene);
+  ASSERT_FALSE(report.loops.empty());
+  EXPECT_EQ(largestRatio(report), kNoLimit);
+}
+
 TEST(StabilityCheck, SaysSoWhereMarginsCannotBeComputed) {
   SceneFiles files = assumed();
   files.robot = test::replaced(files.robot, "sample_period_s: 0.005",
