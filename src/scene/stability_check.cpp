@@ -1,6 +1,7 @@
 #include "tactus/scene/stability_check.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -109,6 +110,18 @@ const LoopReport& nearestOf(const StabilityReport& report) {
                                    [](const LoopReport& loop) { return loop.phaseMargin_deg(); });
 }
 
+/// What the simulation has and the loops have not.
+std::string leftOut(const PlantConfig& plant) {
+  std::vector<std::string> keys;
+  if (plant.drives.loop) keys.emplace_back("drives.bandwidth_hz");
+  if (plant.drives.dead_time_s > 0.0) keys.emplace_back("drives.dead_time_s");
+  if (std::ranges::any_of(plant.modules, [](const auto& module) { return module.jitter_s > 0.0; }))
+    keys.emplace_back("tactile_module.jitter_s");
+  if (keys.empty()) return "";
+  return fmt::format("the margins do not know simulation.{}: its contacts may be less stable",
+                     fmt::join(keys, ", "));
+}
+
 std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& report,
                                     double largest_ratio) {
   std::vector<std::string> warnings;
@@ -127,6 +140,8 @@ std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& r
                     "{:g} N/m",
                     assumed_N_per_m, needed_N_per_m));
   }
+  if (const std::string warning = leftOut(scene.plant); !warning.empty())
+    warnings.push_back(warning);
   return warnings;
 }
 

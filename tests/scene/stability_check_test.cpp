@@ -261,6 +261,17 @@ TEST(StabilityCheck, SaysSoWhereMarginsCannotBeComputed) {
   EXPECT_EQ(report.warnings.size(), 1u);
 }
 
+TEST(StabilityCheck, NamesDelaysOfTheSimulationThatAreInNoLoop) {
+  const SceneFiles files = quick(assumed());
+  const std::size_t before = check(files.load()).warnings.size();
+  for (const std::string key :
+       {"drives.dead_time_s", "drives.bandwidth_hz", "tactile_module.jitter_s"}) {
+    const StabilityReport report = check(files.load({{"simulation." + key, "0.05"}}));
+    ASSERT_EQ(report.warnings.size(), before + 1) << key;
+    EXPECT_NE(report.warnings.back().find("simulation." + key), std::string::npos);
+  }
+}
+
 TEST(StabilityCheck, TakesTheArmsGearsIntoLoopsOfOneSpace) {
   const StabilityReport report = check(test::shippedScene("scenario1_tactus"));
   ASSERT_EQ(report.loops.size(), 2u);
