@@ -66,6 +66,21 @@ void checkNodeId(const Loading& l, const Trouble& trouble) {
          "the node id of a drive, or 0 for all");
 }
 
+/// A moteus sends no boot-up message, and has one watchdog alone.
+void checkDriveKind(const Loading& l, const Trouble& trouble) {
+  if (trouble.kind != TroubleKind::kBootUp && trouble.kind != TroubleKind::kHeartbeatOnly) return;
+  bool has_moteus = false;
+  for (const DriveConfig& drive : l.hardware.drives) {
+    const bool is_meant = trouble.id == 0 || drive.node_id == static_cast<int>(trouble.id);
+    if (drive.bus != trouble.bus || !is_meant) continue;
+    if (drive.kind != DriveKind::kMoteus) return;
+    has_moteus = true;
+  }
+  if (!has_moteus) return;
+  l.fail("kind", wordOf(kTroubleWords, trouble.kind) + " says nothing to a moteus",
+         "another trouble, or another drive");
+}
+
 Trouble loadTrouble(const Loading& l) {
   Trouble trouble = l.given.trouble;
   trouble.id = l.given.id.value_or(trouble.id);
@@ -89,6 +104,7 @@ Trouble loadTrouble(const Loading& l) {
   }
   trouble.bus = findBus(l);
   if (isOfDrive(trouble.kind)) checkNodeId(l, trouble);
+  checkDriveKind(l, trouble);
   return trouble;
 }
 

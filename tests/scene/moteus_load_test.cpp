@@ -47,6 +47,22 @@ TEST(MoteusLoad, LeavesTheSheetOfAllDrivesToTheOthers) {
   EXPECT_NE(error.find("gone.eds"), std::string::npos) << "roll is a drive of CANopen: " << error;
 }
 
+/// They would do nothing, and a trial with them show nothing.
+TEST(MoteusLoad, RefusesTroublesThatItDoesNotHave) {
+  for (const std::string kind : {"boot_up", "heartbeat_only"}) {
+    const auto problem = [&](const std::string& id) {
+      test::SceneFiles files = moteusFiles();
+      files.scene =
+          test::replaced(files.scene, "simulation:\n",
+                         "simulation:\n  troubles: [{kind: " + kind +
+                             ", from_s: 1, until_s: 2, interface: can0, id: " + id + "}]\n");
+      return test::loadError(files.sources());
+    };
+    EXPECT_NE(problem("1").find(kind + " says nothing to a moteus"), std::string::npos);
+    EXPECT_NE(problem("0").find(kind + " says nothing to a moteus"), std::string::npos);
+  }
+}
+
 class WrongMoteus : public testing::TestWithParam<test::BrokenText> {};
 
 TEST_P(WrongMoteus, EndsAsOneLine) {
