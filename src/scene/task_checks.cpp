@@ -11,6 +11,10 @@ namespace {
 
 bool isOfPosition(int component) { return component < 3; }
 
+bool hasPosition(const TaskConfig& task) {
+  return std::any_of(task.components.begin(), task.components.begin() + task.size, isOfPosition);
+}
+
 void checkComponents(const CheckedScene& c) {
   const std::size_t joint_count = c.robot.chain.joints.size();
   const TaskConfig& task = c.scene.task;
@@ -18,9 +22,7 @@ void checkComponents(const CheckedScene& c) {
     c.fail("task.components", fmt::format("a list of {}", task.size),
            fmt::format("at most {}, as many as there are joints", joint_count));
   }
-  const auto end = task.components.begin() + task.size;
-  const bool has_position = std::any_of(task.components.begin(), end, isOfPosition);
-  if (c.scene.gains.task.wait_beyond_m < kNoLimit && !has_position) {
+  if (c.scene.gains.task.wait_beyond_m < kNoLimit && !hasPosition(task)) {
     c.fail("task.wait_beyond_m", "the task has no position that could lag",
            "x, y or z among task.components, or no such key");
   }
@@ -63,6 +65,10 @@ void checkWaypoint(const CheckedScene& c, const Waypoint& waypoint, const std::s
     c.fail(path + ".rotation_vector_rad", fmt::format("turns by {:.4g} rad", angle),
            "at most half a turn");
   }
+  if (angle > 0.0 && !c.scene.task.hasRotation()) {
+    c.fail(path + ".rotation_vector_rad", "the task does not control the orientation",
+           "rx, ry or rz among task.components, or no such key");
+  }
 }
 
 /// A tool that is held off must not be told to go further and further away.
@@ -71,6 +77,9 @@ void checkCommands(const CheckedScene& c) {
     c.fail("task.trajectory", "a trajectory besides task.source: commands", "one of both");
   if (!c.scene.controller || c.scene.controller->variant == Variant::kNone) return;
   const TaskGains& gains = c.scene.gains.task;
+  if (!hasPosition(c.scene.task))
+    c.fail("task.components", "no position, whose lag a task by commands waits for",
+           "x, y or z among them");
   if (gains.wait_beyond_m == kNoLimit)
     c.fail("task.wait_beyond_m", "is missing", "a lag for a task by commands, such as 0.02");
   if (gains.max_return_speed_m_per_s == kNoLimit)

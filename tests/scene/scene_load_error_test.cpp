@@ -240,7 +240,10 @@ INSTANTIATE_TEST_SUITE_P(
                    "the arm's reach"},
         BrokenText{"speed_m_per_s: 0.05", "rotation_vector_rad: [0, 3, 3]",
                    "scene.yaml:7:62: task.trajectory.line.rotation_vector_rad: ", "turns by",
-                   "half a turn"}));
+                   "half a turn"},
+        BrokenText{"speed_m_per_s: 0.05", "rotation_vector_rad: [0, 1, 0]",
+                   "scene.yaml:7:62: task.trajectory.line.rotation_vector_rad: ",
+                   "does not control the orientation", "rx, ry or rz among task.components"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Yaml, BrokenScene,
@@ -332,6 +335,16 @@ TEST(BrokenSceneFile, MoreCyclesThanARunMayHave) {
                     {"", "", "--set simulation.duration_s:1:1: simulation.duration_s: ",
                      "more than 1e+08 cycles", "at most 10000 s"});
   EXPECT_EQ(files.load({settings[0], {"simulation.duration_s", "10000"}}).duration_s, 10000.0);
+}
+
+/// Of wait_beyond_m nothing could be said: missing, and of no use.
+TEST(BrokenSceneFile, CommandsToAnOrientationAlone) {
+  const SceneFiles files;
+  const std::vector<Override> settings = {
+      {"task.source", "commands"}, {"task.trajectory", "~"}, {"task.components", "[rx, rz]"}};
+  test::expectError(test::loadError(files.sources(), settings),
+                    {"", "", "--set task.components:1:1: task.components: ",
+                     "no position, whose lag a task by commands waits for", "x, y or z"});
 }
 
 TEST(BrokenSceneFile, TactileSampleStaleWithinACycle) {
