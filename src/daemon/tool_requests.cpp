@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -121,6 +122,10 @@ ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from,
         refuseRequest(fmt::format("rotate_rad[{}] is null", i), "three numbers");
       turn[i] = *(*rotate_rad)[i];
     }
+    // The tool goes the shorter way round.
+    if (is_relative && turn.norm() > std::numbers::pi)
+      refuseRequest(fmt::format("rotate_rad turns by {:.4g} rad", turn.norm()),
+                    "at most half a turn");
     const Matrix3 R = rotationMatrix(turn);
     target.X_BaseTool.R_AB = is_relative ? Matrix3(R * from.R_AB) : R;
   }
