@@ -402,6 +402,20 @@ class OneScene(Report):
         self.assertNotIn("peak 9.50 N", figure)
         self.assertIn("a_variation, peak 9.50 N", self.page())
 
+    def test_is_drawn_from_all_its_logs(self):
+        """As tactusd writes them by log.max_bytes, run.2.ulg the oldest."""
+        write_run(self.runs, "whole")
+        self.assertEqual(self.report().returncode, 0)
+        whole = self.page()
+        cycles, head = made_log({"t_s": np.zeros(1)}), made_log({"t_s": np.zeros(0)})
+        size, all_of_it = len(cycles) - len(head), log_of()
+        for name, begin, end in (("run.2.ulg", 0, 1000), ("run.1.ulg", 1000, CYCLES - 1), ("run.ulg", CYCLES - 1, CYCLES)):
+            part = all_of_it[len(head) + begin * size:len(head) + end * size]
+            (self.runs / "whole" / name).write_bytes(head + part)
+        self.assertEqual(self.report().returncode, 0)
+        self.assertIn("sensor force, peak 8.00 N", self.page())
+        self.assertEqual(self.page(), whole)
+
     def test_may_be_more_than_colours(self):
         for number in range(20):
             write_run(self.runs, f"run {number}", scene="mine")

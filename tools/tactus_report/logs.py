@@ -11,14 +11,15 @@ NEEDED = ("t_s", "force_sensor_N", "stiffness_N_per_m", "dq", "tool_error_x_m", 
 
 
 def read(path):
-    """Members of a Run: copies, so that a run does not keep its whole log. Raises InputError."""
+    """Members of a Run, of all its logs. Raises InputError."""
     log = open_log(path)
-    dq = log["dq"].T.copy()
-    errors = [log[f"tool_error_{axis}_m"] for axis in "xyz"]
-    return {"time_s": log["t_s"].copy(), "force_N": np.max(of_each_module(log["force_sensor_N"]), axis=0),
-            "stiffness_N_per_m": log["stiffness_N_per_m"].copy(), "joint_jerk": jerk(log["t_s"], dq),
+    fields = all_fields(path, log)
+    dq = fields["dq"].T.copy()
+    errors = [fields[f"tool_error_{axis}_m"] for axis in "xyz"]
+    return {"time_s": fields["t_s"], "force_N": np.max(of_each_module(fields["force_sensor_N"]), axis=0),
+            "stiffness_N_per_m": fields["stiffness_N_per_m"], "joint_jerk": jerk(fields["t_s"], dq),
             "joint_speed_squared": np.sum(np.square(dq), axis=0),
-            "tool_error_m": np.sqrt(np.sum(np.square(errors), axis=0)), **of_modules(log)}
+            "tool_error_m": np.sqrt(np.sum(np.square(errors), axis=0)), **of_modules(log, fields)}
 
 
 def open_log(path):
@@ -26,28 +27,41 @@ def open_log(path):
         log = tactus.read_log(path)
     except tactus.Error as error:
         raise InputError(first_line(error)) from error
-    if log.cycles < 2:
-        raise InputError(f"{path}: fewer than two cycles, expected those of a run")
     for field in NEEDED:
         if not np.isfinite(log[field]).all():
             raise InputError(f"{path}: {field}: a number that is not finite, expected none in a log")
     return log
 
 
+def all_fields(path, log):
+    """Each field that is needed, of run.ulg and of those before it, run.1.ulg the newest: copies, so that no
+    log is kept whole."""
+    parts = [{field: log[field].copy() for field in NEEDED}]
+    while (older := path.with_name(f"run.{len(parts)}.ulg")).is_file():
+        before = open_log(older)
+        if before.infos.get("run") != log.infos.get("run"):
+            break
+        parts.insert(0, {field: before[field].copy() for field in NEEDED})
+    fields = {field: np.concatenate([part[field] for part in parts]) for field in NEEDED}
+    if len(fields["t_s"]) < 2:
+        raise InputError(f"{path}: fewer than two cycles, expected those of a run")
+    return fields
+
+
 def of_each_module(field):
     return list(np.atleast_2d(field.T).copy())
 
 
-def of_modules(log):
+def of_modules(log, fields):
     """The members of a Run that speak of several modules; none where there are not."""
-    forces_N = of_each_module(log["force_sensor_N"])
+    forces_N = of_each_module(fields["force_sensor_N"])
     if len(log.modules) < 2 or len(log.modules) != len(forces_N):
         return {}
-    directions = [of_each_module(log[f"contact_dir_{axis}"]) for axis in "xyz"]
+    directions = [of_each_module(fields[f"contact_dir_{axis}"]) for axis in "xyz"]
     return {"modules": [printable(link) for link in log.modules], "forces_N": forces_N,
-            "positions_m": of_each_module(log["contact_position_m"]),
+            "positions_m": of_each_module(fields["contact_position_m"]),
             "directions": [np.column_stack(xyz) for xyz in zip(*directions)],
-            "q": log["q_measured"].copy(), "arm": arm.read_arm(log)}
+            "q": fields["q_measured"], "arm": arm.read_arm(log)}
 
 
 def printable(text):
