@@ -67,6 +67,17 @@ ACCEPTED = [
 ]
 
 
+class Installed(unittest.TestCase):
+    def test_page_of_the_tools_tells_where_all_of_the_source_is(self):
+        text = (ROOT / "debian/tactus-tools.README.Debian").read_text()
+        table, _, demo = text.partition("what tools/demo does is")
+        for folder in sorted(path for path in (ROOT / "config").iterdir() if path.is_dir()):
+            self.assertIn(f"config/{folder.name}", table)
+        scenes = re.findall(r"config(/scenes/\S*\*\.yaml)", (ROOT / "tools/demo").read_text())
+        self.assertGreater(len(scenes), 1)
+        self.assertEqual(re.findall(r"/usr/share/tactus(/scenes/\S*\*\.yaml)", demo), scenes)
+
+
 class Scratch(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
