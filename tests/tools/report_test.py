@@ -25,7 +25,8 @@ import tactus  # noqa: E402
 from made_log import made_log, message  # noqa: E402
 from tactus_report import bench_page, comparison, errors, figures, levels, logs, page, runs, series_figure  # noqa: E402
 
-REPORT = FOLDER.with_name("tactus-report")
+REPORT, TACTUS = FOLDER.with_name("tactus-report"), FOLDER.with_name("tactus")
+SCENES = ROOT / "config/scenes"
 
 
 def summary_of(scene, **changes):
@@ -46,6 +47,13 @@ def write_run(folder, name, log=None, **changes):
     (run / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     (run / "run.ulg").write_bytes(log_of() if log is None else log)
     return run
+
+
+def simulate(scene, folder, *settings):
+    """A short run of a scene of config."""
+    options = [word for setting in ("simulation.duration_s=0.1", *settings) for word in ("--set", setting)]
+    subprocess.run([TACTUS, "simulate", SCENES / f"{scene}.yaml", "-o", folder, *options], check=True,
+                   capture_output=True)
 
 
 CYCLES = 2600
@@ -196,15 +204,19 @@ class Levels(Report):
                  for ratio, degrees in ((3.0, 41.25), (2.5, 60.0))]
         self.assertEqual(levels.least_stable(loops), ["2.50", "41.2"])
 
-    def test_margins_are_those_of_the_scene(self):
-        scene = "scenario3_estimated"
-        loops = tactus.Scene(ROOT / f"config/scenes/{scene}.yaml").check()["stability"]["loops"]
-        self.assertEqual(levels.margins(scene), levels.least_stable(loops))
-        self.assertGreater(float(levels.margins(scene)[1]), 10.0)
+    def test_margins_are_those_of_the_run(self):
+        for T_s in ("0.1", "0.2"):
+            simulate("scenario3_acceleration", self.runs / T_s, f"controller.time_constant_s={T_s}")
+            run, = runs.load_runs([self.runs / T_s])
+            scene = tactus.Scene(SCENES / "scenario3_acceleration.yaml", set={"controller.time_constant_s": T_s})
+            self.assertEqual(levels.margins(run), levels.least_stable(scene.check()["stability"]["loops"]))
+            self.assertGreater(float(levels.margins(run)[1]), 10.0)
 
     def test_no_file_or_no_loop_no_margins(self):
-        for scene in ("nowhere", "free_motion"):
-            self.assertEqual(levels.margins(scene), ["", ""])
+        write_run(self.runs, "nowhere")
+        simulate("free_motion", self.runs)
+        for run in runs.load_runs([self.runs]):
+            self.assertEqual(levels.margins(run), ["", ""])
 
 
 class Faults(Report):
@@ -523,21 +535,19 @@ class Installed(Report):
         share = self.scratch / "usr/share/tactus/tools"
         shutil.copytree(ROOT / "tools/tactus_report", share / "tactus_report")
         shutil.copy(ROOT / "tools/report", share)
-        for folder in ("robots", "scenes"):
-            shutil.copytree(ROOT / "config" / folder, share.parent / folder)
         self.program = self.scratch / "usr/bin/tactus-report"
         self.program.parent.mkdir()
         self.program.symlink_to("../share/tactus/tools/report")
-        write_run(self.runs, "scenario3_acceleration")
+        simulate("scenario3_acceleration", self.runs)
 
     def run_with(self, modules):
         return self.report(program=self.program, environment={**os.environ, "PYTHONPATH": str(modules)})
 
-    def test_finds_module_and_scenes(self):
+    def test_finds_its_module(self):
         result = self.run_with(FOLDER)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         row = self.page().split("<h2>Acceleration level</h2>")[1].split("</tbody>")[0]
-        margins = levels.margins("scenario3_acceleration")
+        margins = levels.margins(*runs.load_runs([self.runs]))
         self.assertEqual(re.findall(r"<td>([^<]*)</td>", row)[-2:], margins)
         self.assertNotIn("", margins)
 

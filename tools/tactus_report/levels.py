@@ -1,12 +1,11 @@
 """The acceleration level beside the velocity level: force, jerk, and the margins of `tactus check`."""
 
-import pathlib
+import json
 
 import numpy as np
 import tactus
+from tactus._sweep import as_bytes, load
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-SCENES = ROOT / ("config/scenes" if (ROOT / "config").is_dir() else "scenes")  # the latter as installed
 PAIRS = [("scenario1_multi_space", "scenario1_acceleration"),
          ("scenario2_estimated", "scenario2_acceleration"),
          ("scenario3_estimated", "scenario3_acceleration")]
@@ -20,7 +19,7 @@ def shown(by_scene):
 
 
 def rows(by_scene):
-    return [[scene, *figures(by_scene[scene]), *margins(scene)] for scene in shown(by_scene)]
+    return [[scene, *figures(by_scene[scene]), *margins(by_scene[scene])] for scene in shown(by_scene)]
 
 
 def figures(run):
@@ -30,11 +29,13 @@ def figures(run):
             + [f"{jerk:.0f}" for jerk in jerks])
 
 
-def margins(scene):
-    """Those of the least stable loop; empty where the scene's file is not there or has none."""
+def margins(run):
+    """Those of the least stable loop, of the files that the log holds and --set; empty without a loop."""
+    files = [(as_bytes(path), as_bytes(text)) for path, text in run.sources.items()]
+    settings = [f"{key}={value}" for key, value in run.overrides.items()]
     try:
-        return least_stable(tactus.Scene(SCENES / f"{scene}.yaml").check()["stability"]["loops"])
-    except (tactus.Error, LookupError, TypeError):
+        return least_stable(json.loads(load(files, settings).check())["stability"]["loops"])
+    except (tactus.Error, LookupError, TypeError, ValueError):
         return ["", ""]
 
 

@@ -19,7 +19,8 @@ def read(path):
     return {"time_s": fields["t_s"], "force_N": np.max(of_each_module(fields["force_sensor_N"]), axis=0),
             "stiffness_N_per_m": fields["stiffness_N_per_m"], "joint_jerk": jerk(fields["t_s"], dq),
             "joint_speed_squared": np.sum(np.square(dq), axis=0),
-            "tool_error_m": np.sqrt(np.sum(np.square(errors), axis=0)), **of_modules(log, fields)}
+            "tool_error_m": np.sqrt(np.sum(np.square(errors), axis=0)),
+            "sources": log.sources, "overrides": log.overrides, **of_modules(log, fields)}
 
 
 def open_log(path):

@@ -32,6 +32,8 @@ class Run:
     joint_jerk: np.ndarray  # norm of the second difference of the command; mixed likewise
     joint_speed_squared: np.ndarray  # of the command; m/s and rad/s mixed, as in the paper
     tool_error_m: np.ndarray  # |w_d - w| of the real arm
+    sources: dict  # of each file that it was made of its text, the scene first
+    overrides: dict  # the values of --set
     # Of each tactile module, in the order of robot.yaml; of logs of one: nothing.
     modules: list = dataclasses.field(default_factory=list)  # their links
     forces_N: list = dataclasses.field(default_factory=list)
