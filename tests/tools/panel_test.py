@@ -250,6 +250,24 @@ class Stories(unittest.TestCase):
         self.assertNotIn(self.rig.token, self.page.browser.current_url)
         self.assertFalse(self.page.at("banner").is_displayed())
 
+    def test_13_pages_behind_others_leave_them_the_connections(self):
+        # A browser has six to a server; commands need one, too.
+        browser, first = self.page.browser, self.page.browser.current_window_handle
+        others = []
+        for _ in range(7):
+            browser.switch_to.new_window("tab")
+            others.append(browser.current_window_handle)
+            self.page.open()
+        self.page.at("hold").click()
+        wait_for("holding", lambda: self.page.text("move-message") == "Holding.")
+        for other in others:
+            browser.switch_to.window(other)
+            browser.close()
+        browser.switch_to.window(first)
+        wait_for("life", lambda: not self.page.at("banner").is_displayed())
+        self.page.set(DAMPING, "0.61")
+        wait_for("what was set", lambda: self.page.runs(DAMPING) == "0.61")
+
 
 if __name__ == "__main__":
     unittest.main()

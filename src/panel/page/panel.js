@@ -4,14 +4,25 @@
 let source = null;
 
 function listen() {
+  if (source || document.hidden) return;
   source = new EventSource("/api/events");
   source.onmessage = (message) => take(JSON.parse(message.data));
   source.onerror = () => {
     showBanner();
     if (source.readyState !== EventSource.CLOSED) return;
+    source = null;
     setTimeout(listen, 2000);
   };
   source.onopen = showBanner;
+}
+
+/** Of six connections to a server, which are all that a browser has, a page that nobody sees takes none. */
+function listenWhileSeen() {
+  if (!document.hidden) return listen();
+  if (source) source.close();
+  source = null;
+  document.title = "Tactus";
+  showBanner();
 }
 
 function take(event) {
@@ -98,6 +109,7 @@ async function begin() {
   }
   makeGains();
   showContacts();
+  document.addEventListener("visibilitychange", listenWhileSeen);
   listen();
 }
 
