@@ -5,9 +5,12 @@ usage: panel_test.py TACTUS_PANEL VIRTUAL_DAEMON
 
 SCREENSHOTS in the environment: a folder for pictures of the page.
 """
+import contextlib
 import os
 import pathlib
+import socket
 import sys
+import threading
 import unittest
 
 from selenium.webdriver.common.by import By
@@ -27,6 +30,33 @@ WATCH = """const seen = [], at = document.querySelector(arguments[0]);
 new MutationObserver(() => seen.push(at.textContent)).observe(at, {childList: true, subtree: true,
                                                                     characterData: true});
 window.seen = seen;"""
+
+
+class Tunnel:
+    """As of ssh: who listens stays where what is behind it falls silent."""
+
+    def __init__(self, port):
+        self.to, self.is_dead = port, False
+        self.listening = socket.create_server(("127.0.0.1", 0))
+        self.port = self.listening.getsockname()[1]
+        threading.Thread(target=self.accept, daemon=True).start()
+
+    def accept(self):
+        with contextlib.suppress(OSError):
+            while True:
+                near, _ = self.listening.accept()
+                far = socket.create_connection(("127.0.0.1", self.to))
+                for source, sink in ((near, far), (far, near)):
+                    threading.Thread(target=self.pass_on, args=(source, sink), daemon=True).start()
+
+    def pass_on(self, source, sink):
+        with contextlib.suppress(OSError), source:
+            was_dead = self.is_dead
+            while piece := source.recv(65536):
+                was_dead |= self.is_dead
+                if not was_dead:
+                    sink.sendall(piece)
+            sink.shutdown(socket.SHUT_WR)
 
 
 class Stories(unittest.TestCase):
@@ -267,6 +297,19 @@ class Stories(unittest.TestCase):
         wait_for("life", lambda: not self.page.at("banner").is_displayed())
         self.page.set(DAMPING, "0.61")
         wait_for("what was set", lambda: self.page.runs(DAMPING) == "0.61")
+
+    def test_14_does_not_take_the_last_word_of_a_dead_connection_for_live(self):
+        tunnel = Tunnel(self.rig.port)
+        self.addCleanup(tunnel.listening.close)
+        page = Page(self.rig.address.replace(f":{self.rig.port}/", f":{tunnel.port}/"))
+        self.addCleanup(page.browser.quit)
+        page.open()
+        tunnel.is_dead = True
+        wait_for("a word", lambda: "does not answer" in page.text("banner"), patience_s=20)
+        tunnel.is_dead = False
+        wait_for("no word", lambda: not page.at("banner").is_displayed(), patience_s=20)
+        page.set(DAMPING, "0.63")
+        wait_for("what was set", lambda: page.runs(DAMPING) == "0.63")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 "use strict";
 // What all parts of the page share. The scripts are read in the order in which index.html names them.
 
+const PATIENCE_MS = 20000;  // the panel itself waits 10 s for the daemon
+
 const at = (id) => document.getElementById(id);
 let token = "";
 let state = null; // the newest of the panel's events
@@ -44,7 +46,8 @@ async function post(path, request) {
   if (token) headers["X-Tactus-Token"] = token;
   try {
     const body = JSON.stringify(request);
-    const answer = await fetch(path, { method: "POST", headers, body });
+    const signal = AbortSignal.timeout(PATIENCE_MS);
+    const answer = await fetch(path, { method: "POST", headers, body, signal });
     return await answer.json();
   } catch {
     return { done: false, error: "the panel does not answer" };

@@ -1,12 +1,19 @@
 "use strict";
 // Events come from the panel and are handed to the parts of the page.
 
+const SILENT_MS = 5000;  // the panel says something every two seconds
+
 let source = null;
+let heard_ms = 0;
 
 function listen() {
   if (source || document.hidden) return;
   source = new EventSource("/api/events");
-  source.onmessage = (message) => take(JSON.parse(message.data));
+  heard_ms = performance.now();
+  source.onmessage = (message) => {
+    heard_ms = performance.now();
+    take(JSON.parse(message.data));
+  };
   source.onerror = () => {
     showBanner();
     if (source.readyState !== EventSource.CLOSED) return;
@@ -14,6 +21,15 @@ function listen() {
     setTimeout(listen, 2000);
   };
   source.onopen = showBanner;
+}
+
+/** Behind a tunnel whose other end is gone a connection stays as it was. */
+function lookForLife() {
+  if (!source || performance.now() - heard_ms < SILENT_MS) return;
+  source.close();
+  source = null;
+  listen();
+  showBanner();
 }
 
 /** Of six connections to a server, which are all that a browser has, a page that nobody sees takes none. */
@@ -110,6 +126,7 @@ async function begin() {
   makeGains();
   showContacts();
   document.addEventListener("visibilitychange", listenWhileSeen);
+  setInterval(lookForLife, 1000);
   listen();
 }
 
