@@ -52,10 +52,11 @@ bool ContactList::isTouch(const CycleRecord& record) const noexcept {
 }
 
 /// By the mean: single samples of a free arm are above F_rel and those of one that leans on
-/// something below it where the sensor is noisy.
+/// something below it where the sensor is noisy. Behind records that are missing there are few.
 bool ContactList::isReleased() const noexcept {
   const std::deque<Sample>& newest = present_.newest;
-  const bool is_full = static_cast<std::size_t>(present_.confirmed_cycles) > newest.size();
+  const bool is_full = static_cast<std::size_t>(present_.confirmed_cycles) > newest.size() &&
+                       newest.back().t_s - newest.front().t_s > 0.5 * kReleasePause_s;
   return is_full && present_.newest_sum_N <= release_N_ * static_cast<double>(newest.size());
 }
 
@@ -89,9 +90,14 @@ void ContactList::keep(const Sample& sample) {
 
 void ContactList::keepNewest(const Sample& sample) {
   std::deque<Sample>& newest = present_.newest;
+  if (!newest.empty() && !(sample.t_s >= newest.back().t_s)) {  // of a damaged log
+    newest.clear();
+    present_.newest_sum_N = 0.0;
+  }
   newest.push_back(sample);
   present_.newest_sum_N += sample.force_N;
-  while (newest.front().t_s <= sample.t_s - kReleasePause_s + kTimeTolerance_s) {
+  while (newest.size() > 1 &&
+         newest.front().t_s <= sample.t_s - kReleasePause_s + kTimeTolerance_s) {
     present_.newest_sum_N -= newest.front().force_N;
     newest.pop_front();
   }

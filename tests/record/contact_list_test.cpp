@@ -133,6 +133,23 @@ TEST(ContactList, NoiseNeitherKeepsAContactNorMakesOneNorEndsOne) {
   }
 }
 
+/// The first record behind a gap is one sample of a noisy sensor.
+TEST(ContactList, DoesNotEndByOneRecordBehindAGap) {
+  for (const bool force_control : {true, false}) {
+    ContactCollection list(ContactList(force_control, 0));
+    CycleRecord record;
+    for (int i = 0; i < 4000; ++i) {
+      record.t_s = 1e-3 * i;
+      record.force_sensor_N[0] = i < 1000 ? 3.0 : 0.8 + (i % 2 == 0 ? 0.6 : -0.6);
+      if (record.t_s > 2.0 && record.t_s < 2.2005) continue;
+      list.add(record);
+    }
+    const std::vector<ContactSummary> contacts = list.contacts();
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_NEAR(contacts.front().end_s, 3.999, 1e-9);
+  }
+}
+
 TEST(ContactList, EndsAtTheForceOfTheScene) {
   for (const auto& [release_N, count] : {std::pair{kRelease_N, 1u}, std::pair{0.75, 2u}}) {
     ContactCollection list(ContactList(true, 0));
@@ -178,6 +195,21 @@ TEST(ContactList, AContactOfHoursKeepsItsFigures) {
   EXPECT_DOUBLE_EQ(contacts[0].peak_force_N, 9.0);
   EXPECT_NEAR(contacts[0].settling_s, 20000.0, 2e-6 * 50000.0);
   EXPECT_NEAR(contacts[0].end_s, 50000.11, 1e-6);
+}
+
+/// As a damaged log may have it.
+TEST(ContactList, BearsATimeThatIsNone) {
+  for (const double t_s : {kNoLimit, -kNoLimit, 1e17, std::nan("")}) {
+    ContactCollection list(ContactList(true, 0));
+    CycleRecord record;
+    for (int i = 0; i < 200; ++i) {
+      record.t_s = i == 50 ? t_s : 0.01 * i;
+      record.force_sensor_N[0] = i < 100 ? 3.0 : 0.0;
+      list.add(record);
+    }
+    ASSERT_FALSE(list.contacts().empty()) << t_s;
+    EXPECT_EQ(list.contacts().front().peak_force_N, 3.0);
+  }
 }
 
 TEST(ContactList, AContactShorterThanThePauseNeverSettles) {
