@@ -12,6 +12,7 @@ namespace tactus {
 namespace {
 
 constexpr double kApproach_s = 0.05;
+constexpr double kLeastBefore_s = 0.05;  ///< what is touched from the first sample on tells nothing
 constexpr std::size_t kLeastSamples = 10;
 constexpr double kLeastForce_N = 0.5;
 constexpr double kMostDeviation = 0.5;  ///< of c_e
@@ -45,6 +46,7 @@ Touch wayOf(const ControllerConfig& config, int module, const std::deque<TouchSa
   const auto felt = std::ranges::find_if(
       samples, [felt_s](const TouchSample& sample) { return sample.t_s >= felt_s; });
   if (felt == samples.end() || isAtEnd(config, module, *felt)) return touch;
+  if (felt_s - samples.front().t_s < kLeastBefore_s) return touch;
   double way_m = 0.0;
   std::optional<Pose> before;
   std::uint64_t sequence = 0;

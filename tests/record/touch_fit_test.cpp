@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <random>
@@ -110,6 +111,19 @@ TEST(TouchFit, HasTheStiffnessInItsIntervalWhereTheSensorIsNoisy) {
   EXPECT_GT(known, 190);
   EXPECT_GT(inside, 0.9 * known);
   EXPECT_LT(width / known, 0.3);
+}
+
+/// As the second part of a long log: what the force does then is the law's, and no touch.
+TEST(TouchFit, IsUnknownWhereTheSamplesBeginInContact) {
+  test::Random random(5);
+  for (int i = 0; i < 50; ++i) {
+    FitRun run = touchRun({.stiffness_N_per_m = random.logUniform(50.0, 2e4)},
+                          static_cast<std::uint64_t>(2000 + i));
+    const double begins_s = run.felt_s + random.uniform(-0.04, 0.5);
+    while (run.samples.front().t_s < begins_s) run.samples.pop_front();
+    const double felt_s = std::max(run.felt_s, run.samples.front().t_s);
+    EXPECT_FALSE(fitTouch(fitConfig(), 0, run.samples, felt_s).is_known) << begins_s;
+  }
 }
 
 TEST(TouchFit, IsUnknownWhereNothingTells) {
