@@ -121,6 +121,10 @@ ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from,
       if (!(*rotate_rad)[i])
         refuseRequest(fmt::format("rotate_rad[{}] is null", i), "three numbers");
       turn[i] = *(*rotate_rad)[i];
+      if (is_relative && turn[i] != 0.0 && !controls(task, 3 + i))
+        refuseRequest(
+            fmt::format("rotate_rad[{}] is given, but the task does not control r{}", i, "xyz"[i]),
+            "0");
     }
     // The tool goes the shorter way round.
     if (is_relative && turn.norm() > std::numbers::pi)

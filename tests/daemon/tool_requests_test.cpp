@@ -86,10 +86,10 @@ TEST_F(ToolRequestsTest, FollowsWaypointsEachFromTheOneBefore) {
   }
 }
 
-/// Of more than half a turn the other way round is shorter, and the tool would go that.
-TEST(TurningToolRequests, RefuseARelativeTurnThatWouldGoTheOtherWayRound) {
-  const Scene scene = test::shippedScene("commands", {{"task.components", "[x, y, z, rx, ry, rz]"},
-                                                      {"task.max_return_speed_rad_per_s", "0.2"}});
+/// A stream to an arm whose task has these components.
+Json turned(const std::string& components, const Json& rotate_rad, bool is_relative) {
+  const Scene scene = test::shippedScene(
+      "commands", {{"task.components", components}, {"task.max_return_speed_rad_per_s", "0.2"}});
   const ControllerConfig& config = scene.controller;
   const Pose X = tipPose(config.chain, config.q_start);
   LoopLink link;
@@ -100,16 +100,26 @@ TEST(TurningToolRequests, RefuseARelativeTurnThatWouldGoTheOtherWayRound) {
   std::copy_n(X.p_AB.data(), 3, sight.p_BaseTool_m);
   std::copy_n(X.R_AB.data(), 9, sight.R_BaseTool);
   link.tool_sights.put(sight);
-  const auto turn = [&](double about_z_rad, bool is_relative) {
-    const Json request = {
-        {"do", "stream"}, {"rotate_rad", {0.0, 0.0, about_z_rad}}, {"relative", is_relative}};
-    return Json::parse(requests.answer(request.dump()));
-  };
-  EXPECT_EQ(turn(3.1, true).at("done"), true);
-  const Json far = turn(3.5, true);
+  const Json request = {{"do", "stream"}, {"rotate_rad", rotate_rad}, {"relative", is_relative}};
+  return Json::parse(requests.answer(request.dump()));
+}
+
+/// Of more than half a turn the other way round is shorter, and the tool would go that.
+TEST(TurningToolRequests, RefuseARelativeTurnThatWouldGoTheOtherWayRound) {
+  const std::string all = "[x, y, z, rx, ry, rz]";
+  EXPECT_EQ(turned(all, {0.0, 0.0, 3.1}, true).at("done"), true);
+  const Json far = turned(all, {0.0, 0.0, 3.5}, true);
   EXPECT_EQ(far.at("done"), false);
   EXPECT_NE(far.value("error", "").find("half a turn"), std::string::npos) << far;
-  EXPECT_EQ(turn(3.5, false).at("done"), true) << "where it ends, however it gets there";
+  EXPECT_EQ(turned(all, {0.0, 0.0, 3.5}, false).at("done"), true) << "where it ends alone counts";
+}
+
+TEST(TurningToolRequests, RefuseARelativeTurnAboutWhatIsNotControlled) {
+  const std::string some = "[x, y, z, rz]";
+  EXPECT_EQ(turned(some, {0.0, 0.0, 0.1}, true).at("done"), true);
+  const Json across = turned(some, {0.1, 0.0, 0.1}, true);
+  EXPECT_EQ(across.at("done"), false);
+  EXPECT_NE(across.value("error", "").find("rotate_rad[0]"), std::string::npos) << across;
 }
 
 TEST(FreeToolRequests, TellHowLongWhatIsControlledTakes) {
