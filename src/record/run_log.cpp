@@ -1,7 +1,10 @@
 #include "tactus/record/run_log.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -57,8 +60,20 @@ Json logJson(const LogState& state, const char* unless_stopped) {
   return json;
 }
 
+RunLog::FolderHold::FolderHold(const std::string& folder) noexcept
+    : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (fd_ >= 0) ::flock(fd_, LOCK_EX | LOCK_NB);
+}
+
+RunLog::FolderHold::~FolderHold() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
 RunLog::RunLog(const Scene& scene, std::string folder)
-    : config_(scene.log), folder_(std::move(folder)), description_(describeLog(scene)) {
+    : config_(scene.log),
+      folder_(std::move(folder)),
+      hold_(folder_),
+      description_(describeLog(scene)) {
   state_.folder = fs::absolute(folder_).string();
   description_.infos.emplace_back(kRunKey, newRunName());
   description_.infos.emplace_back(kPartKey, "0");

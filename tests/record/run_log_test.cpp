@@ -1,9 +1,12 @@
 #include "tactus/record/run_log.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/file.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <random>
 
@@ -142,6 +145,20 @@ TEST_F(RunLogFiles, WithoutALimitThereIsOne) {
   log.close();
   EXPECT_EQ(log.state().files, 1);
   EXPECT_EQ(read("run.ulg").records.size(), 5000u);
+}
+
+/// systemd-tmpfiles leaves out a folder that is locked, with all that is in it.
+TEST_F(RunLogFiles, AreLockedWhileTheRunGoesOn) {
+  const auto isLocked = [this] {
+    const int fd = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const bool is_locked = ::flock(fd, LOCK_SH | LOCK_NB) != 0;
+    ::close(fd);
+    return is_locked;
+  };
+  auto log = std::make_unique<RunLog>(scene_, folder_);
+  EXPECT_TRUE(isLocked());
+  log.reset();
+  EXPECT_FALSE(isLocked());
 }
 
 TEST_F(RunLogFiles, WhatIsFlushedIsInTheFile) {
