@@ -181,8 +181,11 @@ PlantConfig plantOf(const Scene& scene) {
   PlantConfig plant = scene.plant;
   if (!scene.hardware) return plant;
   const std::vector<CanTactileConfig>& on_bus = scene.hardware->tactile_modules;
-  for (std::size_t i = 0; i < on_bus.size(); ++i)
-    plant.modules[i].filtered = !on_bus[i].filter_cutoff_hz;
+  for (std::size_t i = 0; i < on_bus.size(); ++i) {
+    SimulatedModuleConfig& module = plant.modules[i];
+    module.filtered = !on_bus[i].filter_cutoff_hz;
+    module.filter_cutoff_hz = on_bus[i].filter_cutoff_hz.value_or(module.filter_cutoff_hz);
+  }
   return plant;
 }
 

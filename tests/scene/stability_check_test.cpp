@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "support/hardware_files.h"
 #include "support/scene_files.h"
 #include "support/shipped_scene.h"
 
@@ -270,6 +271,16 @@ TEST(StabilityCheck, NamesDelaysOfTheSimulationThatAreInNoLoop) {
     ASSERT_EQ(report.warnings.size(), before + 1) << key;
     EXPECT_NE(report.warnings.back().find("simulation." + key), std::string::npos);
   }
+}
+
+/// What the scene says of a simulated module's filter is not what the daemon filters with.
+TEST(StabilityCheck, TakesTheFilterOfTheDaemonAsItIs) {
+  const SceneFiles files = test::hardwareFiles();
+  const double ratio = largestRatio(check(files.load()));
+  for (const std::string cutoff_hz : {"40", "300"})
+    EXPECT_EQ(largestRatio(
+                  check(files.load({{"simulation.tactile_module.filter_cutoff_hz", cutoff_hz}}))),
+              ratio);
 }
 
 TEST(StabilityCheck, TakesTheArmsGearsIntoLoopsOfOneSpace) {
