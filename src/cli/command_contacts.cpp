@@ -39,6 +39,10 @@ std::string swingText(const ContactFigures& contact) {
   return fmt::format("{:.2f} at {:.1f} Hz", contact.swing_N, contact.swing_hz);
 }
 
+std::string shareText(double share) {
+  return std::isnan(share) ? "-" : fmt::format("{:.0f}", 100.0 * share);
+}
+
 std::string restText(const ContactFigures& contact) {
   return std::isnan(contact.rest_force_N) ? "-" : fmt::format("{:.2f}", contact.rest_force_N);
 }
@@ -61,12 +65,13 @@ std::string headerText() {
 std::string contactText(const Scene& scene, const ContactFigures& contact) {
   return fmt::format(
       "{:8.3f} {:8.3f} {:<10} {:6.0f} {:7.2f} {:7.3f} {:7.3f} {:>7} {:<15} {:9.0f} {:<20} "
-      "{:6.1f} {:5.0f} {:5.0f} {:6.3g} {:5.3g}\n",
+      "{:6.1f} {:5.0f} {:>5} {:6.3g} {:5.3g}\n",
       contact.start_s, contact.end_s, escaped(linkOfModule(scene.module_links, contact.module)),
       1e3 * contact.position_m, contact.peak_force_N, contact.time_above_s, contact.settling_s,
       restText(contact), swingText(contact), contact.stiffness_N_per_m,
       stiffnessText(contact.touch), 1e3 * contact.tcp_error_max_m, 100.0 * contact.null_share,
-      100.0 * contact.task_share, contact.gains.force.time_constant_s, contact.gains.force.damping);
+      shareText(contact.task_share), contact.gains.force.time_constant_s,
+      contact.gains.force.damping);
 }
 
 std::string contactsText(const LoggedContacts& logged) {

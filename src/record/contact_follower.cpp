@@ -141,7 +141,10 @@ ContactFigures ContactFollower::figuresOf(const ContactSummary& contact) const {
   figures.tcp_error_max_m = sums.tool_error_m;
   if (sums.answers > 0)
     figures.null_share = static_cast<double>(sums.null_answers) / static_cast<double>(sums.answers);
-  if (sums.way_m > 0.0) figures.task_share = sums.task_way_m / sums.way_m;
+  if (sums.way_m > 0.0)
+    figures.task_share = sums.task_way_m / sums.way_m;
+  else if (sums.answers > 0)  // by rows of several contacts, which have no k
+    figures.task_share = std::nan("");
   figures.gains = gains_;
   if (touch_) {
     figures.touch = *touch_;

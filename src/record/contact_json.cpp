@@ -25,7 +25,7 @@ Json contactJson(const ContactFigures& contact, const std::vector<std::string>& 
                {"contact_stiffness_N_per_m", nullptr},
                {"tcp_error_max_m", contact.tcp_error_max_m},
                {"null_space_share", contact.null_share},
-               {"task_space_share", contact.task_share},
+               {"task_space_share", finiteOrNull(contact.task_share)},
                {"time_constant_s", gains.time_constant_s},
                {"damping", gains.damping},
                {"activation_force_N", gains.activation_force_N},

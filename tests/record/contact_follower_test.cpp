@@ -165,6 +165,16 @@ TEST(ContactFollower, SwingsAsOftenWhereRecordsAreMissing) {
   EXPECT_NEAR(figures->swing_hz, 20.0, 1.5);
 }
 
+/// The rows of several contacts have no k_n, k_j and k_t, which are zero in the log.
+TEST(ContactFollower, DoesNotKnowTheShareOfAnAnswerWithoutGains) {
+  const ContactFigures figures =
+      followed([](double) { return kFollowed_N; }, [](CycleRecord& record) { record.u_t = -0.1; });
+  EXPECT_TRUE(std::isnan(figures.task_share));
+  EXPECT_TRUE(contactJson(figures, {}).at("task_space_share").is_null());
+  const ContactFigures silent = followed([](double) { return kFollowed_N; });
+  EXPECT_EQ(silent.task_share, 0.0);
+}
+
 /// Of a touch of a cycle or two there is hardly anything to say.
 TEST(ContactFollower, OfAShortTouchAreFinite) {
   ContactFollower follower(test::railController(Variant::kNullSpace), 0, 0);

@@ -21,7 +21,7 @@ struct ContactFigures : ContactSummary {
   /// Of the time that the law answers, that in which the null space does alone.
   double null_share = 0.0;
   /// Of the way that the law gave the contact point, what the task space did: all of |k_t u_t| over
-  /// all of |k_n u_n| + |k_j u_j| + |k_t u_t|.
+  /// all of |k_n u_n| + |k_j u_j| + |k_t u_t|; NaN where there was an answer without k.
   double task_share = 0.0;
   Gains gains;  ///< at its start
 };
