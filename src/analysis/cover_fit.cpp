@@ -69,14 +69,18 @@ void CoverFit::follow(const JointVector& q, double step_s) {
   chain_.computePose(q, pose);
   const Pose X_BaseModule = framePose(pose, link_);
   const Vector3 p_Base = X_BaseModule.p_AB + middle_m_ * X_BaseModule.R_AB.col(0);
-  if (!has_started_) p_Base_ = p_Base;
+  if (poses_ == 0) p_Base_ = p_Base;
   const Vector3 v_Base = (p_Base - p_Base_) / step_s;
+  if (poses_ < 2) v_Base_ = v_Base;  // how it moved before is not known
   const Vector3 a_Base = (v_Base - v_Base_) / step_s;
   p_Base_ = p_Base;
   v_Base_ = v_Base;
   const Vector3 G = X_BaseModule.R_AB.transpose() * (gravity_Base_ - a_Base);
-  if (!has_started_) origin_ = G;
-  has_started_ = true;
+  if (poses_ == 0) {
+    origin_ = G;
+    s0_ = s1_ = s2_ = Vector3::Zero();
+  }
+  poses_ = std::min(poses_ + 1, 2);
   const double K = std::min(1.0, std::numbers::pi * filter_cutoff_hz_ * step_s);
   butterworthStep(Vector3(G - origin_), K, s0_, s1_, s2_, G_);
   G_ += origin_;

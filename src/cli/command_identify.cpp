@@ -59,9 +59,12 @@ template <typename Run>
 Identified fit(const IdentifyOptions& options, const Scene& scene, const Run& run) {
   const ControllerConfig& config = scene.controller;
   CoverFit fit(config, config.tactile_modules[options.module]);
+  double before_s = kNoLimit;
   run([&](const CycleRecord& record) {
     const RobotInput input = recordedInput(record, config.chain.size());
     const double step_s = scene.period_s * (1.0 + static_cast<double>(record.missed_cycles));
+    if (record.t_s - before_s > 1.5 * step_s) fit.skip();
+    before_s = record.t_s;
     fit.add(input.q_measured, input.tactile[options.module], step_s);
   });
   return {fit.estimate(), scene.module_links[options.module],

@@ -37,6 +37,8 @@ class CoverFit {
 
   /// The next cycle, step_s after the one before. q: measured.
   void add(const JointVector& q, const TactileSample& sample, double step_s);
+  /// Cycles are missing before the next one.
+  void skip() noexcept { poses_ = 0; }
 
   CoverEstimate estimate() const;
 
@@ -60,11 +62,11 @@ class CoverFit {
   AttachedFrame link_;
   Vector3 gravity_Base_;
   double middle_m_, filter_cutoff_hz_;
-  bool has_started_ = false;
+  int poses_ = 0;  ///< in a row, up to two
   std::uint32_t sequence_ = 0;
   double block_s_ = 0.0;  ///< of the newest block
-  Vector3 p_Base_, v_Base_ = Vector3::Zero();
-  Vector3 G_, origin_, s0_ = Vector3::Zero(), s1_ = Vector3::Zero(), s2_ = Vector3::Zero();
+  Vector3 p_Base_, v_Base_;
+  Vector3 G_, origin_, s0_, s1_, s2_;
   std::vector<Normal> blocks_;
 };
 
