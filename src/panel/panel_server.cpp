@@ -207,7 +207,7 @@ void PanelServer::Server::stream(httplib::Response& response) {
 bool PanelServer::Server::sendNew(std::uint64_t& number, httplib::DataSink& sink) {
   const EventFeed::Batch batch = feed.wait(number, kSignOfLife);
   number = batch.number;
-  if (batch.is_lost) return false;  // the page comes again, and gets all
+  if (batch.is_lost) return false;                         // the page comes again, and gets all
   if (batch.events.empty()) return sendEvent("{}", sink);  // no comment: pages see none of these
   for (const EventFeed::Event& event : batch.events)
     if (!sendEvent(*event, sink)) return false;
