@@ -67,11 +67,6 @@ std::optional<std::array<std::optional<double>, 3>> vectorOf(const Json& request
   return vector;
 }
 
-bool controls(const TaskConfig& task, int component) {
-  const auto end = task.components.begin() + task.size;
-  return std::find(task.components.begin(), end, component) != end;
-}
-
 void setSpeed(const Json& request, const char* name, MotionLimits& limits) {
   const auto found = request.find(name);
   if (found == request.end()) return;
@@ -107,7 +102,7 @@ ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from,
   for (int i = 0; to_m && i < 3; ++i) {
     const std::optional<double>& value = (*to_m)[i];
     if (!value || (is_relative && *value == 0.0)) continue;
-    if (!controls(task, i))
+    if (!task.controls(i))
       refuseRequest(fmt::format("to_m[{}] is given, but the task does not control {}", i, "xyz"[i]),
                     "null");
     target.X_BaseTool.p_AB[i] = *value + (is_relative ? from.p_AB[i] : 0.0);
@@ -121,7 +116,7 @@ ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from,
       if (!(*rotate_rad)[i])
         refuseRequest(fmt::format("rotate_rad[{}] is null", i), "three numbers");
       turn[i] = *(*rotate_rad)[i];
-      if (is_relative && turn[i] != 0.0 && !controls(task, 3 + i))
+      if (is_relative && turn[i] != 0.0 && !task.controls(3 + i))
         refuseRequest(
             fmt::format("rotate_rad[{}] is given, but the task does not control r{}", i, "xyz"[i]),
             "0");

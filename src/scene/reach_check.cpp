@@ -49,11 +49,6 @@ Gains slowedFor(double step_s, const ControllerConfig& config) {
   return gains;
 }
 
-bool controls(const TaskConfig& task, int component) {
-  const auto end = task.components.begin() + task.size;
-  return std::find(task.components.begin(), end, component) != end;
-}
-
 bool isAtItsLimit(const ControllerConfig& config, const JointVector& q) {
   constexpr double kClose = 1e-6;
   return ((q - config.limits.lower).array() < kClose).any() ||
@@ -73,7 +68,7 @@ Reach followTo(const ControllerConfig& config, const JointVector& q, const Pose&
   // What the task leaves free may have gone anywhere, and takes no time.
   if (!config.task.hasRotation()) target.R_AB = X_BaseStart.R_AB;
   for (int i = 0; i < 3; ++i)
-    if (!controls(config.task, i)) target.p_AB[i] = X_BaseStart.p_AB[i];
+    if (!config.task.controls(i)) target.p_AB[i] = X_BaseStart.p_AB[i];
   const double duration_s = state.tool_motion->to(0.0, target, limits).end_s();
   // Where the way leads does not depend on the speed.
   state.tool_motion = state.tool_motion->to(0.0, target, config.task.commands->limits);

@@ -11,10 +11,6 @@ namespace {
 
 bool isOfPosition(int component) { return component < 3; }
 
-bool hasPosition(const TaskConfig& task) {
-  return std::any_of(task.components.begin(), task.components.begin() + task.size, isOfPosition);
-}
-
 void checkComponents(const CheckedScene& c) {
   const std::size_t joint_count = c.robot.chain.joints.size();
   const TaskConfig& task = c.scene.task;
@@ -22,7 +18,7 @@ void checkComponents(const CheckedScene& c) {
     c.fail("task.components", fmt::format("a list of {}", task.size),
            fmt::format("at most {}, as many as there are joints", joint_count));
   }
-  if (c.scene.gains.task.wait_beyond_m < kNoLimit && !hasPosition(task)) {
+  if (c.scene.gains.task.wait_beyond_m < kNoLimit && !task.hasPosition()) {
     c.fail("task.wait_beyond_m", "the task has no position that could lag",
            "x, y or z among task.components, or no such key");
   }
@@ -77,7 +73,7 @@ void checkCommands(const CheckedScene& c) {
     c.fail("task.trajectory", "a trajectory besides task.source: commands", "one of both");
   if (!c.scene.controller || c.scene.controller->variant == Variant::kNone) return;
   const TaskGains& gains = c.scene.gains.task;
-  if (!hasPosition(c.scene.task))
+  if (!c.scene.task.hasPosition())
     c.fail("task.components", "no position, whose lag a task by commands waits for",
            "x, y or z among them");
   if (gains.wait_beyond_m == kNoLimit)

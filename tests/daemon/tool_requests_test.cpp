@@ -12,18 +12,22 @@
 namespace tactus {
 namespace {
 
+/// The arm at its start.
+void placeAtStart(const ControllerConfig& config, bool is_running, ToolSight& sight) {
+  const Pose X = tipPose(config.chain, config.q_start);
+  sight.is_running = is_running;
+  std::copy_n(config.q_start.data(), config.q_start.size(), sight.q);
+  std::copy_n(X.p_AB.data(), 3, sight.p_BaseTool_m);
+  std::copy_n(X.R_AB.data(), 9, sight.R_BaseTool);
+}
+
 /// What tells the tool, and the loop's side of the link.
 class ToolRequestsTest : public ::testing::Test {
  protected:
   ToolRequestsTest() { see(true); }
 
   void see(bool is_running) {
-    const ControllerConfig& config = scene.controller;
-    const Pose X = tipPose(config.chain, config.q_start);
-    sight.is_running = is_running;
-    std::copy_n(config.q_start.data(), config.q_start.size(), sight.q);
-    std::copy_n(X.p_AB.data(), 3, sight.p_BaseTool_m);
-    std::copy_n(X.R_AB.data(), 9, sight.R_BaseTool);
+    placeAtStart(scene.controller, is_running, sight);
     link.tool_sights.put(sight);
   }
 
@@ -90,15 +94,10 @@ TEST_F(ToolRequestsTest, FollowsWaypointsEachFromTheOneBefore) {
 Json turned(const std::string& components, const Json& rotate_rad, bool is_relative) {
   const Scene scene = test::shippedScene(
       "commands", {{"task.components", components}, {"task.max_return_speed_rad_per_s", "0.2"}});
-  const ControllerConfig& config = scene.controller;
-  const Pose X = tipPose(config.chain, config.q_start);
   LoopLink link;
   ControlRequests requests(scene, link);
   ToolSight sight;
-  sight.is_running = true;
-  std::copy_n(config.q_start.data(), config.q_start.size(), sight.q);
-  std::copy_n(X.p_AB.data(), 3, sight.p_BaseTool_m);
-  std::copy_n(X.R_AB.data(), 9, sight.R_BaseTool);
+  placeAtStart(scene.controller, true, sight);
   link.tool_sights.put(sight);
   const Json request = {{"do", "stream"}, {"rotate_rad", rotate_rad}, {"relative", is_relative}};
   return Json::parse(requests.answer(request.dump()));

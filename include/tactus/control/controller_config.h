@@ -57,6 +57,11 @@ struct TaskConfig {
   /// changed.
   std::optional<TaskCommandsConfig> commands{};
 
+  bool controls(int component) const noexcept {
+    const auto end = components.begin() + size;
+    return std::find(components.begin(), end, component) != end;
+  }
+  bool hasPosition() const noexcept { return controls(0) || controls(1) || controls(2); }
   bool hasRotation() const noexcept {
     return std::any_of(components.begin(), components.begin() + size,
                        [](int component) { return component >= 3; });
