@@ -19,7 +19,7 @@ import unittest
 from common import ROOT, TACTUS, program, tactus
 
 sys.path.insert(0, str(ROOT / "tests/support"))
-from panel_rig import Rig  # noqa: E402
+from panel_rig import Rig, nobody  # noqa: E402
 
 DAEMON = pathlib.Path(sys.argv.pop(1)).resolve()
 
@@ -191,10 +191,9 @@ class NoDaemon(unittest.TestCase):
         status = self.path.parent / "status.json"
         status.write_text("{}")
         status.chmod(0)
-        nobody = {"user": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
         for command in ("contacts", "scope", "stream", "status"):
             done = subprocess.run([TACTUS, command], text=True, capture_output=True, timeout=60,
-                                  env=os.environ | {"RUNTIME_DIRECTORY": str(self.path.parent)}, **nobody)
+                                  env=os.environ | {"RUNTIME_DIRECTORY": str(self.path.parent)}, **nobody())
             self.assertEqual(done.returncode, 3, done)
             self.assertIn("it is for root and the group tactus", done.stderr)
 

@@ -17,6 +17,11 @@ POST = ("simulation.obstacles=[{post: {foot_m: [0.70771, -0.08, 0], axis: [0, 0,
 PATIENCE_S = 60
 
 
+def nobody():
+    """For subprocess: without the rights of root."""
+    return {"user": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
+
+
 class Rig:
     """Folders of a run, with a copy of the scenes, which are written to."""
 

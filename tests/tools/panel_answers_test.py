@@ -17,16 +17,11 @@ import unittest
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 
-from panel_rig import PATIENCE_S, POST, Rig, wait_for  # noqa: E402
+from panel_rig import PATIENCE_S, POST, Rig, nobody, wait_for  # noqa: E402
 
 DAEMON = pathlib.Path(sys.argv.pop(2)).resolve()
 PANEL = pathlib.Path(sys.argv.pop(1)).resolve()
 SET = {"do": "set", "values": {"controller.damping": "0.55"}}
-
-
-def nobody():
-    """For Popen: without the rights of root."""
-    return {"user": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
 
 
 class Answers(unittest.TestCase):
