@@ -36,6 +36,13 @@ def compiled(source, folder):
     return program
 
 
+def stripped(program, folder):
+    """A copy without what is for debuggers alone: the guest has all files in its memory."""
+    copy = folder / Path(program).name
+    subprocess.run(["strip", "-o", copy, program], check=True)
+    return copy
+
+
 def initramfs(folder, kernel, programs, folders):
     image = Initramfs()
     for name in SYSTEM_FOLDERS:
@@ -56,7 +63,8 @@ def initramfs(folder, kernel, programs, folders):
     image.add_program(installed("dash"), "/bin")
     image.add_link("/bin/sh", "dash")
     own = [compiled(source, folder) for source in sorted((HERE / "guest").glob("*.c"))]
-    for program in [installed(tool) for tool in TOOLS] + own + programs:
+    own += [stripped(program, folder) for program in programs]
+    for program in [installed(tool) for tool in TOOLS] + own:
         image.add_program(program)
     for path, source in folders:
         image.add_tree(path, source)

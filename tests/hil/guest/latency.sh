@@ -4,7 +4,7 @@
 . "$ROOT/guest/measure.sh"
 
 scene=$ROOT/tests/hil/scenes/in_contact.yaml
-cycles=2000
+cycles=1000
 
 # latency FILE: of cyclictest with the loop's priority and period, as often as the loop. Like the
 # loop's its wake-ups lie in the middle between the plant's, and off those of a loop beside it.
