@@ -162,8 +162,8 @@ TEST(SystemCallFilter, worksInAThreadThatHadBlockedAllSignals) {
   expectForbidden(filter, 1, SYS_getpid);
 }
 
-// Not under the thread sanitizer (CMakePresets.json): it runs a handler of SIGSYS at any instruction,
-// in its own locks, too, and then waits for itself.
+// Not under the thread sanitizer (CMakePresets.json): it runs a handler of SIGSYS at any
+// instruction, in its own locks, too, and then waits for itself.
 TEST(SystemCallFilter, leavesASigsysThatSomebodySentWithoutEffect) {
   SystemCallFilter filter(kLoopSystemCalls);
   EXPECT_EQ(raise(SIGSYS), 0);
