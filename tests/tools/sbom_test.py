@@ -37,7 +37,7 @@ def package(folder, program):
     (tree / "usr/sbin").mkdir(parents=True)
     shutil.copy2(program, tree / "usr/sbin/tactusd")
     path = folder / "tactusd_0.1.0_amd64.deb"
-    call("dpkg-deb", "--build", "--root-owner-group", str(tree), str(path))
+    call("dpkg-deb", "-Znone", "--build", "--root-owner-group", str(tree), str(path))
     return path
 
 
