@@ -25,12 +25,16 @@ volatile sig_atomic_t was_interrupted = 0;
 
 void noteInterrupt(int) { was_interrupted = 1; }
 
+/// Hazard: a program that is suspended, by Ctrl-Z (SIGTSTP), leaves a brake open and lets a drive
+/// go on, and nobody watches. In the background its terminal would suspend it, too (SIGTTIN,
+/// SIGTTOU).
 void catchInterrupts() {
   struct sigaction action {};
   action.sa_handler = noteInterrupt;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaction(signal, &action, nullptr);
-  action.sa_handler = SIG_IGN;  // say() hears of it, and the motion is ended
-  sigaction(SIGPIPE, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP})
+    sigaction(signal, &action, nullptr);
+  action.sa_handler = SIG_IGN;  // reading and say() hear of it, and the motion is ended
+  for (const int signal : {SIGPIPE, SIGTTIN, SIGTTOU}) sigaction(signal, &action, nullptr);
 }
 
 /// Frames of all nodes, whichever there are.

@@ -30,7 +30,10 @@ namespace {
 constexpr std::size_t kHeapBytes = std::size_t{16} << 20;
 constexpr std::chrono::milliseconds kDrainPeriod{20};
 
-constexpr std::array kStopSignals = {SIGTERM, SIGINT, SIGHUP};
+/// Hazard: what ends or suspends a process would leave brakes open and drives enabled, with nobody
+/// who watches. Of a daemon that was started by hand the terminal sends SIGINT, SIGQUIT, and
+/// SIGTSTP (Ctrl-Z), which all bring the arm to rest.
+constexpr std::array kStopSignals = {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGTSTP};
 
 sigset_t stopSignals() noexcept {
   sigset_t signals;
@@ -153,6 +156,7 @@ LoopFigures loopFigures(const Scene& scene, const HardwareLoop& loop, const Loop
 Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   blockStopSignals();
   signal(SIGPIPE, SIG_IGN);  // whoever reads the messages may leave; the arm still ends at rest
+  signal(SIGTTOU, SIG_IGN);  // a message from the background must not suspend it
   signal(SIGXFSZ, SIG_IGN);  // a log beyond the limit of a file's size is an error of write() alone
   const RealTimeConfig& real_time = scene.hardware->real_time;
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <linux/capability.h>
+#include <signal.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -11,13 +12,18 @@
 namespace tactus::test {
 
 /// Whether `check` holds in a child process of its own, which must not use GoogleTest. An exception
-/// there ends it: it must not go on with the tests of its parent.
+/// there ends it: it must not go on with the tests of its parent. One that is suspended is ended.
 template <typename Check>
 bool holdsInChild(const Check& check) {
   const pid_t child = fork();
   if (child == 0) [&]() noexcept { _exit(check() ? 0 : 1); }();
   int status = -1;
-  EXPECT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(waitpid(child, &status, WUNTRACED), child);
+  if (WIFSTOPPED(status)) {
+    ADD_FAILURE() << "suspended by signal " << WSTOPSIG(status);
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+  }
   EXPECT_TRUE(WIFEXITED(status)) << "ended by signal " << WTERMSIG(status);
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }

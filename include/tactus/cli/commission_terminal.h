@@ -14,8 +14,8 @@
 namespace tactus {
 
 /// The cycle of commissioning on real buses and lines, a wake-up at a time, with an engineer at
-/// standard input. SIGINT, SIGTERM, SIGHUP, SIGQUIT and the end of input or output stop it for
-/// good.
+/// standard input. SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP (Ctrl-Z) and the end of input or
+/// output stop it for good.
 class CommissionTerminal final : public CommissionDesk {
  public:
   /// reads_input: false where nothing is asked, so that the end of the input is none. Throws

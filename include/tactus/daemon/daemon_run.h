@@ -13,9 +13,10 @@ struct DaemonOptions {
   double duration_s = 0.0;  ///< of motion, after which the run ends; 0: until a signal
 };
 
-/// Runs a scene on the robot until SIGTERM or SIGINT, the end of duration_s or a fault, and leaves
-/// the arm at rest with its drives disabled. Returns the fault that ended it. Throws RunError, and
-/// moves nothing, if buses, lines or real time are not to be had; InputError for the folder.
+/// Runs a scene on the robot until a signal that ends or suspends programs, the end of duration_s
+/// or a fault, and leaves the arm at rest with its drives disabled. Returns the fault that ended
+/// it. Throws RunError, and moves nothing, if buses, lines or real time are not to be had;
+/// InputError for the folder.
 Fault runDaemon(const Scene& scene, const DaemonOptions& options);
 
 }  // namespace tactus
