@@ -229,7 +229,7 @@ void JointCommission::beginWave(double counts) noexcept {
 }
 
 StrokePlan JointCommission::stroke() const noexcept {
-  return {node_->bus, node_->node_id, stroke_bounds_, shape_};
+  return {node_->bus, node_->node_id, stroke_bounds_, shape_, uses_->entryFor(joint_, *node_)};
 }
 
 void JointCommission::onStroke(const StrokeReport& report) {

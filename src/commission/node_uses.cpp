@@ -57,6 +57,17 @@ int NodeUses::rank(int joint, const FoundNode& node) const noexcept {
   return others ? 2 : 4;
 }
 
+DriveConfig NodeUses::entryFor(int joint, const FoundNode& node) const noexcept {
+  const auto& drives = config_->hardware.drives;
+  const auto own = std::ranges::find(drives, joint, &DriveConfig::joint);
+  DriveConfig entry = own == drives.end() ? DriveConfig{} : *own;
+  if (const DriveConfig* const there = inFile(node)) {
+    entry.has_velocity_unit = entry.has_velocity_unit || there->has_velocity_unit;
+    entry.has_quick_stop_option = entry.has_quick_stop_option && there->has_quick_stop_option;
+  }
+  return entry;
+}
+
 const DriveConfig* NodeUses::inFile(const FoundNode& node) const noexcept {
   const auto& drives = config_->hardware.drives;
   const auto found = std::ranges::find_if(drives, [&](const DriveConfig& drive) {

@@ -40,10 +40,14 @@ BrakeConfig brakesOf(const HardwareConfig& hardware, double period_s) {
 HardwareConfig withOneDrive(const HardwareConfig& hardware, const StrokePlan& plan) {
   HardwareConfig one = hardware;
   one.tactile_modules.clear();
-  DriveConfig drive;
+  DriveConfig drive = plan.drive;
+  drive.joint = 0;
   drive.bus = plan.bus;
   drive.node_id = plan.node_id;
   drive.counts_per_unit = plan.bounds.counts_per_unit;
+  drive.offset = 0.0;
+  drive.sign = 1;
+  drive.tracking_gain_per_s = 0.0;
   drive.max_following_error = plan.bounds.max_following_error;
   drive.max_velocity = plan.bounds.limits.max_speed;
   one.drives = {drive};

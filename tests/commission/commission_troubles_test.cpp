@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <set>
 #include <utility>
 
 #include "support/troubled_commission.h"
@@ -76,6 +77,41 @@ TEST(CommissionTrouble, DriveThatRefusesItsSetUp) {
   EXPECT_EQ(trouble.stroke.fault, Fault::kDriveSetupRefused);
   EXPECT_EQ(trouble.stroke.drive.setup_failure.index, 0x6060);
   EXPECT_EQ(trouble.stroke.drive.setup_failure.abort_code, 0x06090030u);
+  EXPECT_EQ(rig.most_powered, 0);
+}
+
+/// By its data sheet and its profile.
+TEST(CommissionTrouble, DriveIsSetUpAsByTheDaemon) {
+  TroubledRig rig;
+  DriveConfig& drive = rig.config.hardware.drives[test::kTroubledJoint];
+  drive.has_quick_stop_option = drive.has_velocity_unit = false;
+  drive.vendor_id = 0x7ac;
+  drive.product_code = 1;
+  drive.transmit_pdos = 6;
+  std::set<std::uint16_t> asked;
+  rig.on_send = [&](int, CanFrame& frame) {
+    if (frame.id == 0x602) asked.insert(sdoIndex(frame));
+    return true;
+  };
+  rig.restart();
+  ASSERT_TRUE(rig.scan());
+  EXPECT_EQ(rig.trouble().kind, JointTroubleKind::kNone);
+  test::expectFound(rig, rig.cycle->joint()->findings());
+  EXPECT_FALSE(asked.contains(0x605A));
+  EXPECT_FALSE(asked.contains(0x60A9));
+  EXPECT_TRUE(asked.contains(0x1805));
+}
+
+TEST(CommissionTrouble, DriveOfAnotherProductIsNotMoved) {
+  TroubledRig rig;
+  rig.config.hardware.drives[test::kTroubledJoint].product_code = 2;
+  rig.restart();
+  ASSERT_TRUE(rig.scan());
+  const JointTrouble trouble = rig.trouble();
+  EXPECT_EQ(trouble.kind, JointTroubleKind::kStroke);
+  EXPECT_EQ(trouble.stroke.fault, Fault::kDriveSetupRefused);
+  EXPECT_EQ(trouble.stroke.drive.setup_failure.index, 0x1018);
+  EXPECT_EQ(trouble.stroke.drive.setup_failure.expected, 2u);
   EXPECT_EQ(rig.most_powered, 0);
 }
 

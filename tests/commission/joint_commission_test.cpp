@@ -62,6 +62,22 @@ struct Growth {
   }
 };
 
+/// A drive may turn out to be that of another joint, whose velocities have another unit.
+TEST(JointCommission, AtThePlaceOfAnotherJointTheUnitOfVelocitiesIsLookedAt) {
+  CommissionConfig config = test::commissionConfig(test::plainArm(3));
+  config.hardware.drives[1].has_velocity_unit = false;
+  config.hardware.drives[1].product_code = 7;
+  config.hardware.drives[2].has_quick_stop_option = false;
+  const NodeUses uses(config, {{0, 2, 402, {}, {}, {}, {}}, {0, 3, 402, {}, {}, {}, {}}});
+  const DriveConfig own = uses.entryFor(1, uses.nodes()[0]);
+  EXPECT_FALSE(own.has_velocity_unit);
+  EXPECT_TRUE(own.has_quick_stop_option);
+  const DriveConfig others = uses.entryFor(1, uses.nodes()[1]);
+  EXPECT_TRUE(others.has_velocity_unit);
+  EXPECT_FALSE(others.has_quick_stop_option);
+  EXPECT_EQ(others.product_code, 7u);
+}
+
 /// Joints of which some have few counts hold the motions of all back, until an answer says that
 /// it is none of them.
 TEST(JointCommission, WhateverIsAnsweredNoMotionIsLongerThanThreeTimesTheLast) {

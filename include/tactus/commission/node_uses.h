@@ -43,6 +43,11 @@ class NodeUses {
   /// file gives to a joint whose own drive turned out to be another, as they may be swapped; one
   /// that the file does not name; any. None that moves another joint, or that was dismissed.
   const FoundNode* candidate(int joint) const noexcept;
+  /// What the set-up of a drive that may move the joint has to know: the joint's entry, as for the
+  /// daemon. Where the file has an entry of another joint for that place, the unit of velocities is
+  /// looked at unless both do without, for a wrong one makes the joint fast; and 605A is written
+  /// only if both have it.
+  DriveConfig entryFor(int joint, const FoundNode& node) const noexcept;
 
  private:
   std::size_t indexOf(const FoundNode& node) const noexcept {

@@ -38,6 +38,9 @@ struct StrokePlan {
   int node_id = 0;
   StrokeBounds bounds;
   StrokeShape shape;  ///< |distance| <= bounds.max_travel
+  /// What the set-up has to know of the drive beyond CiA 402, of robot.yaml, its data sheet and its
+  /// profile; place, units and bounds are those above.
+  DriveConfig drive{};
 };
 
 enum class StrokeEnd : std::uint8_t {
