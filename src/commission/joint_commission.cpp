@@ -124,7 +124,7 @@ void JointCommission::takeDirection(const Answer& answer, double counts) {
   if (answer.kind == Kind::kNothing) {
     const double gone = std::abs(last_stroke_.end_counts - last_stroke_.start_counts);
     unseen_counts_ = std::max(unseen_counts_, gone);
-    if (fewestCounts(joint_) < config_->file_factor * fileCounts(joint_))
+    if (fewestCounts(joint_) < config_->file_factor * toldCounts(joint_).most)
       return begin(Step::kProbe, 1.0);
     uses_->dismiss(*node_);
     return tryNext();

@@ -8,20 +8,29 @@
 /// What is known of a joint: how many counts it has at least, which bounds the next motion, and
 /// what all marks tell in the end.
 namespace tactus {
+namespace {
 
-double JointCommission::fileCounts(int joint) const noexcept {
-  double fewest = std::numeric_limits<double>::infinity();
+/// A shorter motion is lost in the noise of an encoder. Objects by which the first one would be as
+/// short were never set.
+constexpr double kLeastMotion_counts = 10.0;
+
+}  // namespace
+
+JointCommission::ToldCounts JointCommission::toldCounts(int joint) const noexcept {
+  double file = std::numeric_limits<double>::infinity();
   for (const DriveConfig& drive : config_->hardware.drives)
-    if (drive.joint == joint) fewest = drive.counts_per_unit;
+    if (drive.joint == joint) file = drive.counts_per_unit;
   const bool turns = !config_->is_prismatic[joint];
-  if (turns && node_->counts_per_turn)
-    fewest = std::min(fewest, *node_->counts_per_turn / (2.0 * std::numbers::pi));
-  return fewest;
+  if (!turns || !node_->counts_per_turn) return {file, file};
+  const double drive = *node_->counts_per_turn / (2.0 * std::numbers::pi);
+  const double travel = config_->bounds(joint).max_travel;
+  if (drive / config_->file_factor * travel < kLeastMotion_counts) return {file, file};
+  return {std::min(file, drive), std::max(file, drive)};
 }
 
 /// A unit of this joint has at least so many, if this drive moves it; before anything was measured.
 double JointCommission::assumedCounts(int joint) const noexcept {
-  const double assumed = fileCounts(joint) / config_->file_factor;
+  const double assumed = toldCounts(joint).fewest / config_->file_factor;
   return std::max(assumed, unseen_counts_ / config_->bounds(joint).unseen);
 }
 

@@ -29,8 +29,11 @@ void ObjectReader::judge() noexcept {
     case SdoStatus::kBusy:
       return;
     case SdoStatus::kTimedOut:
-      is_silent_ = ++tried_ >= tries_;
-      return;
+      if (++tried_ < tries_) return;
+      is_silent_ = values_.empty();
+      if (is_silent_) return;
+      values_.emplace_back();  // some drives say nothing where they have no such entry
+      break;
     case SdoStatus::kAborted:
       values_.emplace_back();
       break;

@@ -333,6 +333,37 @@ TEST(CommissionTrouble, DrivesOwnCountsAreTakenWhereMarksConfirmThem) {
   }
 }
 
+/// Of the encoder's resolution and the gear: refused, not answered at all, never set, or without
+/// the gear of 160 that is behind the drive. The file has them.
+TEST(CommissionTrouble, DriveThatDoesNotTellItsCountsIsUsable) {
+  constexpr std::uint32_t kNone = 0;
+  struct Told {
+    bool is_silent;
+    std::uint32_t per_turn;
+  };
+  for (const Told told :
+       {Told{false, kNone}, Told{true, kNone}, Told{false, 1}, Told{false, 15708}}) {
+    SCOPED_TRACE(testing::Message() << told.is_silent << " " << told.per_turn);
+    TroubledRig rig;
+    rig.on_send = [&](int bus, CanFrame& frame) {
+      const std::uint16_t index = frame.id == 0x602 ? sdoIndex(frame) : std::uint16_t{0};
+      if (index != 0x608F && index != 0x6091) return true;
+      if (told.is_silent) return false;
+      const bool is_counts = index == 0x608F && frame.data[3] == 1;
+      const std::uint32_t value = is_counts ? told.per_turn : 1;
+      rig.own_answers.emplace_back(bus, told.per_turn == kNone
+                                            ? sdoAnswer(2, frame, 0x80, 0x06020000)
+                                            : sdoAnswer(2, frame, 0x43, value));
+      return false;
+    };
+    rig.restart();
+    ASSERT_TRUE(rig.scan());
+    EXPECT_EQ(rig.trouble().kind, JointTroubleKind::kNone);
+    test::expectFound(rig, rig.cycle->joint()->findings());
+    EXPECT_LE(rig.worst_travel, 1.0 + 1e-3);
+  }
+}
+
 TEST(CommissionTrouble, EnableLineIsWaitedFor) {
   TroubledRig rig;
   rig.input.lines.enable = false;

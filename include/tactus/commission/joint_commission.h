@@ -82,6 +82,11 @@ class JointCommission {
   /// enough to make a motion long.
   static constexpr double kMostGrowth = 3.0;
 
+  /// A unit, by the file and by the drive's own objects, which may not know of a gear behind it.
+  struct ToldCounts {
+    double fewest, most;
+  };
+
   enum class Step : std::uint8_t { kReady, kProbe, kScale, kJog, kWave, kFinished };
 
   void tryNext();
@@ -102,7 +107,7 @@ class JointCommission {
   StrokeBounds bounds() const noexcept;
   double assumedCounts(int joint) const noexcept;
   double fewestCounts(int joint) const noexcept;
-  double fileCounts(int joint) const noexcept;
+  ToldCounts toldCounts(int joint) const noexcept;
   std::optional<JointScale> scale() const;
   const MotionBounds& allowed() const noexcept { return config_->bounds(joint_); }
 

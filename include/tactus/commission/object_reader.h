@@ -19,10 +19,10 @@ class ObjectReader {
   void update(FrameBatch& out) noexcept;  ///< once a cycle, after all frames
 
   bool isDone() const noexcept { return values_.size() == entries_.size() || is_silent_; }
-  /// It was asked for an entry and said nothing at all.
+  /// It was asked for the first entry and said nothing at all.
   bool isSilent() const noexcept { return is_silent_; }
   int nodeId() const noexcept { return node_id_; }
-  /// Nothing where the node refused, or was not asked any more.
+  /// Nothing where the node refused, said nothing, or was not asked any more.
   std::optional<std::uint32_t> value(std::size_t entry) const noexcept {
     return entry < values_.size() ? values_[entry] : std::nullopt;
   }
