@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -22,7 +24,8 @@ namespace {
 
 /// As an engineer says them.
 struct CommissionArguments {
-  std::string scene, joint;
+  std::string scene;
+  std::optional<std::string> joint;
   std::vector<std::string> settings;
   CommissionOptions options;
   double measuring_error_deg = 0.2;
@@ -32,8 +35,10 @@ int jointNamed(const Scene& scene, const std::string& name) {
   const auto found = std::ranges::find(scene.joint_names, name);
   if (found != scene.joint_names.end()) return static_cast<int>(found - scene.joint_names.begin());
   const std::string nearest = nearestWord(name, scene.joint_names);
-  throw InputError(fmt::format("--joint: {} is no joint of the robot, expected one of its joints{}",
-                               inQuotes(name), nearest.empty() ? "" : ", perhaps " + nearest));
+  throw InputError(fmt::format("--joint: {} is no joint of the robot, expected {}one of {}",
+                               inQuotes(name),
+                               nearest.empty() ? "" : "perhaps " + escaped(nearest) + ", ",
+                               escaped(fmt::format("{}", fmt::join(scene.joint_names, ", ")))));
 }
 
 /// A later cycle than expected is no hazard, as drives watch over heartbeat and setpoints.
@@ -48,6 +53,8 @@ void printTimeLimits() {
 
 int commissionScene(CommissionArguments arguments) {
   const Scene scene = loadHardwareScene(arguments.scene, arguments.settings, "to commission");
+  CommissionOptions& options = arguments.options;
+  if (arguments.joint) options.joint = jointNamed(scene, *arguments.joint);
   for (const DriveConfig& drive : scene.hardware->drives) {
     if (drive.kind == DriveKind::kMoteus)
       throw InputError(
@@ -55,8 +62,6 @@ int commissionScene(CommissionArguments arguments) {
                       "402: see moteus_tool for its calibration",
                       escaped(arguments.scene), scene.joint_names[drive.joint]));
   }
-  CommissionOptions& options = arguments.options;
-  if (!arguments.joint.empty()) options.joint = jointNamed(scene, arguments.joint);
   options.revolute.measuring_error = arguments.measuring_error_deg * std::numbers::pi / 180.0;
   const CommissionConfig config = commissionConfig(scene, options);
   try {
@@ -86,7 +91,9 @@ void addCommissionCommand(CLI::App& app, int& exit_code) {
   MotionBounds& turning = arguments->options.revolute;
   MotionBounds& sliding = arguments->options.prismatic;
   command->add_option("SCENE", arguments->scene, "Scene file")->required();
-  command->add_option("--joint", arguments->joint, "This joint alone, also if it is finished");
+  command->add_option_function<std::string>(
+      "--joint", [arguments](const std::string& name) { arguments->joint = name; },
+      "This joint alone, also if it is finished");
   command->add_option("--set", arguments->settings, kSetHelp)->allow_extra_args(false);
   addBound(*command, "--travel", turning.max_travel, 1e-3, kMostTravel_rad,
            "rad, of one motion of a revolute joint");

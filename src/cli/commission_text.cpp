@@ -45,6 +45,13 @@ std::optional<Answer> number(const Scene& scene, int joint, const std::string& w
   return Answer{Kind::kNumber, *value * unitSaid(scene, joint)};
 }
 
+std::string otherJointsText(const Scene& scene, int joint) {
+  std::string text;
+  for (int other = 0; other < scene.controller.chain.size(); ++other)
+    if (other != joint) text += (text.empty() ? "" : ", ") + jointText(scene, other);
+  return text;
+}
+
 }  // namespace
 
 std::string jointText(const Scene& scene, int joint) {
@@ -169,7 +176,9 @@ std::string expectedText(const Scene& scene, const Question& question) {
     case Asked::kReady:
       return "yes or no";
     case Asked::kDirection:
-      return "+, -, none, or the name of another joint that is not finished";
+      return fmt::format(
+          "+, -, none, or of the joints that are not finished another one's name: {}",
+          otherJointsText(scene, question.joint));
     case Asked::kPlace:
       return fmt::format("a number, {}", unit);
     case Asked::kJog:

@@ -68,6 +68,10 @@ TEST(CommissionText, WhatIsTypedIsUnderstoodOrNot) {
     EXPECT_FALSE(parsed(Asked::kReady, line)) << line;
   for (const char* line : {"", "yes", "+-", "elbow"})
     EXPECT_FALSE(parsed(Asked::kDirection, line)) << line;
+  question.joint = kShoulderJoint;
+  question.asked = Asked::kDirection;
+  EXPECT_TRUE(expectedText(scene, question).ends_with("name: lift, roll"))
+      << expectedText(scene, question);
 }
 
 TEST(CommissionText, SaysWhichWayIsPlus) {

@@ -152,6 +152,15 @@ class BadInput(unittest.TestCase):
         self.assertEqual((result.returncode, result.stdout), (1, ""))
         self.assertIn("the drive of joint shoulder is a moteus, expected ", result.stderr)
 
+    def test_commission_names_the_joints_that_there_are(self):
+        """An empty name, as of a variable that is not set, too: it would be all joints."""
+        scene = CONFIG / "scenes/free_motion.yaml"
+        for name, nearest in (("j22", "perhaps j2, "), ("elbow", ""), ("", "")):
+            result = self.run_tactus("commission", scene, "--joint", name)
+            self.assertEqual((result.returncode, result.stdout), (1, ""))
+            self.assertRegex(result.stderr, r"--joint: '\w*' is no joint of the robot, expected "
+                             f"{nearest}one of j1, j2, j3, j4, j5, j6, j7, j8, j9\n")
+
     def test_unstable_gains(self):
         """Refused for the robot; a simulation may show what they do."""
         scene = self.write("controller:\n  time_constant_s: 0.03\n")
