@@ -23,33 +23,6 @@ namespace {
 
 using Phase = CommissionCycle::Phase;
 
-/// Of the travel: what two measured places may be wrong by is then a seventh of it.
-constexpr double kLeastTravel_errors = 15.0;
-
-/// Whoever filled them in: a comparison with NaN would bound nothing.
-void checkBounds(const MotionBounds& bounds, double most_travel, double most_speed,
-                 const char* kind) {
-  const auto isWithin = [](double value, double most) { return value > 0.0 && value <= most; };
-  const bool is_good =
-      isWithin(bounds.max_travel, most_travel) && isWithin(bounds.max_speed, most_speed) &&
-      isWithin(bounds.max_acceleration, 1.0) && isWithin(bounds.max_following_error, 1.0) &&
-      isWithin(bounds.measuring_error, 1.0) && isWithin(bounds.unseen, most_travel) &&
-      bounds.margin >= 0.0 && bounds.margin <= 1.0;
-  if (!is_good)
-    throw InputError(
-        fmt::format("the bounds of {} joints are not finite, or out of range, "
-                    "expected those that the options take",
-                    kind));
-}
-
-void checkIsMeasurable(const MotionBounds& bounds, const char* kind) {
-  if (bounds.max_travel >= kLeastTravel_errors * bounds.measuring_error) return;
-  throw InputError(fmt::format(
-      "the travel of {} joints is too short to be measured, expected at least {:.0f} times the "
-      "measuring error",
-      kind, kLeastTravel_errors));
-}
-
 /// One engineer, one robot.
 class Commissioning {
  public:
@@ -259,24 +232,6 @@ class Commissioning {
 };
 
 }  // namespace
-
-CommissionConfig commissionConfig(const Scene& scene, const CommissionOptions& options) {
-  CommissionConfig config;
-  config.hardware = *scene.hardware;
-  config.period_s = scene.period_s;
-  config.revolute = options.revolute;
-  config.prismatic = options.prismatic;
-  config.file_factor = options.file_factor;
-  for (int joint = 0; joint < scene.controller.chain.size(); ++joint)
-    config.is_prismatic.push_back(scene.controller.chain.type(joint) == JointType::kPrismatic);
-  checkBounds(config.revolute, kMostTravel_rad, kMostSpeed_rad_per_s, "revolute");
-  checkBounds(config.prismatic, kMostTravel_m, kMostSpeed_m_per_s, "prismatic");
-  if (!(config.file_factor >= 1.0 && config.file_factor <= 1e4))
-    throw InputError("--file-factor: is no factor, expected one from 1 to 10000");
-  checkIsMeasurable(config.revolute, "revolute");
-  checkIsMeasurable(config.prismatic, "prismatic");
-  return config;
-}
 
 int runCommission(const Scene& scene, const CommissionOptions& options, CommissionDesk& desk) {
   return Commissioning(scene, options, desk).run();

@@ -83,11 +83,45 @@ TEST(CommissionText, SaysWhichWayIsPlus) {
   EXPECT_NE(axisText(scene, kShoulderJoint).find("along the base's +z"), std::string::npos);
 }
 
+/// The least that would do is named, and does. A motion that nobody has to see would be repeated
+/// for ever, however exact the places are.
 TEST(CommissionText, TravelThatCannotBeMeasuredIsRefused) {
   const CommissionFolder folder;
+  const Scene scene = folder.scene();
+  const auto refusal = [&](const CommissionOptions& options) -> std::string {
+    try {
+      commissionConfig(scene, options);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
   CommissionOptions options;
-  options.revolute.max_travel = 0.02;
-  EXPECT_THROW(commissionConfig(folder.scene(), options), InputError);
+  options.revolute.max_travel = 0.03;
+  options.revolute.measuring_error = 0.001;
+  EXPECT_EQ(
+      refusal(options),
+      "--travel: 0.03 rad is too short to be seen and measured, expected at least 0.0525 rad");
+  options.revolute.max_travel = 0.0525;
+  EXPECT_EQ(refusal(options), "");
+  options.revolute.measuring_error = 0.3 * std::numbers::pi / 180.0;
+  const std::string longer = refusal(options);
+  EXPECT_TRUE(longer.ends_with("at least 0.07854 rad")) << longer;
+  options.revolute.max_travel = 0.07854;
+  EXPECT_EQ(refusal(options), "");
+  options.revolute.measuring_error = 2.0 * std::numbers::pi / 180.0;
+  EXPECT_EQ(
+      refusal(options),
+      "--error: by 2 deg no motion is long enough to be measured, expected at most 0.38197 deg");
+  options.revolute.max_travel = 0.1;
+  options.revolute.measuring_error = 0.38197 * std::numbers::pi / 180.0;
+  EXPECT_EQ(refusal(options), "");
+  options.prismatic.max_travel = 0.002;
+  options.prismatic.measuring_error = 1e-4;
+  EXPECT_EQ(refusal(options),
+            "--slide: 0.002 m is too short to be seen and measured, expected at least 0.003 m");
+  options.prismatic.max_travel = 0.003;
+  EXPECT_EQ(refusal(options), "");
 }
 
 TEST(CommissionText, BoundsThatAreNoNumbersAreRefused) {

@@ -16,7 +16,7 @@ struct CommissionOptions {
   bool json = false;           ///< of the scan
 };
 
-/// Throws InputError if the motions would be too short to be measured.
+/// Throws InputError if the motions would be too short to be seen and measured.
 CommissionConfig commissionConfig(const Scene& scene, const CommissionOptions& options);
 
 /// Commissions the joints of the scene's robot, which has hardware, until all are finished, the
