@@ -1,5 +1,6 @@
 #include "tactus/analysis/channel_window.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus {
@@ -9,9 +10,46 @@ constexpr double kLeastJudgedSigma = 2.0;  ///< counts
 constexpr double kFlatShare = 0.2;         ///< of the samples at the outermost counts
 constexpr double kQuietShare = 0.2;        ///< of the noise without load
 constexpr double kOffZeroSigmas = 10.0;
+constexpr double kEndSigmas = 3.0;
+constexpr double kLeastMedianSigma = 10.0;  ///< counts: of channels that rustle
 constexpr int kLeastSamples = 20;
 
+/// So far that it is no noise, by a channel that has some.
+bool isOff(int i, const ChannelFigures& now, const ChannelFigures& zero) noexcept {
+  return zero.sigma[i] >= kLeastJudgedSigma &&
+         std::abs(now.mean[i] - zero.mean[i]) >= kOffZeroSigmas * zero.sigma[i];
+}
+
+/// 2^n - 1, or -2^n; some converters keep to +-(2^n - 1).
+bool isEndOfConverter(double counts) noexcept {
+  for (int bits = 11; bits <= 22; ++bits) {
+    const double end = std::ldexp(1.0, bits);
+    if (std::abs(counts) == end - 1.0 || counts == -end) return true;
+  }
+  return false;
+}
+
+double medianOf(ChannelVector values) noexcept {
+  std::sort(values.begin(), values.end());
+  return 0.5 * (values[3] + values[4]);
+}
+
 }  // namespace
+
+std::optional<ChannelDefect> figuresDefect(const ChannelFigures& now,
+                                           const ChannelFigures* zero) noexcept {
+  const bool do_others_rustle = medianOf(now.sigma) >= kLeastMedianSigma;
+  for (int i = 0; i < 8; ++i) {
+    const double counts = now.mean[i], sigma = now.sigma[i];
+    const bool is_at_end = std::abs(counts) + kEndSigmas * sigma >= kChannelEnd ||
+                           (sigma == 0.0 && isEndOfConverter(counts));
+    if (is_at_end) return ChannelDefect{i, ChannelTrouble::kAtItsEnd, counts};
+    const bool is_quiet = zero && isOff(i, now, *zero) && sigma < kQuietShare * zero->sigma[i];
+    if (is_quiet || (sigma == 0.0 && do_others_rustle))
+      return ChannelDefect{i, ChannelTrouble::kFlatTopped, counts};
+  }
+  return std::nullopt;
+}
 
 void ChannelWindow::add(const ChannelVector& counts, double t_s) noexcept {
   if (samples_ == 0) {
@@ -54,14 +92,11 @@ ChannelFigures ChannelWindow::figures() const noexcept {
   return figures;
 }
 
-bool ChannelWindow::isFlat(int i, const ChannelFigures& now,
-                           const ChannelFigures& zero) const noexcept {
-  const double sigma = zero.sigma[i];
-  const double off = now.mean[i] - zero.mean[i];
-  if (sigma < kLeastJudgedSigma || samples_ < kLeastSamples) return false;
-  if (std::abs(off) < kOffZeroSigmas * sigma) return false;
-  const double at_end = off > 0.0 ? at_high_[i] : at_low_[i];
-  return at_end >= kFlatShare * samples_ || now.sigma[i] < kQuietShare * sigma;
+bool ChannelWindow::isCut(int i, const ChannelFigures& now,
+                          const ChannelFigures& zero) const noexcept {
+  if (!isOff(i, now, zero)) return false;
+  const double at_end = now.mean[i] > zero.mean[i] ? at_high_[i] : at_low_[i];
+  return at_end >= kFlatShare * samples_;
 }
 
 std::optional<ChannelDefect> ChannelWindow::defect(const ChannelFigures* zero) const noexcept {
@@ -69,11 +104,11 @@ std::optional<ChannelDefect> ChannelWindow::defect(const ChannelFigures* zero) c
   for (int i = 0; i < 8 && samples_ > 0; ++i) {
     if (high_[i] >= kChannelEnd) return ChannelDefect{i, ChannelTrouble::kAtItsEnd, high_[i]};
     if (low_[i] <= -kChannelEnd) return ChannelDefect{i, ChannelTrouble::kAtItsEnd, low_[i]};
-    if (zero && isFlat(i, now, *zero))
+    if (zero && samples_ >= kLeastSamples && isCut(i, now, *zero))
       return ChannelDefect{i, ChannelTrouble::kFlatTopped,
                            now.mean[i] > zero->mean[i] ? high_[i] : low_[i]};
   }
-  return std::nullopt;
+  return samples_ >= kLeastSamples ? figuresDefect(now, zero) : std::nullopt;
 }
 
 }  // namespace tactus

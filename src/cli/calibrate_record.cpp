@@ -52,13 +52,6 @@ std::optional<Vector3> alongAnAxis(const std::vector<std::string>& words) {
   return (sign == '+' ? *size : -*size) * Vector3::Unit(axis - 'x');
 }
 
-std::string troubleText(const ChannelDefect& defect) {
-  return fmt::format(
-      "channel {} {} at {:.0f} counts", defect.channel,
-      defect.trouble == ChannelTrouble::kAtItsEnd ? "is at its end," : "is flat-topped: it stops",
-      defect.counts);
-}
-
 /// The file that is begun, or gone on with.
 class Recording {
  public:
@@ -148,7 +141,7 @@ bool takeZero(const RecordSession& session, Recording& recording) {
   while (ask(session, fmt::format("zero: hands off for {:g} s, then enter: ", kZero_s), answer)) {
     const ChannelWindow window = listen(session.frames, session.module, kZero_s);
     if (const auto defect = window.defect()) {
-      fmt::print(session.out, "refused: {}\n", troubleText(*defect));
+      fmt::print(session.out, "refused: {}\n", defectText(*defect));
       continue;
     }
     recording.addZero(window.figures());
@@ -214,7 +207,7 @@ bool parsePush(const std::string& line, double length_m, KnownPush& push, std::s
 std::string pushProblem(const ChannelWindow& held, const ChannelFigures& zero) {
   const ChannelFigures now = held.figures();
   if (now.samples < kLeastHeldSamples) return fmt::format("{} samples are too few", now.samples);
-  if (const auto defect = held.defect(&zero)) return troubleText(*defect) + ": push less";
+  if (const auto defect = held.defect(&zero)) return defectText(*defect) + ": push less";
   const ChannelVector moved = now.mean - zero.mean;
   const double sigmas = moved.cwiseAbs().cwiseQuotient(zero.sigma.cwiseMax(kLeastSigma)).maxCoeff();
   if (sigmas < kFeltSigmas)

@@ -92,6 +92,17 @@ ChannelFigures readFigures(const PushSection& section) {
   return figures;
 }
 
+/// One that stops says less than the force, and would be taken for a weaker cell.
+void refuseDefect(const PushSection& section, const ChannelFigures& figures,
+                  const ChannelFigures* zero) {
+  const auto defect = figuresDefect(figures, zero);
+  if (!defect) return;
+  const auto channel = static_cast<std::size_t>(defect->channel);
+  failAt(section.require("mean_counts", "").items[channel].at,
+         fmt::format("{}[{}]", section.pathOf("mean_counts"), channel), defectText(*defect),
+         zero ? "expected a smaller push, or no entry" : "expected another zero, and its pushes");
+}
+
 ChannelFigures readZero(const YamlNode& node, const std::string& path) {
   const PushSection section(node, path,
                             {"duration_s", "mean_counts", "sigma_counts", "drift_counts_per_s"});
@@ -99,6 +110,7 @@ ChannelFigures readZero(const YamlNode& node, const std::string& path) {
   figures.duration_s = section.number("duration_s", 0.0, 1e6);
   if (section.find("drift_counts_per_s"))
     figures.drift_per_s = section.channels("drift_counts_per_s");
+  refuseDefect(section, figures, nullptr);
   return figures;
 }
 
@@ -119,7 +131,9 @@ RecordedPush readPush(const YamlNode& node, const std::string& path, const Chann
     push.moment_x_Nm = section.number("moment_x_Nm", -kLargestForce_N, kLargestForce_N);
   if (push.force_y_N == 0.0 && push.force_z_N == 0.0 && push.moment_x_Nm == 0.0)
     failAt(node.at, section.pathOf("force_N"), "there is no force", "expected one");
-  push.counts = readFigures(section).mean - zero.mean;
+  const ChannelFigures figures = readFigures(section);
+  refuseDefect(section, figures, &zero);
+  push.counts = figures.mean - zero.mean;
   return recorded;
 }
 
@@ -145,6 +159,13 @@ void readRecord(const YamlNode& record, const std::string& path, PushFile& file,
 }
 
 }  // namespace
+
+std::string defectText(const ChannelDefect& defect) {
+  return fmt::format(
+      "channel {} {} at {:.0f} counts", defect.channel,
+      defect.trouble == ChannelTrouble::kAtItsEnd ? "is at its end," : "is flat-topped: it stops",
+      defect.counts);
+}
 
 PushFile readPushFile(const std::string& path) {
   SourceReader reader(readFromDisk);

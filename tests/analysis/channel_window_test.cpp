@@ -110,6 +110,57 @@ TEST(ChannelWindow, SeesAChannelThatStopsShortOfItsEnd) {
   }
 }
 
+/// Of 16 bits, as of 12 or 20, without the noise that shows a flat top.
+TEST(ChannelWindow, NamesAQuietChannelAtTheEndOfANarrowerConverter) {
+  for (const double end : {32767.0, -32768.0, -32767.0, 2047.0, 524287.0}) {
+    ChannelWindow window, near;
+    for (int k = 0; k < 100; ++k) {
+      ChannelVector counts = ChannelVector::Constant(k % 2);
+      counts[5] = end;
+      window.add(counts, 0.004 * k);
+      counts[5] = end - std::copysign(3.0, end);
+      near.add(counts, 0.004 * k);
+    }
+    ASSERT_TRUE(window.defect());
+    EXPECT_EQ(window.defect()->channel, 5);
+    EXPECT_EQ(window.defect()->trouble, ChannelTrouble::kAtItsEnd);
+    EXPECT_EQ(window.defect()->counts, end);
+    EXPECT_FALSE(near.defect()) << end;
+  }
+}
+
+/// Also without load, as by an offset that is too large: from then on it has no noise to judge by.
+TEST(ChannelWindow, SeesAChannelThatIsStillWhileTheOthersRustle) {
+  test::Random random(14);
+  DrawnChannels drawn;
+  drawn.mean[2] = 2e5;
+  drawn.top = 1e5;
+  const ChannelWindow window = drawnWindow(random, drawn);
+  ASSERT_TRUE(window.defect());
+  EXPECT_EQ(window.defect()->channel, 2);
+  EXPECT_EQ(window.defect()->trouble, ChannelTrouble::kFlatTopped);
+  EXPECT_EQ(window.defect()->counts, 1e5);
+  drawn.sigma.setConstant(0.5);
+  EXPECT_FALSE(drawnWindow(random, drawn).defect());
+}
+
+TEST(ChannelWindow, FiguresOfAFileShowIt) {
+  ChannelFigures zero, push;
+  zero.sigma.setConstant(30.0);
+  push.sigma.setConstant(40.0);
+  push.mean[1] = 3e5;
+  EXPECT_FALSE(figuresDefect(zero));
+  EXPECT_FALSE(figuresDefect(push, &zero));
+  push.sigma[1] = 5.0;
+  ASSERT_TRUE(figuresDefect(push, &zero));
+  EXPECT_EQ(figuresDefect(push, &zero)->channel, 1);
+  EXPECT_EQ(figuresDefect(push, &zero)->counts, 3e5);
+  push.sigma[1] = 40.0;
+  push.mean[1] = -kChannelEnd + 100.0;
+  ASSERT_TRUE(figuresDefect(push, &zero));
+  EXPECT_EQ(figuresDefect(push, &zero)->trouble, ChannelTrouble::kAtItsEnd);
+}
+
 /// A hand trembles, and noise comes filtered.
 TEST(ChannelWindow, HasNothingAgainstAGoodOne) {
   test::Random random(13);

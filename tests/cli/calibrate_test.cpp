@@ -143,6 +143,17 @@ TEST_F(CalibrateTest, WhatTellsNothingIsRefusedAndNotWritten) {
   const std::string at_end = saidOf(held(huge));
   EXPECT_NE(at_end.find("is at its end, at"), std::string::npos) << at_end;
   EXPECT_NE(saidOf(held(push), 100000).find("is flat-topped: it stops at"), std::string::npos);
+  module = test::VirtualModule(test::channelsWith(test::hiddenCalibration(random), 4), 0.0, 0x100);
+  const std::string narrow = saidOf(held({40.0, 40.0, 0.1}), 32767);
+  EXPECT_NE(narrow.find("is at its end, at 32767 counts: push less"), std::string::npos) << narrow;
+  module =
+      test::VirtualModule(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);
+  module.offset[3] = 300000;
+  module.top = 200000;
+  std::filesystem::remove(path("pushes.yaml"));
+  EXPECT_NE(record(module, {{""}}).find("refused: channel 3 is flat-topped: it stops at 200000"),
+            std::string::npos);
+  module.offset[3] = 0;
   test::ScriptedAnswer growing = held(push);
   growing.growth_per_s[0] = 2.0;
   EXPECT_NE(saidOf(growing).find("refused: the push changed by"), std::string::npos);

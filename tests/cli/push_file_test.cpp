@@ -77,6 +77,29 @@ TEST_F(PushFileTest, MistakesInThePushesAreNamedWhereTheyStand) {
   EXPECT_NE(errorOf(pushFileText(good)).find("1 pushes do not tell 4 rows"), std::string::npos);
 }
 
+/// As a hand wrote them down, or before a limit was known.
+TEST_F(PushFileTest, APushThatAChannelStoppedAtIsNamedWithTheCounts) {
+  const auto errorOf = [&](const char* counts, const char* sigma) {
+    std::ofstream(path("pushes.yaml"))
+        << pushFileText(fmt::format("  - {{force_N: [0, 5, 0], position_m: 0.1,\n     mean_counts: "
+                                    "[1, 2, {}, 4, 5, 6, 7, 8],\n     sigma_counts: [90, 90, {}, "
+                                    "90, 90, 90, 90, 90]}}\n",
+                                    counts, sigma));
+    return refusal();
+  };
+  const std::string begin = path("pushes.yaml") + ":12:26: records[1].mean_counts[2]: channel 2 ";
+  EXPECT_EQ(errorOf("8388607", "0"), begin +
+                                         "is at its end, at 8388607 counts, expected a smaller "
+                                         "push, or no entry");
+  EXPECT_EQ(errorOf("-8388500.0", "90"), begin +
+                                             "is at its end, at -8388500 counts, expected a "
+                                             "smaller push, or no entry");
+  EXPECT_EQ(errorOf("250000", "3"), begin +
+                                        "is flat-topped: it stops at 250000 counts, expected a "
+                                        "smaller push, or no entry");
+  EXPECT_NE(errorOf("250000", "90").find("1 pushes do not tell 4 rows"), std::string::npos);
+}
+
 TEST_F(PushFileTest, AFileThatCannotBeIsRefusedBeforeAnythingIsAsked) {
   RecordSession session{};
   session.path = path("nowhere/pushes.yaml");

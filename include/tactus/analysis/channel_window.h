@@ -23,7 +23,7 @@ struct ChannelFigures {
 
 /// Why a channel says nothing of a force.
 enum class ChannelTrouble {
-  kAtItsEnd,    ///< a sample at +-(2^23 - 1) or beyond
+  kAtItsEnd,    ///< a sample at +-(2^23 - 1) or beyond, or all at the end of a narrower converter
   kFlatTopped,  ///< stops short of that: below
 };
 
@@ -32,6 +32,14 @@ struct ChannelDefect {
   ChannelTrouble trouble;
   double counts;  ///< where it stops
 };
+
+/// The first channel of which figures alone show one of these, as those of a file: a mean within
+/// three sigma of its end, without noise at the end of a converter of 11 to 22 bits and sign, or
+/// without any while the others have some; with figures of the time without load also off its zero
+/// by ten sigma and five times as quiet as there. A channel with less than two counts of noise
+/// cannot be judged by that.
+std::optional<ChannelDefect> figuresDefect(const ChannelFigures& now,
+                                           const ChannelFigures* zero = nullptr) noexcept;
 
 /// Counts of the eight channels over some time, and what they come to.
 class ChannelWindow {
@@ -42,13 +50,12 @@ class ChannelWindow {
   ChannelFigures figures() const noexcept;
 
   /// The first channel that is at its end, or, with figures of the time without load, one whose
-  /// cell or amplifier stops short of it: a fifth of its samples are its outermost counts, or it is
-  /// off its zero by ten sigma and five times as quiet as there. A channel with less than two
-  /// counts of noise cannot be judged by that.
+  /// cell or amplifier stops short of it: a fifth of its samples are its outermost counts; or what
+  /// its figures show.
   std::optional<ChannelDefect> defect(const ChannelFigures* zero = nullptr) const noexcept;
 
  private:
-  bool isFlat(int channel, const ChannelFigures& now, const ChannelFigures& zero) const noexcept;
+  bool isCut(int channel, const ChannelFigures& now, const ChannelFigures& zero) const noexcept;
 
   int samples_ = 0;
   double first_s_ = 0.0, last_s_ = 0.0;

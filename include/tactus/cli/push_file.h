@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tactus/analysis/calibration_fit.h"
+#include "tactus/analysis/channel_window.h"
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/scene.h"
 
@@ -26,7 +27,10 @@ struct PushFile {
   ChannelVector sigma = ChannelVector::Zero();
 };
 
-/// Throws InputError at the first value that is none.
+/// "channel 3 is at its end, at 8388607 counts"
+std::string defectText(const ChannelDefect& defect);
+
+/// Throws InputError at the first value that is none, and where a channel stopped.
 PushFile readPushFile(const std::string& path);
 PushFile readPushFile(const SourceFile& source);
 
