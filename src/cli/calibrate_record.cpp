@@ -129,7 +129,9 @@ class Recording {
   bool needs_line_break_ = false;
 };
 
+/// A second enter while a push is measured, say, would be the next answer, and an empty one ends.
 bool ask(const RecordSession& session, const std::string& question, std::string& answer) {
+  if (session.forget_typed) session.forget_typed();
   fmt::print(session.out, "{}", question);
   std::fflush(session.out);
   return session.answer(answer);
@@ -138,7 +140,10 @@ bool ask(const RecordSession& session, const std::string& question, std::string&
 /// False: there are no more answers.
 bool takeZero(const RecordSession& session, Recording& recording) {
   std::string answer;
-  while (ask(session, fmt::format("zero: hands off for {:g} s, then enter: ", kZero_s), answer)) {
+  const std::string question = fmt::format(
+      "zero of {}: hands off, then enter, and keep off for {:g} s: ", escaped(session.link),
+      kZero_s);
+  while (ask(session, question, answer)) {
     const ChannelWindow window = listen(session.frames, session.module, kZero_s);
     if (const auto defect = window.defect()) {
       fmt::print(session.out, "refused: {}\n", defectText(*defect));
@@ -163,7 +168,9 @@ std::string toldSoFar(const RecordSession& session, const std::vector<KnownPush>
 /// False: there are no more answers.
 bool takePush(const RecordSession& session, const KnownPush& push, Recording& recording) {
   std::string answer;
-  if (!ask(session, "hold it, then enter (s: skip it): ", answer)) return false;
+  const std::string question =
+      fmt::format("hold it, then enter, and hold it for {:g} s (s: skip it): ", kHeld_s);
+  if (!ask(session, question, answer)) return false;
   if (answer == "s") return true;
   const ChannelWindow window = listen(session.frames, session.module, kHeld_s);
   const std::string problem = pushProblem(window, recording.zero());
@@ -239,8 +246,10 @@ void recordPushes(const RecordSession& session) {
     else
       fmt::print(session.out, "{}\n", problem);
   }
-  if (recording.pushes().empty()) return;
-  fmt::print(session.out, "{}: {}", escaped(session.path), toldSoFar(session, recording.pushes()));
+  const std::string told =
+      recording.pushes().empty() ? "no push yet\n" : toldSoFar(session, recording.pushes());
+  fmt::print(session.out, "ended; module {}, {}: {}", escaped(session.link), escaped(session.path),
+             told);
 }
 
 }  // namespace tactus

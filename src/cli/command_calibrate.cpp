@@ -1,4 +1,6 @@
 #include <fmt/format.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -131,8 +133,9 @@ void showChannels(const CalibrateOptions& options) {
 void recordFile(const CalibrateOptions& options) {
   const LiveModule live = liveModule(options);
   const auto answer = [](std::string& line) { return bool(std::getline(std::cin, line)); };
+  const auto forget = [] { tcflush(STDIN_FILENO, TCIFLUSH); };  // of a terminal alone
   recordPushes({live.listened, live.module.link, live.module.shape, live.frames, answer, stdout,
-                options.output});
+                options.output, forget});
 }
 
 void fitFile(const CalibrateOptions& options) {

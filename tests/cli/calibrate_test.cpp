@@ -167,6 +167,30 @@ TEST_F(CalibrateTest, WhatTellsNothingIsRefusedAndNotWritten) {
   EXPECT_THROW(saidOf(held(push)), RunError);
 }
 
+/// Enter twice at a push is no end of the session; and the end says of what it was.
+TEST_F(CalibrateTest, WhatWasTypedBeforeAQuestionIsNoAnswer) {
+  test::Random random(50);
+  test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);
+  test::ScriptedAnswer again;
+  again.is_too_early = true;
+  const std::string said = record(module, {{""},
+                                           again,
+                                           {"4 +y 0.1"},
+                                           held({4.0, 0.0, 0.1}),
+                                           again,
+                                           {"4 +z 0.1"},
+                                           held({0.0, 4.0, 0.1}),
+                                           again,
+                                           {""}});
+  EXPECT_EQ(readPushFile(path("pushes.yaml")).pushes.size(), 2u);
+  EXPECT_NE(said.find("ended; module link4, " + path("pushes.yaml") + ": 2 pushes, which"),
+            std::string::npos)
+      << said;
+  std::filesystem::remove(path("pushes.yaml"));
+  EXPECT_TRUE(record(module, {{""}, {""}})
+                  .ends_with("ended; module link4, " + path("pushes.yaml") + ": no push yet\n"));
+}
+
 TEST_F(CalibrateTest, AWrongEntryIsNamedByItsLine) {
   test::Random random(45);
   test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);

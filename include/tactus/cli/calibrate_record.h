@@ -25,6 +25,8 @@ struct RecordSession {
   std::function<bool(std::string& line)> answer;  ///< the next line; false: there is none any more
   std::FILE* out;                                 ///< for questions, and what was measured
   std::string path;                               ///< of the pushes; one that is there is continued
+  /// What was typed before a question answers nothing; empty: of a file or a pipe, it does.
+  std::function<void()> forget_typed{};
 };
 
 inline constexpr double kZero_s = 5.0, kHeld_s = 1.0;
