@@ -21,7 +21,7 @@ constexpr const char* kModuleDraft = R"(#   interface: FILL_IN
 #   link: FILL_IN            # its x axis has to run along the cover, from the cover's start
 #   length_m: FILL_IN        # of the cover along x: a ruler
 #   cover_radius_m: FILL_IN  # around x: a ruler
-#   calibration:             # of no module: `tactus calibrate fit --write` writes yours here
+#   calibration:             # of no module as init writes it: `calibrate fit --write` replaces it
 #     - [1, -1, 0, 0, 1, -1, 0, 0]              # F_y
 #     - [0, 0, 1, -1, 0, 0, 1, -1]              # F_z
 #     - [0, 0, -0.04, 0.04, 0, 0, -0.26, 0.26]  # M_y, m

@@ -248,6 +248,9 @@ TEST_F(InitTest, WhatIsToBeFilledInLoadsOnceItIs) {
     robot.replace(key + after.size() + 2, 7, value);
   };
   for (int i = 0; i < 2; ++i) fill("counts_per_rad", "1e5");
+  // It stays where `calibrate fit --write` writes the rows, and has to be right then, too.
+  EXPECT_NE(robot.find("calibration:             # of no module as init writes it: `calibrate fit"),
+            std::string::npos);
   fill("interface", "can0");
   fill("link", "lower");
   fill("length_m", "0.3");
