@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct CalibrateOptions {
   std::string what;
   std::vector<std::string> files, settings;
   std::string output;
-  std::size_t module = 0;
+  std::optional<std::size_t> module;
   double duration_s = 0.0;  ///< 0: until it is stopped
   bool writes = false, json = false;
 };
@@ -48,8 +49,9 @@ Scene calibratedScene(const std::string& path, const CalibrateOptions& options, 
   }
   const std::size_t modules = scene.controller.tactile_modules.size();
   if (modules == 0) refuseScene(path, "robot", "has no tactile module", "one in robot.yaml");
-  if (options.module >= modules)
-    refuseScene(path, "robot", fmt::format("there is no tactile module {}", options.module),
+  const std::size_t module = options.module.value_or(0);
+  if (module >= modules)
+    refuseScene(path, "robot", fmt::format("there is no tactile module {}", module),
                 fmt::format("--module 0 to {}", modules - 1));
   return scene;
 }
@@ -65,13 +67,12 @@ LiveModule liveModule(const CalibrateOptions& options) {
   const std::string& path = options.files.front();
   const Scene scene = calibratedScene(path, options, SceneUse::kHardware);
   if (!scene.hardware) refuseScene(path, "robot", "has no can section", "buses to listen to");
-  const CanTactileConfig& config = scene.hardware->tactile_modules[options.module];
+  const std::size_t module = options.module.value_or(0);
+  const CanTactileConfig& config = scene.hardware->tactile_modules[module];
   const std::string& interface =
       scene.hardware->buses[static_cast<std::size_t>(config.bus)].interface;
   try {
-    return {sceneModule(scene, options.module),
-            {interface, config},
-            framesOf(interface, config.first_id)};
+    return {sceneModule(scene, module), {interface, config}, framesOf(interface, config.first_id)};
   } catch (const std::runtime_error& error) {  // what the operating system refuses
     throw RunError(error.what());
   }
@@ -162,6 +163,8 @@ void checkWords(const CalibrateOptions& options) {
   if (records == options.output.empty())
     refuse(records ? "record needs -o PUSHES.yaml" : "-o is of record");
   if (options.writes && !fits) refuse("--write is of fit");
+  if (options.module && fits)
+    refuse("--module is of show and record: fit takes the one that the pushes name");
   if (options.duration_s > 0.0 && options.what != "show") refuse("--duration is of show");
   if (options.json && records) refuse("--json is of show and fit");
 }
@@ -181,7 +184,8 @@ void addCalibrateCommand(CLI::App& app, int& exit_code) {
   command->add_option("files", options->files, "SCENE, or for fit PUSHES.yaml SCENE")->required();
   command->add_option("-o,--output", options->output,
                       "record: file of the pushes; one that is there is continued");
-  command->add_option("--module", options->module, "Which of several tactile modules, from 0");
+  command->add_option("--module", options->module,
+                      "show, record: which of several tactile modules, from 0");
   command->add_option("--duration", options->duration_s, "show: seconds; else until it is stopped")
       ->check(numberWithin(1.0, 1e6));
   CLI::Option* const set =

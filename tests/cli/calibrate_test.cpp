@@ -1,5 +1,6 @@
 #include <sys/resource.h>
 
+#include <CLI/CLI.hpp>
 #include <csignal>
 
 #include "support/calibrate_session.h"
@@ -116,6 +117,7 @@ TEST_F(CalibrateTest, OfSeveralModulesOnlyTheOneThatWasPushedIsWritten) {
   test::Random random(48);
   test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);
   record(module, scriptOf(random, false));
+  EXPECT_THROW(fit({"--module", "0"}), CLI::ValidationError) << "the file says which";
   EXPECT_EQ(fit({"--write"})["tactile_module"], "link4");
   const std::vector<SimulatedModuleConfig> after = modules();
   ASSERT_EQ(after.size(), 3u);
