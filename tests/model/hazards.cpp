@@ -118,8 +118,10 @@ constexpr auto kHazards = std::to_array<Hazard>({
      "the line, polled each cycle", "ramp, then hold", "1 cycle", "that where the arm stops",
      "mode `holding`"},
     {kGoesOn, "somebody asks for the end", Fault::kNone,
-     "`ControlCycleStop.EndsAtRestWithDrivesOffFromEveryMoment`, `python.mode_model`", "SIGTERM",
-     "ramp, then drives off", "1 cycle", "that where the arm stops", "mode `stopping`"},
+     "`ControlCycleStop.EndsAtRestWithDrivesOffFromEveryMoment`, "
+     "`DaemonSignals.NoneOfATerminalEndsOrSuspendsIt`, `python.mode_model`",
+     "SIGTERM, SIGHUP, Ctrl-C, Ctrl-Z", "ramp, then drives off", "1 cycle",
+     "that where the arm stops", "mode `stopping`"},
     {kGoesOn, "a drive moves on though it was told to stop", Fault::kNone,
      "`LyingDrive.ThatMovesOnIsBrakedAndStoppedInTime`, `hil.faults`", "its measured position",
      "brakes close, NMT stop, its bus falls silent", "0.1 s", "what the brakes do not hold",
