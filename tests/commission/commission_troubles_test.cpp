@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <set>
 #include <utility>
 
 #include "support/troubled_commission.h"
@@ -15,18 +14,6 @@ using test::CommissionRig;
 using test::HiddenJoint;
 using test::Random;
 using test::TroubledRig;
-
-std::uint16_t sdoIndex(const CanFrame& frame) {
-  return static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8);
-}
-
-CanFrame sdoAnswer(int node_id, const CanFrame& request, std::uint8_t command, std::uint32_t data) {
-  CanFrame answer = request;
-  answer.id = 0x580u + static_cast<unsigned>(node_id);
-  answer.data[0] = command;
-  for (unsigned i = 0; i < 4; ++i) answer.data[4 + i] = static_cast<std::uint8_t>(data >> 8 * i);
-  return answer;
-}
 
 TEST(CommissionTrouble, NoneMovesTheJointAndUsesTheBrake) {
   TroubledRig rig;
@@ -65,60 +52,10 @@ TEST(CommissionTrouble, CountsThatRunAgainstTheCommand) {
   EXPECT_LT(rig.worst_travel, 0.1);
 }
 
-TEST(CommissionTrouble, DriveThatRefusesItsSetUp) {
-  TroubledRig rig;
-  rig.on_send = [&rig](int bus, CanFrame& frame) {
-    if (frame.id != 0x602 || sdoIndex(frame) != 0x6060) return true;
-    rig.own_answers.emplace_back(bus, sdoAnswer(2, frame, 0x80, 0x06090030));
-    return false;
-  };
-  const JointTrouble trouble = rig.trouble();
-  EXPECT_EQ(trouble.kind, JointTroubleKind::kStroke);
-  EXPECT_EQ(trouble.stroke.fault, Fault::kDriveSetupRefused);
-  EXPECT_EQ(trouble.stroke.drive.setup_failure.index, 0x6060);
-  EXPECT_EQ(trouble.stroke.drive.setup_failure.abort_code, 0x06090030u);
-  EXPECT_EQ(rig.most_powered, 0);
-}
-
-/// By its data sheet and its profile.
-TEST(CommissionTrouble, DriveIsSetUpAsByTheDaemon) {
-  TroubledRig rig;
-  DriveConfig& drive = rig.config.hardware.drives[test::kTroubledJoint];
-  drive.has_quick_stop_option = drive.has_velocity_unit = false;
-  drive.vendor_id = 0x7ac;
-  drive.product_code = 1;
-  drive.transmit_pdos = 6;
-  std::set<std::uint16_t> asked;
-  rig.on_send = [&](int, CanFrame& frame) {
-    if (frame.id == 0x602) asked.insert(sdoIndex(frame));
-    return true;
-  };
-  rig.restart();
-  ASSERT_TRUE(rig.scan());
-  EXPECT_EQ(rig.trouble().kind, JointTroubleKind::kNone);
-  test::expectFound(rig, rig.cycle->joint()->findings());
-  EXPECT_FALSE(asked.contains(0x605A));
-  EXPECT_FALSE(asked.contains(0x60A9));
-  EXPECT_TRUE(asked.contains(0x1805));
-}
-
-TEST(CommissionTrouble, DriveOfAnotherProductIsNotMoved) {
-  TroubledRig rig;
-  rig.config.hardware.drives[test::kTroubledJoint].product_code = 2;
-  rig.restart();
-  ASSERT_TRUE(rig.scan());
-  const JointTrouble trouble = rig.trouble();
-  EXPECT_EQ(trouble.kind, JointTroubleKind::kStroke);
-  EXPECT_EQ(trouble.stroke.fault, Fault::kDriveSetupRefused);
-  EXPECT_EQ(trouble.stroke.drive.setup_failure.index, 0x1018);
-  EXPECT_EQ(trouble.stroke.drive.setup_failure.expected, 2u);
-  EXPECT_EQ(rig.most_powered, 0);
-}
-
 TEST(CommissionTrouble, AnotherDriveThatHasPower) {
   TroubledRig rig;
   rig.on_frame = [](int, CanFrame& frame) {
-    if (frame.id == 0x583 && sdoIndex(frame) == 0x6041) frame.data[4] = 0x27;
+    if (frame.id == 0x583 && test::sdoIndex(frame) == 0x6041) frame.data[4] = 0x27;
     return true;
   };
   const JointTrouble trouble = rig.trouble();
@@ -140,7 +77,7 @@ TEST(CommissionTrouble, AnotherDriveThatSaysNothingAnyMore) {
 TEST(CommissionTrouble, JointThatSinks) {
   TroubledRig rig;
   rig.on_frame = [&rig](int, CanFrame& frame) {
-    const bool is_place = frame.id == 0x582 && sdoIndex(frame) == 0x6064;
+    const bool is_place = frame.id == 0x582 && test::sdoIndex(frame) == 0x6064;
     if (!is_place || rig.most_powered == 0) return true;
     frame.data[6] = static_cast<std::uint8_t>(frame.data[6] + 1);  // 65536 counts
     return true;
@@ -308,60 +245,6 @@ TEST(CommissionTrouble, FewerCountsThanTheFileAllowsEndTheJoint) {
   EXPECT_LT(trouble.value, 2.2e4);
   EXPECT_EQ(trouble.limit, 1e5);
   EXPECT_EQ(places, 2);
-}
-
-TEST(CommissionTrouble, DrivesOwnCountsAreTakenWhereMarksConfirmThem) {
-  constexpr double kTurn = 6.283185307179586;
-  for (const bool is_right : {true, false}) {
-    TroubledRig rig;
-    const auto per_turn = static_cast<std::uint32_t>(std::lround(4e5 * kTurn * (is_right ? 1 : 3)));
-    rig.on_send = [&](int bus, CanFrame& frame) {
-      const std::uint16_t index = frame.id == 0x602 ? sdoIndex(frame) : std::uint16_t{0};
-      if (index != 0x608F && index != 0x6091) return true;
-      const bool is_counts = index == 0x608F && frame.data[3] == 1;
-      rig.own_answers.emplace_back(bus, sdoAnswer(2, frame, 0x43, is_counts ? per_turn : 1));
-      return false;
-    };
-    rig.restart();
-    ASSERT_TRUE(rig.scan());
-    EXPECT_EQ(rig.trouble().kind, JointTroubleKind::kNone);
-    const JointFindings& found = rig.cycle->joint()->findings();
-    EXPECT_NEAR(found.drive_counts_per_unit.value_or(0.0), per_turn / kTurn, 1e-6);
-    EXPECT_EQ(found.source, is_right ? ScaleSource::kDrive : ScaleSource::kMeasured);
-    EXPECT_NEAR(found.scale.counts_per_unit, 4e5, is_right ? 1.0 : 4e4);
-    test::expectFound(rig, found);
-  }
-}
-
-/// Of the encoder's resolution and the gear: refused, not answered at all, never set, or without
-/// the gear of 160 that is behind the drive. The file has them.
-TEST(CommissionTrouble, DriveThatDoesNotTellItsCountsIsUsable) {
-  constexpr std::uint32_t kNone = 0;
-  struct Told {
-    bool is_silent;
-    std::uint32_t per_turn;
-  };
-  for (const Told told :
-       {Told{false, kNone}, Told{true, kNone}, Told{false, 1}, Told{false, 15708}}) {
-    SCOPED_TRACE(testing::Message() << told.is_silent << " " << told.per_turn);
-    TroubledRig rig;
-    rig.on_send = [&](int bus, CanFrame& frame) {
-      const std::uint16_t index = frame.id == 0x602 ? sdoIndex(frame) : std::uint16_t{0};
-      if (index != 0x608F && index != 0x6091) return true;
-      if (told.is_silent) return false;
-      const bool is_counts = index == 0x608F && frame.data[3] == 1;
-      const std::uint32_t value = is_counts ? told.per_turn : 1;
-      rig.own_answers.emplace_back(bus, told.per_turn == kNone
-                                            ? sdoAnswer(2, frame, 0x80, 0x06020000)
-                                            : sdoAnswer(2, frame, 0x43, value));
-      return false;
-    };
-    rig.restart();
-    ASSERT_TRUE(rig.scan());
-    EXPECT_EQ(rig.trouble().kind, JointTroubleKind::kNone);
-    test::expectFound(rig, rig.cycle->joint()->findings());
-    EXPECT_LE(rig.worst_travel, 1.0 + 1e-3);
-  }
 }
 
 TEST(CommissionTrouble, EnableLineIsWaitedFor) {

@@ -27,6 +27,19 @@ inline CommissionConfig configWithLines() {
   return config;
 }
 
+inline std::uint16_t sdoIndex(const CanFrame& frame) {
+  return static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8);
+}
+
+inline CanFrame sdoAnswer(int node_id, const CanFrame& request, std::uint8_t command,
+                          std::uint32_t data) {
+  CanFrame answer = request;
+  answer.id = 0x580u + static_cast<unsigned>(node_id);
+  answer.data[0] = command;
+  for (unsigned i = 0; i < 4; ++i) answer.data[4 + i] = static_cast<std::uint8_t>(data >> 8 * i);
+  return answer;
+}
+
 struct TroubledRig : CommissionRig {
   explicit TroubledRig(std::uint64_t seed = 1, double counts_per_rad = 4e5)
       : CommissionRig(turnedArm(counts_per_rad), configWithLines(), seed) {
