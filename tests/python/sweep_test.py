@@ -12,6 +12,7 @@ import re
 import shlex
 import subprocess
 import tempfile
+import types
 import unittest
 
 import numpy as np
@@ -261,6 +262,18 @@ class Judgement(unittest.TestCase):
         self.assertAlmostEqual(judge.variance_share(levels, levels), 1.0, 12)
         few = np.array([judge.variance_share(random.random(40), random.random(40)) for _ in range(300)])
         self.assertLess(few.mean(), 0.06)  # chance does not look like a cause
+
+    def test_what_nobody_knows_keeps_no_limit(self):
+        limits = {"peak_force_N": 5.0, "swing_N": 0.5, "unsensed_force_N": 20.0}
+        judged = types.SimpleNamespace(objective={"peak_force_N": 1.0}, limits=limits)
+        known = {"outcome": "completed", "peak_force_N": 4.0, "contacts": 2, "swing_N": 0.1, "unsensed_force_N": 0.0}
+        for changed, is_within in (({}, True), ({"swing_N": 0.6}, False), ({"swing_N": None}, False),
+                                   ({"swing_N": None, "contacts": 0}, True), ({"unsensed_force_N": None}, False),
+                                   ({"unsensed_force_N": None, "contacts": 0}, False),
+                                   ({"peak_force_N": None}, False)):
+            row = {**known, **changed}
+            judge.judge(judged, [row])
+            self.assertEqual(row["is_within"], is_within, changed)
 
     def test_of_progress(self):
         self.assertEqual(progress.progress_text(50, 100, 10, 20.0), "50 of 100 runs, 50 %, 100 s left".replace(

@@ -4,6 +4,7 @@ import dataclasses
 import math
 
 import numpy as np
+from tactus._sweep import OF_CONTACTS
 
 FORCE, ERROR = "peak_force_N", "tcp_error_max_m"
 BINS = 16
@@ -39,7 +40,14 @@ def judge(study, rows):
         row["objective"] = (sum(weight * value for weight, value in zip(study.objective.values(), values))
                             if is_known else math.inf)
         row["is_within"] = completed(row) and all(
-            row.get(name) is None or row[name] <= limit for name, limit in study.limits.items())
+            is_kept(row, name, limit) for name, limit in study.limits.items())
+
+
+def is_kept(row, name, limit):
+    """What nobody knows keeps no limit; what contacts have at most does where there were none."""
+    if row.get(name) is None:
+        return name in OF_CONTACTS and row.get("contacts") == 0
+    return row[name] <= limit
 
 
 def candidates(plan, rows):
