@@ -67,8 +67,11 @@ Json valueOf(const std::string& text) {
 
 Json setRequest(const ChangeOptions& options) {
   Json request = {{"do", "set"}, {"values", Json::object()}};
-  for (const Override& setting : parseOverrides(options.settings))
-    request["values"][setting.key] = valueOf(setting.value);
+  for (const Override& setting : parseOverrides(options.settings)) {
+    const auto [place, is_new] = request["values"].emplace(setting.key, valueOf(setting.value));
+    // --set lays one over the other; here an arm moves by it, and one of the two is a slip.
+    if (!is_new) failAt(beginOf("set"), setting.key, "is given twice", "expected each key once");
+  }
   if (options.for_s) request["for_s"] = *options.for_s;
   return request;
 }
