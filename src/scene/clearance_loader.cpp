@@ -146,8 +146,8 @@ void addKeepOut(ClearanceLoading& l) {
   }
 }
 
-/// Of Halton's sequence, within the limits; half a turn or a metre to each side where there are
-/// none.
+/// Of Halton's sequence, over all that the limits leave, of a rail, too; half a turn or a metre to
+/// each side where there are none.
 JointVector drawnConfiguration(const UrdfChain& chain, int number) {
   constexpr int kPrimes[kMaxJoints] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
   JointVector q(static_cast<Eigen::Index>(chain.joints.size()));
@@ -159,8 +159,9 @@ JointVector drawnConfiguration(const UrdfChain& chain, int number) {
       share += digit * (rest % kPrimes[i]);
     }
     const double endless = chain.joints[i].type == JointType::kPrismatic ? 1.0 : std::numbers::pi;
-    const double lower = std::max(chain.limits.lower[i], -endless);
-    q[i] = lower + share * (std::min(chain.limits.upper[i], endless) - lower);
+    const double lower = chain.limits.lower[i], upper = chain.limits.upper[i];
+    const bool is_limited = std::isfinite(lower) && std::isfinite(upper);
+    q[i] = is_limited ? lower + share * (upper - lower) : (2.0 * share - 1.0) * endless;
   }
   return q;
 }

@@ -81,6 +81,18 @@ TEST(ClearanceLoad, LeavesOutWhatAlwaysTouches) {
   EXPECT_EQ(scene.clearance.capsules[scene.clearance.touching[1].other], "cover");
 }
 
+/// What touches at the start and no further than a metre away is not what always touches.
+TEST(ClearanceLoad, LooksAlongAWholeRail) {
+  test::SceneFiles files = clearFiles("  self_collision: true\n");
+  files.robot =
+      test::replaced(files.robot, "to_m: [0, 0, 0], radius_m: 0.1", "to_m: [0, 0, 0], radius_m: 3");
+  files.urdf = test::replaced(files.urdf, "upper=\"0.5\"", "upper=\"8\"");
+  const std::string error = test::loadError(files.sources());
+  EXPECT_NE(error.find(" overlap by "), std::string::npos) << error;
+  EXPECT_EQ(keptPairs(files.load({{"start[0]", "7"}})),
+            (Names{"base and tool", "base and cover", "link1 and tool"}));
+}
+
 TEST(ClearanceLoad, EndsAsOneLine) {
   const auto expectError = [](const std::string& section, const std::string& part) {
     const std::string error = test::loadError(clearFiles(section).sources());
