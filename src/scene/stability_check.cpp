@@ -171,6 +171,21 @@ void noteGears(const std::vector<VariantLoop>& loops, int module, StabilityRepor
   }
 }
 
+/// What tactusd runs on is the robot of robot.yaml: a scene that simulates quicker drives or
+/// filters says nothing of it, slower ones count.
+PlantConfig judgedPlant(const Scene& scene) {
+  PlantConfig plant = plantOf(scene);
+  if (!scene.hardware) return plant;
+  plant.drive_lag_s = std::max(plant.drive_lag_s, scene.controller.drive_lag_s);
+  const std::size_t modules =
+      std::min(plant.modules.size(), scene.controller.tactile_modules.size());
+  for (std::size_t i = 0; i < modules; ++i) {
+    double& cutoff_hz = plant.modules[i].filter_cutoff_hz;
+    cutoff_hz = std::min(cutoff_hz, scene.controller.tactile_modules[i].filter_cutoff_hz);
+  }
+  return plant;
+}
+
 }  // namespace
 
 std::string ofModule(const Scene& scene, int module) {
@@ -190,7 +205,7 @@ PlantConfig plantOf(const Scene& scene) {
 }
 
 std::optional<StabilityReport> checkStability(const Scene& scene) {
-  const PlantConfig plant = plantOf(scene);
+  const PlantConfig plant = judgedPlant(scene);
   if (variantLoops(scene.controller, plant, scene.period_s).empty()) return std::nullopt;
   const StiffestContact stiffest = stiffestContact(scene);
   StabilityReport report;
@@ -239,7 +254,7 @@ void requirePhaseMargin(const Scene& scene, double least_deg) {
   const LoopReport& nearest = nearestOf(*report);
   if (nearest.phaseMargin_deg() >= least_deg) return;
   const std::vector<VariantLoop> loops =
-      variantLoops(scene.controller, plantOf(scene), scene.period_s, report->module);
+      variantLoops(scene.controller, judgedPlant(scene), scene.period_s, report->module);
   fail(scene, "controller.time_constant_s",
        fmt::format("{:.4g} s leaves a phase margin of {:.1f} degrees ({}{})",
                    scene.controller.gains.force.time_constant_s, nearest.phaseMargin_deg(),
@@ -260,7 +275,7 @@ void addGearMargins(const Scene& scene, StabilityReport& report) {
   const double stiffest_N_per_m = std::max(scene.stiffest_N_per_m, stiffestBeforeGears(scene));
   const double law_N_per_m =
       stiffnessOfLaw(scene.controller, std::max(report.stiffest_N_per_m, stiffest_N_per_m));
-  const PlantConfig plant = plantOf(scene);
+  const PlantConfig plant = judgedPlant(scene);
   for (int i = 0; i < static_cast<int>(scene.controller.tactile_modules.size()); ++i) {
     std::vector<VariantLoop> loops = variantLoops(scene.controller, plant, scene.period_s, i);
     addGears(scene.controller, scene.arm->dynamics, law_N_per_m, loops, i);

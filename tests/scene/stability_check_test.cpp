@@ -283,6 +283,23 @@ TEST(StabilityCheck, TakesTheFilterOfTheDaemonAsItIs) {
               ratio);
 }
 
+/// tactusd shall not start with gains that only quicker drives or filters would bear.
+TEST(StabilityCheck, TakesNoQuickerDrivesThanTheRobotHasForTheDaemon) {
+  SceneFiles files = test::hardwareFiles();
+  files.robot = test::replaced(files.robot, "  filter_in_daemon: true\n", "");
+  const auto ratio = [&](const std::vector<Override>& settings) {
+    return largestRatio(check(files.load(settings)));
+  };
+  const double of_robot = ratio({});
+  EXPECT_EQ(ratio({{"simulation.drive_lag_s", "0"}}), of_robot);
+  EXPECT_EQ(ratio({{"simulation.tactile_module.filter_cutoff_hz", "300"}}), of_robot);
+  EXPECT_LT(ratio({{"simulation.drive_lag_s", "0.02"}}), of_robot);
+  EXPECT_LT(ratio({{"simulation.tactile_module.filter_cutoff_hz", "8"}}), of_robot);
+  const SceneFiles simulated = assumed();  // without buses: no daemon runs it
+  EXPECT_GT(largestRatio(check(simulated.load({{"simulation.drive_lag_s", "0"}}))),
+            largestRatio(check(simulated.load())));
+}
+
 TEST(StabilityCheck, TakesTheArmsGearsIntoLoopsOfOneSpace) {
   const StabilityReport report = check(test::shippedScene("scenario1_tactus"));
   ASSERT_EQ(report.loops.size(), 2u);
