@@ -28,9 +28,22 @@ void collect(const YamlNode& node, const std::string& path, Values& values) {
     collect(node.items[i], fmt::format("{}[{}]", path, i), values);
 }
 
+/// The sections that are there or not, whatever stands in them: `clearance: {}` is one. Those of
+/// lists' entries have keys that must be there.
+void collectSections(const YamlNode& root, Values& values) {
+  for (const KeyRow& row : keyRows(sceneKeys())) {
+    const bool may_be_absent =
+        row.spec->type == ValueType::kSection && row.spec->presence == Presence::kOptional;
+    const bool is_of_list = row.path.find("[]") != std::string::npos;
+    if (may_be_absent && !is_of_list && findGiven(root, row.path)) values[row.path] = "is there";
+  }
+}
+
 Values valuesOf(const Scene& scene) {
   Values values;
-  if (scene.tree) collect(*scene.tree, "", values);
+  if (!scene.tree) return values;
+  collect(*scene.tree, "", values);
+  collectSections(*scene.tree, values);
   values.erase("extends");
   return values;
 }
@@ -69,8 +82,12 @@ bool makesSection(const Scene& running, const std::string& path) {
   return false;
 }
 
-[[noreturn]] void refuse(const Scene& changed, const std::string& key) {
-  failAt(locate(*changed.tree, key), key, "needs a restart, nothing is changed",
+[[noreturn]] void refuse(const Scene& running, const Scene& changed, const std::string& key) {
+  const bool was = findGiven(*running.tree, key), is = findGiven(*changed.tree, key);
+  const char* const problem = was == is ? "needs a restart, nothing is changed"
+                              : is      ? "is new and needs a restart, nothing is changed"
+                                        : "is gone, which needs a restart, nothing is changed";
+  failAt(locate(*changed.tree, key), key, problem,
          "expected keys that `tactus keys` calls live or free");
 }
 
@@ -126,7 +143,7 @@ GainPlan planChange(const Scene& running, Scene changed, double least_deg) {
   for (const std::string& key : plan.keys) {
     const GainKey* const gain = findGain(key);
     if (!gain || makesSection(running, key) || makesSection(plan.scene, key))
-      refuse(plan.scene, key);
+      refuse(running, plan.scene, key);
     plan.waits_for_free |= gain->spec.context == KeyContext::kFree;
   }
   plan.waits_for_free |= isRaised(running.controller.gains, plan.scene.controller.gains);

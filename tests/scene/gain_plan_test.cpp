@@ -8,6 +8,7 @@
 #include <string>
 
 #include "support/random.h"
+#include "support/scene_files.h"
 #include "support/shipped_scene.h"
 #include "tactus/control/gain_ramp.h"
 #include "tactus/scene/gain_keys.h"
@@ -91,6 +92,31 @@ TEST(GainPlan, RefusesSectionsThatDoNotExist) {
   EXPECT_NE(refusal(running, {{"stiffness.estimate.max_N_per_m", "1e4"}}).find("restart"),
             std::string::npos);
   EXPECT_EQ(refusal(running, {{"controller.transition.distance_m", "0.04"}}), "");
+}
+
+/// A stage begins or ends with them, though no key of theirs is written anywhere.
+TEST(GainPlan, RefusesSectionsWithoutKeysThatComeOrGo) {
+  const auto loaded = [](const std::string& value) {
+    return test::SceneFiles{}.load({{"redundancy.joint_limit_avoidance", value}});
+  };
+  const Scene without = loaded("~"), empty = loaded("{}"), written = loaded("{gain: 1}");
+  const auto refusal_of = [](const Scene& running, const Scene& changed) -> std::string {
+    try {
+      planChange(running, changed, 0.0);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  const std::string key = "redundancy.joint_limit_avoidance: ";
+  for (const Scene& there : {empty, written}) {
+    EXPECT_NE(refusal_of(without, there).find(key + "is new and needs a restart"),
+              std::string::npos);
+    EXPECT_NE(refusal_of(there, without).find(key + "is gone, which needs a restart"),
+              std::string::npos);
+  }
+  EXPECT_EQ(refusal_of(empty, written), "");
+  EXPECT_EQ(refusal_of(written, loaded("{gain: 2}")), "");
 }
 
 TEST(GainPlan, RefusesAsAStartWould) {
