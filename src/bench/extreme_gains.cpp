@@ -57,7 +57,7 @@ void addGainCases(std::vector<ExtremeCase>& cases) {
   for (const char* value : {"1e-9", "10"}) addOne(cases, "controller.transition.distance_m", value);
   for (const char* value : {"1e-9", "100"})
     addOne(cases, "controller.transition.max_time_constant_s", value);
-  for (const char* value : {"0", "1000"})
+  for (const char* value : {"0", "50"})
     addOne(cases, "redundancy.joint_limit_avoidance.gain", value);
   addWeakDrives(cases);
 }

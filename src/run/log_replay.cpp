@@ -90,9 +90,7 @@ std::vector<std::size_t> setGains(const std::vector<std::string>& settings) {
 }
 
 void checkGains(const std::string& path, const Scene& scene, const CycleRecord& recorded) {
-  const ControllerConfig& controller = scene.controller;
-  const GainUse use = gainUse(controller.force_control, controller.tactile_modules.size());
-  const auto problem = findGainProblem(recorded.gains, use, scene.period_s);
+  const auto problem = findGainProblem(recorded.gains, gainUse(scene.controller), scene.period_s);
   if (!problem) return;
   failAt(beginOf(path), problem->path,
          fmt::format("{}, in the gains recorded at {:.9g} s", problem->problem, recorded.t_s),

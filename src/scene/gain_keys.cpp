@@ -35,6 +35,32 @@ bool isWithin(const Range& range, double value) {
          !(range.lower_open && value == range.lower);
 }
 
+double narrowestRange(const ControllerConfig& config) {
+  double narrowest = 0.0;
+  for (Eigen::Index i = 0; i < config.weights.size(); ++i) {
+    const double half = 0.5 * (config.limits.upper[i] - config.limits.lower[i]);
+    if (half > 0.0) narrowest = std::max(narrowest, 1.0 / (half * config.weights[i]));
+  }
+  return narrowest;
+}
+
+/// In its zone a joint moves by -alpha period W^-1/2 N W^-1/2 dH/dq a cycle. The curvature of H is
+/// diagonal, gradient_at_limit / (f half), and no eigenvalue of N is above 1: where alpha times
+/// period times curvature / w is at most 1 for each joint, none of these linear steps overshoots.
+std::optional<GainProblem> findSteepLimits(const JointLimitAvoidanceGains& gains,
+                                           const GainUse& use, double period_s) {
+  const double share_per_gain =
+      period_s * gains.gradient_at_limit / gains.active_fraction * use.narrowest_range;
+  if (gains.gain * share_per_gain <= 1.0) return std::nullopt;
+  constexpr double kInside = 0.999;  // what is printed shall be accepted
+  return GainProblem{
+      "redundancy.joint_limit_avoidance.gain",
+      fmt::format("{} is too steep: joints would overshoot in a cycle on the way off their limits",
+                  gains.gain),
+      fmt::format("at most {:.4g} with this gradient_at_limit, active_fraction and period_s",
+                  kInside / share_per_gain)};
+}
+
 }  // namespace
 
 double gainAt(const Gains& gains, std::size_t offset) noexcept {
@@ -54,9 +80,13 @@ const std::vector<GainKey>& gainKeys() {
   return keys;
 }
 
-GainUse gainUse(const std::optional<ForceControlConfig>& force_control, std::size_t modules) {
-  if (!force_control) return {};
-  return {force_control->variant == Variant::kJointSpace, hasContactRows(force_control, modules)};
+GainUse gainUse(const ControllerConfig& config) {
+  GainUse use;
+  if (config.has_joint_limit_avoidance) use.narrowest_range = narrowestRange(config);
+  if (!config.force_control) return use;
+  use.is_joint_space = config.force_control->variant == Variant::kJointSpace;
+  use.has_contact_rows = hasContactRows(config);
+  return use;
 }
 
 std::optional<GainProblem> findGainProblem(const Gains& gains, const GainUse& use,
@@ -80,6 +110,7 @@ std::optional<GainProblem> findGainConflict(const Gains& gains, const GainUse& u
   };
   if (gains.task.drift_gain_per_s * period_s > 1.0)
     return tooHigh("task.drift_gain_per_s", gains.task.drift_gain_per_s);
+  if (auto problem = findSteepLimits(gains.joint_limit_avoidance, use, period_s)) return problem;
   const ForceGains& force = gains.force;
   if ((use.is_joint_space || use.has_contact_rows) &&
       force.transition.release_force_N >= force.contact_threshold_N) {

@@ -105,6 +105,11 @@ void checkRamp(const Scene& running, const Scene& changed, double least_deg) {
   for (int i = kPointsOfTheRamp; i > 0; --i) {
     point.controller.gains =
         gainsBetween(from, changed.controller.gains, static_cast<double>(i) / kPointsOfTheRamp);
+    // Of a product of gains that rise and fall there may be more on the way than at both ends.
+    const ControllerConfig& controller = point.controller;
+    if (const auto steep = findGainConflict(controller.gains, gainUse(controller), point.period_s))
+      failAt(locate(*changed.tree, steep->path), steep->path, steep->problem + " on the way there",
+             "expected " + steep->expectation);
     requirePhaseMargin(point, least_deg);
   }
 }

@@ -175,12 +175,6 @@ void checkPeriod(const CheckedScene& c) {
   checkFilterPeriods(c);
 }
 
-void checkGains(const CheckedScene& c) {
-  const GainUse use = gainUse(c.scene.controller, c.robot.config.tactile_modules.size());
-  const auto problem = findGainConflict(c.scene.gains, use, c.scene.period_s);
-  if (problem) c.fail(problem->path, problem->problem, problem->expectation);
-}
-
 }  // namespace
 
 bool fitsModule(double period_s, double filter_rate_hz) {
@@ -198,8 +192,14 @@ void checkScene(const YamlNode& root, const SceneConfig& scene, const LoadedRobo
   checkDuration(checked);
   checkPeriod(checked);
   checkSimulatedModule(checked);
-  checkGains(checked);
   checkObstacles(root, scene.simulation.obstacles);
+}
+
+void checkGains(const YamlNode& root, const ControllerConfig& controller, double period_s) {
+  const auto problem = findGainConflict(controller.gains, gainUse(controller), period_s);
+  if (!problem) return;
+  failAt(locate(root, problem->path), problem->path, problem->problem,
+         "expected " + problem->expectation);
 }
 
 }  // namespace tactus

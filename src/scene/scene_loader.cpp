@@ -201,6 +201,8 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
       loadRobot(reader.read(robot_path, "robot", robot_at), settings, reader, numbers);
   const JointVector q_start = readStart(root, config, robot);
   checkScene(root, config, robot, q_start);
+  const ControllerConfig controller = makeController(root, config, robot, q_start);
+  checkGains(root, controller, config.period_s);
   const NamedCapsules capsules = loadCapsules(robot, config.controller.has_value());
   std::optional<NamedClearance> clearance = loadClearance(root, config, robot, q_start);
   const std::optional<HardwareConfig> hardware = chooseHardware(config, robot);
@@ -210,7 +212,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
   const Variant variant = config.controller ? config.controller->variant : Variant::kNone;
   const StiffnessSection stiffness = config.stiffness.value_or(StiffnessSection{});
   Scene scene{.name = sceneName(path),
-              .controller = makeController(root, config, robot, q_start),
+              .controller = controller,
               .variant = wordOf(kVariantWords, variant),
               .period_s = config.period_s,
               .duration_s = config.simulation.duration_s,

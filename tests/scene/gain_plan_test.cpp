@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include "support/scene_files.h"
 #include "support/shipped_scene.h"
 #include "tactus/control/gain_ramp.h"
+#include "tactus/control/joint_limit_avoidance.h"
 #include "tactus/scene/gain_keys.h"
 #include "tactus/scene/key_docs.h"
 #include "tactus/scene/stability_check.h"
@@ -143,6 +145,64 @@ TEST(GainPlan, RefusesGainsWithoutMargin) {
   EXPECT_NE(near.find("controller.time_constant_s: 0.07 s leaves"), std::string::npos) << near;
 }
 
+/// Likewise, and neither may gains pass on their way what they may not have at its end.
+TEST(GainPlan, RefusesLimitsThatAreTooSteep) {
+  const std::string gain = "redundancy.joint_limit_avoidance.gain";
+  const std::string gradient = "redundancy.joint_limit_avoidance.gradient_at_limit";
+  const Scene running = test::shippedScene("scenario2_tactus");
+  const std::string text = refusal(running, {{gain, "1000"}});
+  ASSERT_NE(text.find(gain + ": 1000 is too steep"), std::string::npos) << text;
+  double most = 0.0;
+  ASSERT_EQ(std::sscanf(text.c_str() + text.find("at most "), "at most %lf", &most), 1) << text;
+  EXPECT_EQ(refusal(running, {{gain, std::to_string(most)}}), "");
+  EXPECT_NE(refusal(running, {{gain, std::to_string(1.01 * most)}}), "");
+  EXPECT_NE(
+      refusal(running, {{"redundancy.joint_limit_avoidance.active_fraction", "0.0005"}}).find(gain),
+      std::string::npos);
+  const Scene steep = plan(running, {{gain, std::to_string(most)}}).scene;
+  const std::string way = refusal(steep, {{gain, std::to_string(0.01 * most)}, {gradient, "352"}});
+  EXPECT_NE(way.find("too steep"), std::string::npos) << way;
+  EXPECT_NE(way.find("on the way there"), std::string::npos) << way;
+}
+
+/// What a step does to offsets in their zones has no eigenvalue above 1 at the bound, and with
+/// nothing but the null space it has 1.
+TEST(GainPlan, BoundsTheStepOffLimitsByItsSteepestJoint) {
+  test::Random random(27);
+  for (int i = 0; i < 200; ++i) {
+    const int n = random.integer(2, 9), m = random.integer(0, n - 1);
+    Scene scene = test::shippedScene("scenario2_tactus");
+    ControllerConfig& config = scene.controller;
+    config.limits.lower = random.vector(n, -3.0, -0.1);
+    config.limits.upper = random.vector(n, 0.1, 3.0);
+    config.weights = random.vector(n, 0.1, 10.0);
+    JointLimitAvoidanceGains gains{1.0, random.uniform(0.5, 9.0), random.uniform(0.1, 1.0)};
+    gains.gain = gains.active_fraction /
+                 (scene.period_s * gains.gradient_at_limit * gainUse(config).narrowest_range);
+    config.gains.joint_limit_avoidance = gains;
+    config.gains.joint_limit_avoidance.gain = 0.999 * gains.gain;
+    EXPECT_FALSE(findGainConflict(config.gains, gainUse(config), scene.period_s));
+    config.gains.joint_limit_avoidance.gain = 1.001 * gains.gain;
+    EXPECT_TRUE(findGainConflict(config.gains, gainUse(config), scene.period_s));
+    const Eigen::VectorXd inv_sqrt = config.weights.cwiseSqrt().cwiseInverse();
+    const ScaledVector inv_sqrt_scaled = scaled(JointVector(inv_sqrt), ScaledVector::Ones());
+    const Eigen::VectorXd slope =
+        JointLimitAvoidance(config.limits, inv_sqrt_scaled).zones(gains).slope.head(n);
+    Eigen::MatrixXd N = Eigen::MatrixXd::Identity(n, n);
+    for (int row = 0; row < m; ++row) {
+      const Eigen::VectorXd a = N * random.vector(n, -1.0, 1.0);
+      N -= a * a.transpose() / a.squaredNorm();
+    }
+    const Eigen::MatrixXd step =
+        scene.period_s * inv_sqrt.asDiagonal() * N * Eigen::MatrixXd(slope.asDiagonal());
+    const double largest = step.eigenvalues().real().maxCoeff();
+    EXPECT_LE(largest, 1.0 + 1e-9);
+    if (m == 0) {
+      EXPECT_NEAR(largest, 1.0, 1e-9);
+    }
+  }
+}
+
 /// A scene that has less from the start may be changed for the better.
 TEST(GainPlan, AcceptsMoreMarginThanBefore) {
   Scene running = test::shippedScene("scenario2_estimated");
@@ -159,7 +219,7 @@ TEST(GainPlan, AcceptsMoreMarginThanBefore) {
 TEST(GainPlan, WhatIsAcceptedIsFitOnTheWay) {
   test::Random random(1911);
   const Scene running = test::shippedScene("scenario2_tactus");
-  const GainUse use = gainUse(running.controller.force_control, 1);
+  const GainUse use = gainUse(running.controller);
   int accepted = 0;
   for (int i = 0; i < 80; ++i) {
     const GainKey& key = gainKeys()[random.index(static_cast<int>(gainKeys().size()))];

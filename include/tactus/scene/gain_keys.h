@@ -27,12 +27,15 @@ struct GainProblem {
   std::string path, problem, expectation;
 };
 
-/// The law that gains are for.
+/// The law and the arm that gains are for.
 struct GainUse {
   bool is_joint_space = false;
   bool has_contact_rows = false;
+  /// The largest 1 / (half range, weight) of the joints that have limits, 1/m or 1/rad; 0: nothing
+  /// keeps joints off their limits.
+  double narrowest_range = 0.0;
 };
-GainUse gainUse(const std::optional<ForceControlConfig>& force_control, std::size_t modules);
+GainUse gainUse(const ControllerConfig& config);
 
 /// The first gain that is out of its range, or does not go with another one or with the period.
 std::optional<GainProblem> findGainProblem(const Gains& gains, const GainUse& use, double period_s);

@@ -14,4 +14,7 @@ bool fitsModule(double period_s, double filter_rate_hz);
 void checkScene(const YamlNode& root, const SceneConfig& scene, const LoadedRobot& robot,
                 const JointVector& q_start);
 
+/// Checks gains against each other, the arm and the period. Throws InputError.
+void checkGains(const YamlNode& root, const ControllerConfig& controller, double period_s);
+
 }  // namespace tactus
