@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "tactus/daemon/gain_save.h"
 #include "tactus/daemon/gain_text.h"
 #include "tactus/daemon/request_refusal.h"
 #include "tactus/scene/gain_keys.h"
@@ -71,6 +72,7 @@ std::string compact(const Json& json) {
 ControlRequests::ControlRequests(const Scene& scene, LoopLink& link)
     : link_(link),
       started_(scene),
+      settings_(scene.overrides),
       tool_(started_, link),
       read_hash_(sourceHash(scene.sources.front().text)),
       kept_(scene) {
@@ -136,10 +138,11 @@ Json ControlRequests::set(const Json& request) {
 Json ControlRequests::reload(const Json& request) {
   refuseUnknown(request, {"do", "for_s", "only_read"});
   duration_s(request);  // a request that is refused has read nothing
-  GainPlan plan = planReload(newest(), started_.overrides, leastMargin());
-  if (flagOf(request, "only_read") && !plan.keys.empty())
-    throw InputError(
-        fmt::format("{} in the scene file is not what was ordered", plan.keys.front()));
+  const bool only_read = flagOf(request, "only_read");
+  std::vector<Override> settings = only_read ? settingsThatHold() : settings_;
+  GainPlan plan = planReload(newest(), settings, leastMargin());
+  if (only_read) refuseOthers(plan);
+  settings_ = std::move(settings);
   read_hash_ = sourceHash(plan.scene.sources.front().text);
   if (!plan.keys.empty()) return order(std::move(plan), request, {.waits_for_free = isWaiting()});
   newest() = std::move(plan.scene);  // comments may differ
@@ -147,6 +150,27 @@ Json ControlRequests::reload(const Json& request) {
   if (trials_.empty()) json["trouble"] = "";  // that of a change before is not this one's
   json["changes"] = Json::object();
   return json;
+}
+
+/// Without those of the start whose gains are others by now: what is saved takes their place.
+std::vector<Override> ControlRequests::settingsThatHold() {
+  std::vector<Override> settings = settings_;
+  const Gains &started = started_.controller.gains, &now = newest().controller.gains;
+  for (const GainKey& key : gainKeys()) {
+    if (gainAt(started, key.offset) == gainAt(now, key.offset)) continue;
+    std::erase_if(settings, [&](const Override& setting) { return setting.key == key.path; });
+  }
+  return settings;
+}
+
+/// Also what the settings of the start hide: the file alone has to say what was ordered.
+void ControlRequests::refuseOthers(const GainPlan& plan) {
+  std::string key = plan.keys.empty() ? "" : plan.keys.front();
+  const Json differing =
+      gainDifferences(newest().sources.front().path, gainsJson(newest().controller.gains));
+  if (key.empty() && !differing.empty()) key = differing.items().begin().key();
+  if (!key.empty())
+    throw InputError(fmt::format("{} in the scene file is not what was ordered", key));
 }
 
 std::size_t ControlRequests::nextStepsBack() const {

@@ -55,6 +55,9 @@ class Daemon {
 
 class SavedGainsTest : public testing::Test {
  protected:
+  explicit SavedGainsTest(const std::vector<Override>& settings = {})
+      : requests_(loadScene(file_.path(), settings), *link_) {}
+
   SavedGains save(std::function<void()> between) {
     const std::string socket = file_.folder().path() + "/asked";
     const Daemon daemon(socket, requests_, std::move(between));
@@ -63,7 +66,7 @@ class SavedGainsTest : public testing::Test {
 
   test::WrittenScene file_{0.7};
   const std::unique_ptr<LoopLink> link_ = std::make_unique<LoopLink>();
-  ControlRequests requests_{loadScene(file_.path(), {}), *link_};
+  ControlRequests requests_;
 };
 
 TEST_F(SavedGainsTest, AreInTheFileWhichTheDaemonHasRead) {
@@ -90,6 +93,53 @@ TEST_F(SavedGainsTest, ThatWentBackMeanwhileNeitherReturnNorStayInTheFile) {
   EXPECT_EQ(shown.at("scene_hash"), file_.hash());
   EXPECT_EQ(shown.at("ordered").at("controller.damping"), 0.7);
   EXPECT_EQ(shown.at("number"), 1);
+}
+
+/// A daemon that was started with --set controller.damping=0.9.
+class SetAtTheStart : public SavedGainsTest {
+ protected:
+  SetAtTheStart() : SavedGainsTest({{"controller.damping", "0.9"}}) {}
+
+  double ordered() {
+    return Json::parse(requests_.answer(R"({"do": "show"})"))
+        .at("ordered")
+        .at("controller.damping");
+  }
+  Json reload() { return Json::parse(requests_.answer(R"({"do": "reload"})")); }
+};
+
+TEST_F(SetAtTheStart, IsWrittenAndHolds) {
+  EXPECT_TRUE(save([] {}).is_new);
+  EXPECT_NE(file_.text().find("damping: 0.9"), std::string::npos) << file_.text();
+  EXPECT_TRUE(reload().at("changes").empty());
+  file_.write(0.7);
+  EXPECT_TRUE(reload().at("changes").empty()) << "the --set of the start still holds";
+}
+
+/// What runs is written, and neither the file's value of before nor the start's comes back.
+TEST_F(SetAtTheStart, GivesWayToWhatIsSaved) {
+  requests_.answer(kSet);
+  EXPECT_TRUE(save([] {}).is_new);
+  EXPECT_NE(file_.text().find("damping: 0.8"), std::string::npos) << file_.text();
+  EXPECT_TRUE(gainDifferences(file_.path(),
+                              Json::parse(requests_.answer(R"({"do": "show"})")).at("ordered"))
+                  .empty());
+  EXPECT_TRUE(reload().at("changes").empty());
+  EXPECT_EQ(ordered(), 0.8);
+  file_.write(0.85);
+  EXPECT_EQ(reload().at("changes").at("controller.damping").at("to"), 0.85);
+}
+
+TEST_F(SetAtTheStart, HidesNoGainsThatWentBackMeanwhile) {
+  const std::string before = file_.text();
+  requests_.answer(kSet);
+  EXPECT_THROW(save([&] {
+                 link_->gain_reports.put(
+                     {.number = 1, .state = GainState::kKept, .trouble = GainTrouble::kFault});
+               }),
+               RunError);
+  EXPECT_EQ(file_.text(), before);
+  EXPECT_EQ(ordered(), 0.9);
 }
 
 }  // namespace

@@ -55,12 +55,15 @@ class ControlRequests {
   std::ptrdiff_t keep(Trial trial);
   std::size_t nextStepsBack() const;
   double leastMargin();
+  std::vector<Override> settingsThatHold();
+  void refuseOthers(const GainPlan& plan);
   bool isTrying() const;
   bool isWaiting() const;
   Scene& newest() { return isTrying() ? trials_.back().scene : kept_; }
 
   LoopLink& link_;
   const Scene started_;
+  std::vector<Override> settings_;          ///< of the start, without those that a save replaced
   std::optional<double> least_margin_deg_;  ///< takes a while to know
   ToolRequests tool_;
   std::uint64_t read_hash_;  ///< of the scene file as it was last read
