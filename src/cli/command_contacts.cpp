@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <istream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -90,25 +91,60 @@ void printContacts(const Scene& scene, const std::vector<ContactFigures>& contac
   if (!contacts.empty()) std::fflush(stdout);
 }
 
-/// Each contact when it is over, of those that were there already and of those that come.
-void followContacts(const std::string& path, bool as_json) {
-  const Scene scene = loadLogged(path);
-  ContactWatch watch(scene.controller);
-  std::optional<std::string> run;
-  if (!as_json) std::fputs(headerText().c_str(), stdout);
-  std::fflush(stdout);
-  for (bool goes_on = true; goes_on;) {
-    GrowingFile file(path);
-    std::istream in(&file);
-    UlogReader reader(in, path);
-    if (!isOfRun(reader.description(), path, run)) break;
-    reader.assumeGains(scene.controller.gains);
-    CycleRecord record;
-    while (reader.next(record)) printContacts(scene, watch.add(record), as_json);
-    goes_on = file.goesOn();
+/// Prints each contact when it is over.
+class ContactPrinter {
+ public:
+  ContactPrinter(const std::string& path, bool as_json)
+      : path_(path), scene_(loadLogged(path)), watch_(scene_.controller), as_json_(as_json) {
+    if (!as_json) std::fputs(headerText().c_str(), stdout);
+    std::fflush(stdout);
   }
-  printContacts(scene, watch.present(), as_json);
-}
+
+  /// Of the older files of the run, what was not read yet.
+  void readOlder() {
+    std::vector<std::string> paths = logsOfRun(path_);
+    paths.pop_back();
+    std::vector<std::ifstream> files;  // opened at once, as the daemon renames them
+    for (const std::string& path : paths) files.push_back(openLog(path));
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      UlogReader reader(files[i], paths[i]);
+      if (logPart(reader.description(), paths[i]).part >= next_part_) read(reader);
+    }
+  }
+
+  void follow(bool whole_run) {
+    if (whole_run) readOlder();
+    for (bool goes_on = true; goes_on;) {
+      GrowingFile file(path_);
+      std::istream in(&file);
+      UlogReader reader(in, path_);
+      // One that was begun and renamed meanwhile lies among the older ones.
+      const int part = logPart(reader.description(), path_).part;
+      if (part > next_part_ && (whole_run || next_part_ > 0)) readOlder();
+      if (part < next_part_ || !read(reader)) break;
+      goes_on = file.goesOn();
+    }
+    printContacts(scene_, watch_.present(), as_json_);
+  }
+
+ private:
+  /// False: it is of another run.
+  bool read(UlogReader& reader) {
+    if (!isOfRun(reader.description(), path_, run_)) return false;
+    next_part_ = logPart(reader.description(), path_).part + 1;
+    reader.assumeGains(scene_.controller.gains);
+    CycleRecord record;
+    while (reader.next(record)) printContacts(scene_, watch_.add(record), as_json_);
+    return true;
+  }
+
+  const std::string path_;
+  const Scene scene_;
+  ContactWatch watch_;
+  const bool as_json_;
+  std::optional<std::string> run_;
+  int next_part_ = 0;
+};
 
 }  // namespace
 
@@ -122,14 +158,16 @@ void addContactsCommand(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("contacts", "Show each contact of a run, a row each");
   command->add_option("log", options->log,
-                      "Log of a run (run.ulg); else that of the daemon that runs");
+                      "Log of a run (run.ulg); else all that there are of the daemon that runs");
   command->add_flag("--follow", options->follows, "Go on with those that come, until the run ends");
   command->add_flag("--json", options->json, "Print JSON; with --follow an object a line");
   command->callback([options, &exit_code] {
     exit_code = kExitDone;
-    if (options->log.empty()) options->log = runningLog();
-    if (options->follows) return followContacts(options->log, options->json);
-    const LoggedContacts logged = readContacts(options->log);
+    const bool whole_run = options->log.empty();
+    if (whole_run) options->log = runningLog();
+    if (options->follows) return ContactPrinter(options->log, options->json).follow(whole_run);
+    const LoggedContacts logged =
+        readContacts(whole_run ? logsOfRun(options->log) : std::vector<std::string>{options->log});
     if (logged.is_cut_off) fmt::print(stderr, "{}: the log was cut off\n", escaped(options->log));
     std::fputs((options->json ? jsonText(contactsJson(logged)) : contactsText(logged)).c_str(),
                stdout);

@@ -97,7 +97,9 @@ std::string replay(const std::vector<std::string>& logs, const std::vector<std::
   return jsonText(replayJson(request, replayLogs(request, [](double) { lookForSignals(); })));
 }
 
-std::string contacts(const std::string& path) { return jsonText(contactsJson(readContacts(path))); }
+std::string contacts(const std::string& path) {
+  return jsonText(contactsJson(readContacts({path})));
+}
 
 template <typename Enum>
 py::tuple names(std::size_t count, const char* (*name)(Enum)) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 
+#include "tactus/record/run_log.h"
 #include "tactus/record/ulog_format.h"
 #include "tactus/scene/located_error.h"
 
@@ -20,18 +22,6 @@ std::string infoOf(const LogDescription& description, const char* name) {
   const auto info =
       std::ranges::find(description.infos, name, &std::pair<std::string, std::string>::first);
   return info == description.infos.end() ? "" : info->second;
-}
-
-void checkOrder(const std::string& path, const LogPart& part, const std::string& path_before,
-                const LogPart& before) {
-  if (part.run.empty() || part.run != before.run) {
-    failIn(path, kRunKey, "is not of the same run as " + inQuotes(path_before),
-           "expected the logs of one run of tactusd");
-  }
-  if (part.part <= before.part) {
-    failIn(path, kPartKey, fmt::format("part {} of the run behind part {}", part.part, before.part),
-           "expected the oldest first, as in run.2.ulg run.1.ulg run.ulg");
-  }
 }
 
 }  // namespace
@@ -53,6 +43,29 @@ bool isOfRun(const LogDescription& description, const std::string& path,
   if (run && (found.empty() || found != *run)) return false;
   run = found;
   return true;
+}
+
+std::vector<std::string> logsOfRun(const std::string& newest) {
+  const std::filesystem::path folder = std::filesystem::path(newest).parent_path();
+  std::vector<std::string> paths;
+  for (int age = kMaxKeptLogs; age > 0; --age) {
+    const std::filesystem::path path = folder / logName(age);
+    if (std::filesystem::exists(path)) paths.push_back(path.string());
+  }
+  paths.push_back(newest);
+  return paths;
+}
+
+void checkOrder(const std::string& path, const LogPart& part, const std::string& path_before,
+                const LogPart& before) {
+  if (part.run.empty() || part.run != before.run) {
+    failIn(path, kRunKey, "is not of the same run as " + inQuotes(path_before),
+           "expected the logs of one run of tactusd");
+  }
+  if (part.part <= before.part) {
+    failIn(path, kPartKey, fmt::format("part {} of the run behind part {}", part.part, before.part),
+           "expected the oldest first, as in run.2.ulg run.1.ulg run.ulg");
+  }
 }
 
 std::vector<LogExtent> checkParts(const std::vector<std::string>& paths) {

@@ -1,43 +1,54 @@
 #include "tactus/run/logged_contacts.h"
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tactus/record/contact_json.h"
 #include "tactus/record/contact_watch.h"
+#include "tactus/record/log_parts.h"
 #include "tactus/record/logged_scene.h"
 #include "tactus/record/ulog_reader.h"
 
 namespace tactus {
 namespace {
 
-/// Reads all cycles of a log; true if it was cut off.
-template <class Sink>
-bool readCycles(const std::string& path, const Gains& gains, const Sink& sink) {
-  std::ifstream in = openLog(path);
-  UlogReader reader(in, path);
-  reader.assumeGains(gains);
-  CycleRecord record;
-  while (reader.next(record)) sink(record);
-  return reader.cutOff();
+/// All opened at once: the daemon that writes them renames them.
+std::vector<std::ifstream> openLogs(const std::vector<std::string>& paths) {
+  std::vector<std::ifstream> files;
+  for (const std::string& path : paths) files.push_back(openLog(path));
+  return files;
 }
 
-Scene sceneOfLog(const std::string& path) {
-  std::ifstream in = openLog(path);
-  return loggedScene(UlogReader(in, path), path);
+Scene sceneOfLog(std::ifstream& file, const std::string& path) {
+  Scene scene = loggedScene(UlogReader(file, path), path);
+  file.clear();
+  file.seekg(0);
+  return scene;
 }
 
 }  // namespace
 
-LoggedContacts readContacts(const std::string& path) {
-  checkLog(path);
-  LoggedContacts logged{.scene = sceneOfLog(path), .contacts = {}};
+LoggedContacts readContacts(const std::vector<std::string>& paths) {
+  std::vector<std::ifstream> files = openLogs(paths);
+  LoggedContacts logged{.scene = sceneOfLog(files.back(), paths.back()), .contacts = {}};
   ContactWatch watch(logged.scene.controller);
   const auto keep = [&](const std::vector<ContactFigures>& contacts) {
     logged.contacts.insert(logged.contacts.end(), contacts.begin(), contacts.end());
   };
-  logged.is_cut_off = readCycles(path, logged.scene.controller.gains,
-                                 [&](const CycleRecord& record) { keep(watch.add(record)); });
+  LogPart before;
+  CycleRecord record;
+  bool is_empty = true;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    UlogReader reader(files[i], paths[i]);
+    reader.assumeGains(logged.scene.controller.gains);
+    const LogPart part = logPart(reader.description(), paths[i]);
+    if (i > 0) checkOrder(paths[i], part, paths[i - 1], before);
+    before = part;
+    for (; reader.next(record); is_empty = false) keep(watch.add(record));
+    logged.is_cut_off = reader.cutOff();
+  }
+  if (is_empty) refuseEmptyLog(paths.back());
   keep(watch.present());
   std::ranges::stable_sort(logged.contacts, {}, &ContactFigures::start_s);
   return logged;

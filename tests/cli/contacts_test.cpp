@@ -14,6 +14,7 @@
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/cli/commands.h"
+#include "tactus/record/run_log.h"
 #include "tactus/run/simulation.h"
 #include "tactus/scene/json.h"
 
@@ -23,7 +24,6 @@ namespace {
 /// The log of a simulated scene, and what is known of its contacts otherwise.
 struct LoggedRun {
   explicit LoggedRun(const std::string& name) : scene(test::shippedScene(name)) {
-    std::vector<CycleRecord> records;
     figures =
         simulate(scene, [&](const CycleRecord& record) { records.push_back(record); }).figures;
     log.setContent(test::writeLog(describeLog(scene), records));
@@ -36,6 +36,7 @@ struct LoggedRun {
   }
 
   Scene scene;
+  std::vector<CycleRecord> records;
   RunFigures figures;
   test::TemporaryFile log{".ulg"};
 };
@@ -72,6 +73,17 @@ TEST(Contacts, TellHowStiffTheyWere) {
   }
 }
 
+std::vector<Json> followedContacts(std::vector<std::string> arguments) {
+  std::string output;
+  EXPECT_EQ(test::runCommand(addContactsCommand, std::move(arguments), output), 0);
+  std::istringstream lines(output);
+  std::vector<Json> followed;
+  for (std::string line; std::getline(lines, line);) followed.push_back(Json::parse(line));
+  std::ranges::sort(followed, {},
+                    [](const Json& contact) { return contact.at("start_s").get<double>(); });
+  return followed;
+}
+
 /// A run that has ended, by its summary.
 TEST(Contacts, FollowedAreTheSame) {
   for (const char* name : {"whole_arm/crops9_skin_two_links", "scenario2_tactus"}) {
@@ -79,18 +91,29 @@ TEST(Contacts, FollowedAreTheSame) {
     const test::RunFolder folder;
     std::filesystem::copy_file(run.log.path(), folder.path() + "/run.ulg");
     std::ofstream(folder.path() + "/summary.json") << "{}";
-    std::string output;
-    ASSERT_EQ(
-        test::runCommand(addContactsCommand,
-                         {"contacts", folder.path() + "/run.ulg", "--json", "--follow"}, output),
-        0);
-    std::istringstream lines(output);
-    std::vector<Json> followed;
-    for (std::string line; std::getline(lines, line);) followed.push_back(Json::parse(line));
-    std::ranges::sort(followed, {},
-                      [](const Json& contact) { return contact.at("start_s").get<double>(); });
-    EXPECT_EQ(Json(followed), run.contacts());
+    EXPECT_EQ(
+        Json(followedContacts({"contacts", folder.path() + "/run.ulg", "--json", "--follow"})),
+        run.contacts());
   }
+}
+
+/// The daemon's log has been cut into files, some of them in the middle of a contact.
+TEST(Contacts, OfTheDaemonThatRunsAreThoseOfAllItsFiles) {
+  const LoggedRun run("whole_arm/crops9_skin_two_links");
+  const test::RunFolder folder;
+  Scene scene = run.scene;
+  scene.log.max_bytes = static_cast<double>(run.log.content().size()) / 5.0 + 3e5;
+  scene.log.keep = 20;
+  RunLog log(scene, folder.path());
+  for (const CycleRecord& record : run.records) log.write(record);
+  log.close();
+  ASSERT_GE(log.state().files, 3) << log.state().stop_reason;
+  std::ofstream(folder.path() + "/status.json") << Json({{"log", {{"folder", folder.path()}}}});
+  std::ofstream(folder.path() + "/summary.json") << "{}";
+  std::string output;
+  ASSERT_EQ(test::runCommand(addContactsCommand, {"contacts", "--json"}, output), 0);
+  EXPECT_EQ(Json::parse(output), run.contacts());
+  EXPECT_EQ(Json(followedContacts({"contacts", "--json", "--follow"})), run.contacts());
 }
 
 TEST(Contacts, OfARunWithoutAny) {

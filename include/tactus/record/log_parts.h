@@ -23,6 +23,13 @@ LogPart logPart(const LogDescription& description, const std::string& path);
 bool isOfRun(const LogDescription& description, const std::string& path,
              std::optional<std::string>& run);
 
+/// The files that are there of a run that writes `newest`, a run.ulg: the oldest first.
+std::vector<std::string> logsOfRun(const std::string& newest);
+
+/// Throws InputError unless a part is a later one of the same run as the one before it.
+void checkOrder(const std::string& path, const LogPart& part, const std::string& path_before,
+                const LogPart& before);
+
 /// Reads logs to their ends, so that damaged ones, and such as are not the parts of one run in
 /// their order, are refused before anything else happens. Throws InputError, also if no log has a
 /// cycle.

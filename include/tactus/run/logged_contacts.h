@@ -9,15 +9,15 @@
 
 namespace tactus {
 
-/// The contacts that a log tells of.
+/// The contacts that logs tell of.
 struct LoggedContacts {
   Scene scene;
   std::vector<ContactFigures> contacts;  ///< in the order of their start
-  bool is_cut_off = false;
+  bool is_cut_off = false;               ///< the newest log
 };
 
-/// Throws InputError, also of a log without a cycle.
-LoggedContacts readContacts(const std::string& path);
+/// Of the logs of one run, the oldest first. Throws InputError, also of logs without a cycle.
+LoggedContacts readContacts(const std::vector<std::string>& paths);
 
 /// What `tactus contacts --json` prints.
 Json contactsJson(const LoggedContacts& logged);
