@@ -43,9 +43,16 @@ int runScene(const DaemonArguments& options) {
   return fault == Fault::kNone ? kExitDone : kExitFault;
 }
 
-/// Returns when the gains of the scene file are there, or wait for a moment without contact.
+/// Returns when the gains of the scene file are there, or wait for a moment without contact. With
+/// T above some seconds their ramp takes longer than systemd waits, TimeoutStartSec= of the
+/// service, and what was accepted would look as if it had failed.
 int reload() {
-  const Json answer = ControlClient(controlPath()).change({{"do", "reload"}}, false);
+  constexpr double kPatience_s = 15.0;
+  const Json answer = ControlClient(controlPath()).change({{"do", "reload"}}, false, kPatience_s);
+  const Json& state = answer.at("state");
+  if (state == "ramping" || state == "going_back")
+    std::fputs("tactusd: the gains are still on their way, `tactus diff` and the journal tell\n",
+               stderr);
   return answer.at("trouble").get<std::string>().empty() ? kExitDone : kExitFault;
 }
 

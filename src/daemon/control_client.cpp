@@ -63,7 +63,12 @@ Json ControlClient::ask(const Json& request) const {
   throw InputError(json.value("error", "refused"));
 }
 
-Json ControlClient::change(const Json& request, bool until_kept) const {
+Json ControlClient::change(const Json& request, bool until_kept, double at_most_s) const {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  const auto hasTime = [&] {
+    return std::chrono::duration<double>(Clock::now() - begin).count() < at_most_s;
+  };
   Json answer = ask(request);
   const Json number = answer.at("number");
   const Json changes = answer.at("changes");
@@ -71,7 +76,7 @@ Json ControlClient::change(const Json& request, bool until_kept) const {
   do {
     std::this_thread::sleep_for(kAskAgain);  // the loop takes an order within some cycles
     answer = ask({{"do", "show"}});
-  } while (answer.at("number") == number && isOnItsWay(answer, until_kept));
+  } while (answer.at("number") == number && isOnItsWay(answer, until_kept) && hasTime());
   answer["changes"] = changes;
   return answer;
 }

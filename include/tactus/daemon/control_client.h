@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "tactus/control/gains.h"
 #include "tactus/io/packet_socket.h"
 #include "tactus/scene/json.h"
 
@@ -18,8 +19,9 @@ class ControlClient {
   Json ask(const Json& request) const;
 
   /// The last answer to a change, with its `changes`: when the gains are there, or wait for a
-  /// moment without contact; with `until_kept` when they are kept, or have gone back.
-  Json change(const Json& request, bool until_kept) const;
+  /// moment without contact; with `until_kept` when they are kept, or have gone back; after
+  /// `at_most_s` in any case, with the `state` of then.
+  Json change(const Json& request, bool until_kept, double at_most_s = kNoLimit) const;
 
  private:
   PacketSocket socket_;

@@ -1,0 +1,56 @@
+#include "tactus/daemon/control_client.h"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "support/written_scene.h"
+#include "tactus/daemon/control_requests.h"
+#include "tactus/io/packet_socket.h"
+#include "tactus/scene/scene_loader.h"
+
+namespace tactus {
+namespace {
+
+/// Answers one client until it has gone; what it orders is on its way for ever.
+void answerAll(const PacketSocket& listening, ControlRequests& requests, LoopLink& link) {
+  const auto await = [](int fd) {
+    pollfd waiting{fd, POLLIN, 0};
+    return ::poll(&waiting, 1, 10000) > 0;
+  };
+  if (!await(listening.fd())) return;
+  const PacketSocket client = listening.accept();
+  std::array<char, 4096> room{};
+  while (await(client.fd())) {
+    const long size = client.receive(room);
+    if (size <= 0) return;
+    link.gain_reports.put({.number = 1, .state = GainState::kRamping});
+    client.send(requests.answer({room.data(), static_cast<std::size_t>(size)}));
+  }
+}
+
+/// A ramp of 5 T may be longer than systemd waits for a reload.
+TEST(ControlClient, WaitsNoLongerForARampThanItIsTold) {
+  test::WrittenScene file(0.7);
+  const auto link = std::make_unique<LoopLink>();
+  ControlRequests requests(loadScene(file.path(), {}), *link);
+  const std::string path = file.folder().path() + "/asked";
+  const PacketSocket listening = PacketSocket::listenAt(path, 1);
+  file.write(0.8);
+  std::thread daemon([&] { answerAll(listening, requests, *link); });
+  {
+    const ControlClient client(path);
+    const Json answer = client.change({{"do", "reload"}}, false, 0.3);
+    EXPECT_EQ(answer.at("state"), "ramping");
+    EXPECT_EQ(answer.at("changes").at("controller.damping").at("to"), 0.8);
+    EXPECT_EQ(answer.at("trouble"), "");
+  }
+  daemon.join();
+}
+
+}  // namespace
+}  // namespace tactus
