@@ -102,6 +102,24 @@ class Documents(Scratch):
     def test_readme_is_short(self):
         self.assertLessEqual(len(DOCUMENTS[0].read_text().splitlines()), 150)
 
+    def test_keys_of_the_pages_are_there(self):
+        """What looks like a key, by its unit or by a section before it, and is no field of log or request."""
+        paths = {re.sub(r"\[\]", "", row["key"]) for row in json.loads(self.tactus("keys", "--json"))}
+        sections = {path.split(".")[0] for path in paths}
+        fields = set(re.findall(r"\w+", (ROOT / "docs/log.md").read_text()))
+        unit = r"_(m|s|N|Nm|kg|hz|rad|bytes|counts|per_\w+)$"
+        looked_at = 0
+        for name in ("robot", "tuning", "simulation", "gate", "service"):
+            for text in re.findall(r"`([^`\n]+)`", docs_check.prose((ROOT / f"docs/{name}.md").read_text())):
+                key = re.sub(r"\[\w*\]", "", re.split(r"[:=]", text)[0]).strip().removeprefix("robot.")
+                is_path = re.fullmatch(r"\w+(\.\w+)+", key) and key.split(".")[0] in sections
+                if not is_path and not (re.fullmatch(r"[\w.]+", key) and re.search(unit, key)):
+                    continue
+                looked_at += 1
+                self.assertTrue(key in fields or any(f".{path}".endswith(f".{key}") for path in paths),
+                                f"docs/{name}.md: `{text}` is no key")
+        self.assertGreater(looked_at, 40)
+
     def test_log_page_has_every_field(self):
         page = (ROOT / "docs/log.md").read_text()
         self.tactus("simulate", "config/scenes/scenario2_estimated.yaml", "-o", "runs",
