@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "tactus/control/nearest_body.h"
 #include "tactus/scene/capsule_loader.h"
+#include "tactus/scene/drawn_configurations.h"
 
 namespace tactus {
 namespace {
@@ -146,37 +146,18 @@ void addKeepOut(ClearanceLoading& l) {
   }
 }
 
-/// Of Halton's sequence, over all that the limits leave, of a rail, too; half a turn or a metre to
-/// each side where there are none.
-JointVector drawnConfiguration(const UrdfChain& chain, int number) {
-  constexpr int kPrimes[kMaxJoints] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53};
-  JointVector q(static_cast<Eigen::Index>(chain.joints.size()));
-  for (int i = 0; i < q.size(); ++i) {
-    double share = 0.0;
-    double digit = 1.0;
-    for (int rest = number; rest > 0; rest /= kPrimes[i]) {
-      digit /= kPrimes[i];
-      share += digit * (rest % kPrimes[i]);
-    }
-    const double endless = chain.joints[i].type == JointType::kPrismatic ? 1.0 : std::numbers::pi;
-    const double lower = chain.limits.lower[i], upper = chain.limits.upper[i];
-    const bool is_limited = std::isfinite(lower) && std::isfinite(upper);
-    q[i] = is_limited ? lower + share * (upper - lower) : (2.0 * share - 1.0) * endless;
-  }
-  return q;
-}
-
 struct DistanceRange {
   double from_m = kNoLimit, to_m = -kNoLimit;
 };
 
 std::vector<DistanceRange> rangesOf(const ClearanceLoading& l, const BodyDistances& distances) {
-  constexpr int kDrawn = 200;
   const SerialChain chain(l.robot.chain.joints, l.robot.chain.tip);
   std::vector<DistanceRange> ranges(distances.size());
   ChainPose pose;
-  for (int number = 0; number <= kDrawn; ++number) {
-    chain.computePose(number == 0 ? l.q_start : drawnConfiguration(l.robot.chain, number), pose);
+  for (int number = 0; number <= kDrawnConfigurations; ++number) {
+    const JointVector q =
+        number == 0 ? l.q_start : drawnConfiguration(chain, l.robot.chain.limits, number);
+    chain.computePose(q, pose);
     for (int i = 0; i < distances.size(); ++i) {
       const double distance_m = distances.distance_m(pose, i);
       ranges[i].from_m = std::min(ranges[i].from_m, distance_m);

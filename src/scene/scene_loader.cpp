@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tactus/scene/avoidance_check.h"
 #include "tactus/scene/capsule_loader.h"
 #include "tactus/scene/clearance_loader.h"
 #include "tactus/scene/cover_keys.h"
@@ -234,6 +235,7 @@ Scene loadNamed(const std::string& path, const std::vector<Override>& overrides,
   if (clearance) {
     scene.controller.clearance = std::move(clearance->config);
     scene.clearance = std::move(clearance->names);
+    checkAvoidance(root, scene.controller, scene.period_s);
   }
   return scene;
 }

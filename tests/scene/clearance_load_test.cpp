@@ -93,6 +93,25 @@ TEST(ClearanceLoad, LooksAlongAWholeRail) {
             (Names{"base and tool", "base and cover", "link1 and tool"}));
 }
 
+/// The lift's lever is 1, as 11.1/s of the gain with 0.3 m; what is said to do does.
+TEST(ClearanceLoad, RefusesToAvoidFasterThanACycleCanFollow) {
+  const auto errorWith = [](double gain_per_s) {
+    return test::loadError(
+        clearFiles("  avoid: {distance_m: 0.3, gain_per_s: " + std::to_string(gain_per_s) + "}\n")
+            .sources());
+  };
+  EXPECT_EQ(errorWith(2.0), "");
+  const std::string error = errorWith(900.0);
+  const std::size_t at = error.find("expected at most ");
+  ASSERT_NE(at, std::string::npos) << error;
+  EXPECT_NE(error.find("clearance.avoid.gain_per_s: 900 is too steep"), std::string::npos) << error;
+  const double most_per_s = std::stod(error.substr(at + 17));
+  EXPECT_GT(most_per_s, 10.0);
+  EXPECT_LT(most_per_s, 400.0);
+  EXPECT_EQ(errorWith(most_per_s), "");
+  EXPECT_NE(errorWith(1.01 * most_per_s), "");
+}
+
 TEST(ClearanceLoad, EndsAsOneLine) {
   const auto expectError = [](const std::string& section, const std::string& part) {
     const std::string error = test::loadError(clearFiles(section).sources());

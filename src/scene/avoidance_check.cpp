@@ -1,0 +1,60 @@
+#include "tactus/scene/avoidance_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tactus/control/clearance_cost.h"
+#include "tactus/scene/drawn_configurations.h"
+
+namespace tactus {
+namespace {
+
+/// How fast what one pair lacks is made good with a gain of 1/s, in 1/s: what a cost of 1 m does to
+/// the distance that it is of.
+double fastestOfPairs(const ControllerConfig& controller, const BodyDistances& distances,
+                      const JointVector& q) {
+  const ScaledVector inv_sqrt_weights =
+      scaled(controller.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones());
+  const double reach_m = controller.clearance->avoid->distance_m;
+  ChainPose pose;
+  controller.chain.computePose(q, pose);
+  NearBodies near;
+  distances.findNear(pose, reach_m, near);
+  double fastest = 0.0;
+  for (int i = 0; i < near.size; ++i) {
+    NearBodies one;
+    one.size = 1;
+    one.body[0] = near.body[i];
+    const double lacking_m = reach_m - near.body[i].distance_m;
+    if (!(lacking_m > 0.0)) continue;
+    const ScaledVector cost =
+        clearanceCost({reach_m, 1.0}, distances, pose, one, inv_sqrt_weights) / lacking_m;
+    const ScaledVector gradient = distances.gradient(pose, near.body[i]);
+    fastest = std::max(fastest, -dot(gradient, ScaledVector(cost.cwiseProduct(inv_sqrt_weights))));
+  }
+  return fastest;
+}
+
+}  // namespace
+
+void checkAvoidance(const YamlNode& root, const ControllerConfig& controller, double period_s) {
+  if (!controller.clearance || !controller.clearance->avoid) return;
+  const double gain_per_s = controller.clearance->avoid->gain_per_s;
+  const BodyDistances distances(controller.chain, *controller.clearance);
+  double fastest = fastestOfPairs(controller, distances, controller.q_start);
+  for (int number = 1; number <= kDrawnConfigurations; ++number) {
+    const JointVector q = drawnConfiguration(controller.chain, controller.limits, number);
+    fastest = std::max(fastest, fastestOfPairs(controller, distances, q));
+  }
+  if (gain_per_s * fastest * period_s <= 1.0) return;
+  constexpr double kInside = 0.999;  // what is printed shall be accepted
+  const std::string key = "clearance.avoid.gain_per_s";
+  failAt(locate(root, key), key,
+         fmt::format("{} is too steep: with this arm's levers the null space would overshoot in a "
+                     "cycle",
+                     gain_per_s),
+         fmt::format("expected at most {:.4g} with this period_s", kInside / (fastest * period_s)));
+}
+
+}  // namespace tactus
