@@ -37,8 +37,9 @@ const std::array<PowerTransition, 17>& powerTransitions() noexcept {
   using enum DriveState;
   using namespace control_word;
   // Disabling goes by 5, which slows down, not by 8 or 9, which may let the axis coast. 12 waits
-  // for the end of the quick stop (option code 2): disabling the voltage would cut it short. 15 is
-  // no step to any goal: clearing a fault is a decision.
+  // for the end of the quick stop (option code 2): disabling the voltage would cut it short, which
+  // is for who knows that the axis rests. 15 is no step to any goal: clearing a fault is a
+  // decision.
   static constexpr std::array<PowerTransition, 17> kTable = {{
       {0, {}, kNotReady, true, kDisableVoltage, false, false, false},
       {1, kNotReady, kSwitchOnDisabled, true, kDisableVoltage, true, true, false},

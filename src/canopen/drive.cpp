@@ -36,6 +36,7 @@ Drive::Drive(const DriveConfig& config, const CanopenConfig& canopen, double per
       answer_timeout_cycles_(cyclesLasting(canopen.sdo_timeout_s, period_s)),
       setup_(config, canopen, period_s),
       velocity_counts_(config.sign * config.counts_per_unit),
+      quick_stopped_(period_s),
       stop_watch_(cyclesLasting(canopen.stop_deadline_s, period_s), period_s) {}
 
 void Drive::receive(const CanFrame& frame) noexcept {
@@ -186,6 +187,8 @@ void Drive::takeFeedback() noexcept {
   report_.has_position = true;
   report_.position =
       feedback_->position / (config_.sign * config_.counts_per_unit) + config_.offset;
+  if (state_ != DriveState::kQuickStopActive) return quick_stopped_.restart();
+  quick_stopped_.update(report_.position);
 }
 
 void Drive::watchSilence() noexcept {
@@ -224,6 +227,9 @@ std::uint16_t Drive::controlWord(DriveGoal goal) const noexcept {
   const bool is_resetting = goal == DriveGoal::kEnabled && has_old_fault_ && !has_fault;
   if (is_resetting && state_ == DriveState::kFault) return control_word::kFaultReset;
   if (!state_) return control_word::kQuickStop;
+  // Nobody has told it to stop: it stays there by itself, and only this leads on.
+  const bool is_to_leave = goal == DriveGoal::kEnabled && !has_fault && quick_stopped_.isStill();
+  if (is_to_leave) return control_word::kDisableVoltage;
   return controlWordTowards(powerGoal(goal, has_fault), *state_);
 }
 

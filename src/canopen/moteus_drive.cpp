@@ -16,10 +16,6 @@ using CommandKind = MoteusCommand::Kind;
 /// Slower is rest, turns of the output shaft a second times 2 pi: rad/s, or m/s of a spindle.
 constexpr double kRestingVelocity = 0.01;
 constexpr int kRestingCycles = 5;
-/// A velocity that is measured by the encoder's noise is never as slow: a joint that has stayed
-/// within this way, m or rad, for as long rests as well.
-constexpr double kRestingWay = 2e-3;
-constexpr double kRestingTime_s = 0.2;
 /// A command is seen in the reply of the next cycle, and one may be late.
 constexpr int kSettledAfter_cycles = 3;
 constexpr int kMostReplies = 2;
@@ -51,7 +47,7 @@ MoteusDrive::MoteusDrive(const DriveConfig& config, const CanopenConfig& canopen
     : config_(config),
       watchdog_s_(static_cast<float>(canopen.heartbeat_timeout_s)),
       boot_timeout_cycles_(cyclesLasting(canopen.boot_timeout_s, period_s)),
-      resting_time_cycles_(cyclesLasting(kRestingTime_s, period_s)),
+      still_watch_(period_s),
       stop_watch_(cyclesLasting(canopen.stop_deadline_s, period_s), period_s) {
   if (!(watchdog_s_ > 0.0F))
     throw std::invalid_argument("heartbeat_timeout_s: the drive's watchdog needs a time above 0");
@@ -100,7 +96,8 @@ void MoteusDrive::startSetup() noexcept {
   report_ = {};
   last_.reset();
   phase_ = Phase::kSetup;
-  setup_cycles_ = silent_cycles_ = resting_cycles_ = still_cycles_ = enabled_cycles_ = 0;
+  setup_cycles_ = silent_cycles_ = resting_cycles_ = enabled_cycles_ = 0;
+  still_watch_.restart();
 }
 
 void MoteusDrive::judgeSetup() noexcept {
@@ -167,9 +164,7 @@ void MoteusDrive::takePosition(const MoteusReply& reply) noexcept {
   if (!std::isfinite(reply.position) || !std::isfinite(reply.velocity)) return;
   report_.position = reply.position / scale + config_.offset;
   report_.has_position = true;
-  const bool is_still = std::abs(report_.position - still_position_) <= kRestingWay;
-  if (!is_still) still_position_ = report_.position;
-  still_cycles_ = is_still ? std::min(still_cycles_ + 1, resting_time_cycles_) : 0;
+  still_watch_.update(report_.position);
 }
 
 void MoteusDrive::judgeOperation(double position) noexcept {
@@ -200,7 +195,7 @@ MoteusCommand MoteusDrive::command(DriveGoal goal, double velocity, double posit
   MoteusCommand command{.watchdog_s = watchdog_s_, .asks_for_map = phase_ == Phase::kSetup};
   const bool is_to_run =
       goal == DriveGoal::kEnabled && phase_ == Phase::kConfigured && report_.fault == Fault::kNone;
-  if (is_to_run) still_cycles_ = 0;  // it may have begun to move just now
+  if (is_to_run) still_watch_.restart();  // it may have begun to move just now
   command.kind = is_to_run ? CommandKind::kVelocity : stopping();
   if (isRunning(goal)) command.velocity = turnsPerSecond(velocity, position);
   return command;
@@ -212,8 +207,8 @@ MoteusCommand::Kind MoteusDrive::stopping() const noexcept {
   if (report_.state == DriveState::kFault)
     return phase_ == Phase::kSetup ? CommandKind::kStop : CommandKind::kQuery;
   const bool has_torque = report_.state != DriveState::kSwitchOnDisabled;
-  const bool is_resting =
-      resting_cycles_ >= kRestingCycles || still_cycles_ >= resting_time_cycles_;
+  // A velocity that is measured by the encoder's noise is never as slow.
+  const bool is_resting = resting_cycles_ >= kRestingCycles || still_watch_.isStill();
   return has_torque && !is_resting ? CommandKind::kZeroVelocity : CommandKind::kStop;
 }
 

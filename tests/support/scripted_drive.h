@@ -40,6 +40,7 @@ class ScriptedDrive {
   bool ignores_commands = false;  ///< of RPDOs: it goes on with its last velocity
   bool ignores_nmt = false;
   int quick_stop_cycles = 5;
+  bool stays_in_quick_stop = false;  ///< quick stop option codes 5 to 8
   int resets_refused = 0;
   std::int32_t position = 0;  ///< counts
   double period_s = 0.001;
@@ -175,7 +176,7 @@ class ScriptedDrive {
     }
     if (power == kNotReady) power = kDisabled;
     if (power == kReaction && --reaction_cycles_ <= 0) power = kFault;
-    if (power == kQuickStop && --stop_cycles_ <= 0) power = kDisabled;
+    if (power == kQuickStop && !stays_in_quick_stop && --stop_cycles_ <= 0) power = kDisabled;
   }
 
   /// Commands of CiA 402-2 by their bits.

@@ -8,6 +8,7 @@
 #include "tactus/canopen/drive_setup.h"
 #include "tactus/canopen/hardware_config.h"
 #include "tactus/canopen/pdo.h"
+#include "tactus/canopen/still_watch.h"
 #include "tactus/canopen/stop_watch.h"
 #include "tactus/canopen/velocity_counts.h"
 
@@ -20,7 +21,8 @@ namespace tactus {
 ///
 /// A drive with a fault gets no velocity but 0, and a quick stop whatever is asked for. One that is
 /// in fault when it is configured is reset once, on its way to kEnabled; a fault that comes later
-/// is never cleared but by a restart.
+/// is never cleared but by a restart. One that stays in quick stop active, as by option codes 5 to
+/// 8, is taken out of it through switch on disabled, once it rests and is asked for kEnabled.
 ///
 /// A drive may lie, or not hear. One that says that it boots while it is configured gets NMT reset
 /// node, and is not off before it has booted once more: it may have run on. One that is not seen
@@ -106,6 +108,7 @@ class Drive {
   int answer_timeout_cycles_;
   DriveSetup setup_;
   VelocityCounts velocity_counts_;
+  StillWatch quick_stopped_;  ///< at rest in quick stop active
   StopWatch stop_watch_;
   DriveGoal goal_ = DriveGoal::kSilent;  ///< of the last update()
   DriveReport report_;

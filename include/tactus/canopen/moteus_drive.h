@@ -7,6 +7,7 @@
 #include "tactus/canopen/drive_report.h"
 #include "tactus/canopen/hardware_config.h"
 #include "tactus/canopen/moteus_frames.h"
+#include "tactus/canopen/still_watch.h"
 #include "tactus/canopen/stop_watch.h"
 
 namespace tactus {
@@ -60,7 +61,7 @@ class MoteusDrive {
   DriveConfig config_;
   float watchdog_s_;
   int boot_timeout_cycles_;
-  int resting_time_cycles_;
+  StillWatch still_watch_;
   StopWatch stop_watch_;
   DriveReport report_;
   DriveGoal goal_ = DriveGoal::kSilent;  ///< of the last update()
@@ -70,10 +71,8 @@ class MoteusDrive {
   bool is_asked_ = false;             ///< the last update() sent a command
   int setup_cycles_ = 0;
   int silent_cycles_ = 0;
-  int resting_cycles_ = 0;       ///< in a row
-  double still_position_ = 0.0;  ///< m or rad: near which the joint has stayed
-  int still_cycles_ = 0;         ///< for so long
-  int enabled_cycles_ = 0;       ///< in a row, counted up to where operation is settled
+  int resting_cycles_ = 0;  ///< in a row
+  int enabled_cycles_ = 0;  ///< in a row, counted up to where operation is settled
   int periods_heard_ = 0;
   std::uint32_t malformed_frames_ = 0;
 };
