@@ -24,6 +24,10 @@ bool mayHold(const DriveReport& report) noexcept {
   return !report.has_state || holds(report.state);
 }
 
+bool isPowered(const DriveReport& report) noexcept {
+  return isReachable(report) && (mayHold(report) || report.state == DriveState::kSwitchedOn);
+}
+
 const DriveReport& reportOf(const AnyDrive& drive) noexcept {
   return visitKind([](const auto& it) -> const DriveReport& { return it.report(); }, drive);
 }
@@ -126,11 +130,8 @@ DrivesReport CanRobot::drives() const noexcept {
     const DriveReport& report = reportOf(drives_[i]);
     all.are_configured = all.are_configured && report.is_configured;
     all.are_enabled = all.are_enabled && report.state == DriveState::kOperationEnabled;
-    const bool may_hold = isReachable(report) && mayHold(report);
-    const bool has_power =
-        may_hold || (isReachable(report) && report.state == DriveState::kSwitchedOn);
-    all.is_any_holding = all.is_any_holding || may_hold;
-    all.are_disabled = all.are_disabled && !has_power;
+    all.is_any_holding = all.is_any_holding || (isReachable(report) && mayHold(report));
+    all.are_disabled = all.are_disabled && !isPowered(report);
     all.is_any_moving_on = all.is_any_moving_on || report.is_moving_on;
     if (report.fault == Fault::kNone || all.fault != Fault::kNone) continue;
     all.fault = report.fault;
@@ -143,6 +144,8 @@ bool CanRobot::isHolding(int joint) const noexcept {
   const DriveReport& report = drive(joint);
   return isReachable(report) && report.has_state && holds(report.state) && !report.is_cut_off;
 }
+
+bool CanRobot::hasPower(int joint) const noexcept { return isPowered(drive(joint)); }
 
 bool CanRobot::hasPositions() const noexcept {
   return std::all_of(drives_.begin(), drives_.end(),

@@ -94,7 +94,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   const Fault fault_before = mode_.fault;
   updateMode(mode_config_, modeInput(input, judge(input)), mode_);
   const bool is_new_fault = mode_.fault != fault_before;
-  if (is_new_fault && mode_.fault != judged_.fault) judged_ = {};  // a time limit's
+  if (is_new_fault && mode_.fault != judged_.fault) judgeTimeLimit(before);
   if (is_new_fault) noteCulprit();
   report_.mode = mode_.mode;
   report_.fault = mode_.fault;

@@ -96,6 +96,19 @@ int ControlCycle::firstNotFollowing() const noexcept {
   return -1;
 }
 
+int ControlCycle::firstWithPower() const noexcept {
+  for (int joint = 0; joint < places_.commanded().size(); ++joint)
+    if (robot_.hasPower(joint)) return joint;
+  return -1;
+}
+
+/// Of the mode that has ended: whom it waited for.
+void ControlCycle::judgeTimeLimit(Mode mode) noexcept {
+  judged_ = {};
+  if (mode == Mode::kEnabling) judged_.joint = firstNotFollowing();
+  if (mode == Mode::kStopping) judged_.joint = firstWithPower();
+}
+
 Fault ControlCycle::judgeTactile() noexcept {
   for (int module = 0; module < modules(); ++module) {
     const Fault fault = judgeModule(module);

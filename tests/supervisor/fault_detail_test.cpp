@@ -193,14 +193,15 @@ TEST(FaultDetails, OfACommandThatIsNoNumber) {
   EXPECT_NEAR(report.q_measured, report.q_expected, 0.05);
 }
 
-/// Drives that never hear a control word: time is over, and no drive has said anything wrong.
-TEST(FaultDetails, OfATimeLimitSpeakOfNoDrive) {
+/// Drives that never hear a control word: time is over, no drive has said anything wrong, and the
+/// first that is waited for is named.
+TEST(FaultDetails, OfATimeLimitSpeakOfTheDriveThatIsWaitedFor) {
   VirtualRobotCell cell(test::shippedScene("scenario1_multi_space"));
   cell.on_send = [](int, CanFrame& frame) { return frame.id < 0x200 || frame.id >= 0x280; };
   for (int i = 0; i < 20000 && cell.cycle.report().fault == Fault::kNone; ++i) cell.step();
   const ModeReport report = cell.cycle.report();
   EXPECT_EQ(report.fault, Fault::kDriveStateLost);
-  EXPECT_EQ(report.joint, -1);
+  EXPECT_EQ(report.joint, 0);
   EXPECT_EQ(report.bus, -1);
   EXPECT_EQ(report.detail.joint, -1);
 }

@@ -41,6 +41,36 @@ TEST(SwitchingOn, ADriveThatLetsGoAtTheFirstMomentStopsTheArm) {
   }
 }
 
+/// What the daemon sends to joint 4 has this control word instead, where it is another one.
+void holdControlWord(VirtualRobotCell& cell, std::uint8_t instead_of, std::uint8_t word) {
+  cell.on_send = [=](int bus, CanFrame& frame) {
+    if (bus == 1 && frame.id == 0x202 && frame.data[0] == instead_of) frame.data[0] = word;
+    return true;
+  };
+}
+
+TEST(SwitchingOn, ADriveThatDoesNotInTimeIsNamed) {
+  VirtualRobotCell cell(sceneWithEnable());
+  holdControlWord(cell, 0x0F, 0x07);
+  ASSERT_TRUE(cell.runUntil(Mode::kFault, 10'000));
+  const ModeReport& report = cell.cycle.report();
+  EXPECT_EQ(report.fault, Fault::kDriveStateLost);
+  EXPECT_EQ(report.joint, 4);
+  EXPECT_EQ(report.drive.state, DriveState::kSwitchedOn);
+}
+
+TEST(SwitchingOn, ADriveThatDoesNotSwitchOffInTimeIsNamed) {
+  VirtualRobotCell cell(sceneWithEnable());
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  holdControlWord(cell, 0x02, 0x07);
+  cell.input.stop_requested = true;
+  ASSERT_TRUE(cell.runUntil(Mode::kFault, 20'000));
+  const ModeReport& report = cell.cycle.report();
+  EXPECT_EQ(report.fault, Fault::kDriveStateLost);
+  EXPECT_EQ(report.joint, 4);
+  EXPECT_EQ(report.drive.state, DriveState::kSwitchedOn);
+}
+
 /// Whoever takes the enable line away while drives switch on does not want them to go on with it.
 TEST(SwitchingOn, NoDriveGetsPowerAfterAnEnablingCutShort) {
   for (const int after : {0, 1, 2, 3, 4}) {

@@ -56,6 +56,8 @@ class CanRobot final : public Robot {
   const DriveReport& drive(int joint) const noexcept;
   /// By what this joint's own drive says: known, in reach, and holding it or slowing it down.
   bool isHolding(int joint) const noexcept;
+  /// What keeps this joint from being off: it can be reached, and is not seen without power.
+  bool hasPower(int joint) const noexcept;
   bool hasPositions() const noexcept;
   /// Of all drives: frames of wrong size.
   long long malformedFrames() const noexcept;
