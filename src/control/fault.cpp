@@ -35,8 +35,9 @@ struct FaultRows {
        "frames of three cycles not confirmed, no error frame; at first, an interface just taken "
        "away",
        "4 cycles", kQuickStop, kAsStopped},
-      {kBusUnacknowledged, "bus_unacknowledged", "error-passive without acknowledgement", "1 cycle",
-       kQuickStop, kAsStopped},
+      {kBusUnacknowledged, "bus_unacknowledged",
+       "error-passive without acknowledgement; at the start, no frame confirmed or heard",
+       "1 cycle", kQuickStop, kAsStopped},
       {kBusOff, "bus_off", "the controller left the bus", "1 cycle", kQuickStop, kAsStopped},
       {kBusDown, "bus_down", "the interface is down or gone", "1 cycle", kQuickStop, kAsStopped},
       {kBusFlooded, "bus_flooded", "more frames in a cycle than the bus can carry", "1 cycle",

@@ -53,7 +53,7 @@ void BusMonitor::onErrorFrame(const CanFrame& frame) noexcept {
 void BusMonitor::onConfirmed(int frames) noexcept {
   if (frames <= 0) return;
   unconfirmed_ = std::max(0, unconfirmed_ - frames);
-  was_confirmed_ = true;
+  was_confirmed_ = is_known_alive_ = true;
   has_answered_ = true;
   lacks_acknowledge_ = false;
 }
@@ -75,10 +75,14 @@ void BusMonitor::onReceiveError(int error_number) noexcept {
   unconfirmed_ = 0;  // going down empties driver and queue
 }
 
-void BusMonitor::onForeignFrame() noexcept { ++counters_.foreign; }
+void BusMonitor::onForeignFrame() noexcept {
+  ++counters_.foreign;
+  is_known_alive_ = true;
+}
 
 void BusMonitor::onReceived(int frames, bool batch_was_full) noexcept {
   counters_.received += static_cast<std::uint64_t>(frames);
+  is_known_alive_ = is_known_alive_ || frames > 0;
   full_batches_ = batch_was_full ? full_batches_ + 1 : 0;
 }
 
@@ -114,7 +118,10 @@ void BusMonitor::noteUnconfirmed() noexcept {
   stuck_cycles_ = is_stuck ? std::min(stuck_cycles_ + 1, kMaxUnconfirmedCycles + 1) : 0;
   if (isDead() || !is_stuck) return;
   if (is_passive_ && unconfirmed_ > 0) raise(Fault::kBusUnacknowledged);
-  if (stuck_cycles_ > kMaxUnconfirmedCycles) raise(Fault::kBusStalled);
+  if (stuck_cycles_ <= kMaxUnconfirmedCycles) return;
+  // A controller that is passive from before says so no more, and one of a slow bus says it later.
+  const bool is_alone = unconfirmed_ > 0 && !is_known_alive_;
+  raise(is_alone ? Fault::kBusUnacknowledged : Fault::kBusStalled);
 }
 
 void BusMonitor::noteFlood() noexcept {

@@ -217,8 +217,8 @@ void checkFd(const std::string& interface) {
 void checkUnconfirmed(const std::string& interface) {
   CanSocket bus(interface, kReceived, {});
   const OtherNode other(interface);
-  const int cycles = cyclesUntil(bus, Fault::kBusStalled, 20);
-  check(cycles == BusMonitor::kMaxUnconfirmedCycles + 2, "without echoes a bus is stalled");
+  const int cycles = cyclesUntil(bus, Fault::kBusUnacknowledged, 20);
+  check(cycles == BusMonitor::kMaxUnconfirmedCycles + 2, "without echoes a bus is unacknowledged");
   check(other.heard().size() == 2, "and got one cycle's frames only");
 }
 

@@ -104,6 +104,33 @@ TEST(BusMonitor, TakesABusForStalledThatConfirmsNothingForMoreThanThreeCycles) {
   EXPECT_EQ(monitor.fault(), Fault::kBusStalled);
 }
 
+/// A cable that is not there at the start: the controller may have become passive long before, and
+/// tells of no change.
+TEST(BusMonitor, TakesABusThatHasNeverGivenASignOfLifeForUnacknowledged) {
+  BusMonitor monitor;
+  deadCycles(monitor, BusMonitor::kMaxUnconfirmedCycles + 1);
+  EXPECT_EQ(monitor.fault(), Fault::kNone);
+  deadCycles(monitor, 1);
+  EXPECT_EQ(monitor.fault(), Fault::kBusUnacknowledged);
+  monitor.onConfirmed(4);
+  for (int i = 0; i <= BusMonitor::kCalmCycles; ++i) monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kNone) << "plugged in";
+  deadCycles(monitor, BusMonitor::kMaxUnconfirmedCycles + 2);
+  EXPECT_EQ(monitor.fault(), Fault::kBusStalled);
+}
+
+TEST(BusMonitor, TakesABusWhoseNodesAreHeardForStalled) {
+  for (const bool is_foreign : {false, true}) {
+    BusMonitor monitor;
+    if (is_foreign)
+      monitor.onForeignFrame();
+    else
+      monitor.onReceived(1, false);
+    deadCycles(monitor, BusMonitor::kMaxUnconfirmedCycles + 2);
+    EXPECT_EQ(monitor.fault(), Fault::kBusStalled);
+  }
+}
+
 TEST(BusMonitor, TakesABusForStalledWhoseKernelQueueStaysFull) {
   BusMonitor monitor;
   for (int i = 0; i <= BusMonitor::kMaxUnconfirmedCycles; ++i) {

@@ -30,7 +30,9 @@ struct BusCounters {
 /// - Re-arm: once all frames are confirmed and kCalmCycles cycles have passed without trouble, the
 ///   kernel is empty and the bus works. Frames that a bus which answers again never confirms were
 ///   lost; then it takes another probe.
-/// A passing stall of up to kMaxUnconfirmedCycles cycles holds frames back and does no more.
+/// A passing stall of up to kMaxUnconfirmedCycles cycles holds frames back and does no more. A
+/// longer one is kBusStalled; on a bus that has given no sign of life since the start it is
+/// kBusUnacknowledged: its cable or its power is missing.
 class BusMonitor {
  public:
   static constexpr int kMaxUnconfirmedCycles = 3;
@@ -82,6 +84,7 @@ class BusMonitor {
   bool lacks_acknowledge_ = false;  ///< since the last confirmation
   bool was_refused_ = false;        ///< this cycle
   bool was_confirmed_ = false;      ///< this cycle
+  bool is_known_alive_ = false;     ///< a frame was confirmed or heard since the start
   bool has_answered_ = false;       ///< a frame was confirmed since the last trouble
 };
 
