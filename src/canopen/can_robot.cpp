@@ -1,10 +1,10 @@
 #include "tactus/canopen/can_robot.h"
 
 #include <algorithm>
-#include <cmath>
 #include <variant>
 
 #include "tactus/canopen/canopen.h"
+#include "tactus/canopen/cycle_count.h"
 #include "tactus/canopen/visit_kind.h"
 
 namespace tactus {
@@ -42,8 +42,7 @@ CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
     : outboxes_(hardware.buses.size()),
       has_canopen_(hardware.buses.size(), false),
       heartbeat_(heartbeatFrame(hardware.canopen.master_node_id, NmtState::kOperational)),
-      cycles_a_heartbeat_(std::max(
-          1, static_cast<int>(std::lround(hardware.canopen.heartbeat_period_s / period_s)))),
+      cycles_a_heartbeat_(cyclesWithin(hardware.canopen.heartbeat_period_s, period_s)),
       q_commanded_(JointVector::Zero(static_cast<int>(hardware.drives.size()))) {
   drives_.reserve(hardware.drives.size());
   for (const DriveConfig& drive : hardware.drives) {
@@ -66,6 +65,7 @@ void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
 }
 
 void CanRobot::coast(int missed_cycles) noexcept {
+  cycles_to_heartbeat_ = std::max(0, cycles_to_heartbeat_ - missed_cycles);
   for (AnyDrive& drive : drives_) visitKind([&](auto& it) { it.coast(missed_cycles); }, drive);
 }
 

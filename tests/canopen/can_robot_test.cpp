@@ -101,6 +101,45 @@ TEST(CanRobot, TellsThatItRunsInItsPeriod) {
   }
 }
 
+bool hasHeartbeat(const CanRobot& robot) {
+  const auto& frames = robot.outbox(0);
+  return std::ranges::count(frames, heartbeatFrame(127, NmtState::kOperational)) == 1;
+}
+
+/// Drives count from its last heartbeat on, whatever the cycle is.
+TEST(CanRobot, NeverTellsLaterThanInItsPeriodThatItRuns) {
+  HardwareConfig hardware = RobotRig::hardware();
+  for (const double heartbeat_s : {0.002, 0.005, 0.007, 0.02, 0.05}) {
+    hardware.canopen.heartbeat_period_s = heartbeat_s;
+    for (const double period_s : {0.001, 0.00125, 0.0015, 0.002}) {
+      CanRobot robot(hardware, period_s);
+      int since = 0, longest = 0;
+      for (int cycle = 0; cycle < 1000; ++cycle) {
+        robot.write(JointVector::Zero(2));
+        longest = std::max(longest, since);
+        since = hasHeartbeat(robot) ? 1 : since + 1;
+      }
+      EXPECT_LE(longest * period_s, heartbeat_s + 1e-9) << heartbeat_s << " " << period_s;
+      EXPECT_GT((longest + 1) * period_s, heartbeat_s + 1e-9) << heartbeat_s << " " << period_s;
+    }
+  }
+}
+
+TEST(CanRobot, TellsAtOnceThatItRunsWhereItsPeriodHasPassedInMissedCycles) {
+  HardwareConfig hardware = RobotRig::hardware();
+  hardware.canopen.heartbeat_period_s = 0.007;
+  CanRobot robot(hardware, test::kPeriod_s);
+  robot.write(JointVector::Zero(2));
+  robot.coast(6);
+  robot.write(JointVector::Zero(2));
+  EXPECT_TRUE(hasHeartbeat(robot));
+  robot.coast(3);
+  for (int cycle = 0; cycle < 4; ++cycle) {
+    robot.write(JointVector::Zero(2));
+    EXPECT_EQ(hasHeartbeat(robot), cycle == 3) << cycle;
+  }
+}
+
 /// The last word: each drive is told, and nothing else is.
 TEST(CanRobot, ReleasesEachOfItsDrives) {
   RobotRig rig;

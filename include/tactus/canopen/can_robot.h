@@ -32,7 +32,7 @@ class CanRobot final : public Robot {
   void receive(int bus, std::span<const CanFrame> frames) noexcept;
   /// Where the arm is commanded to be now, m or rad, for what read() judges.
   void expect(const JointVector& q) noexcept { q_commanded_ = q; }
-  /// For cycles that were missed: drives' deadlines go on in them.
+  /// For cycles that were missed: drives' deadlines go on in them, and the heartbeat's period.
   void coast(int missed_cycles) noexcept;
   void read(RobotInput& input) noexcept override;  ///< a drive without feedback so far reads as 0
 

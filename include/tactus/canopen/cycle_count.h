@@ -17,4 +17,12 @@ inline int cyclesLasting(double duration_s, double period_s) noexcept {
   return std::max(1, cyclesCovering(duration_s, period_s));
 }
 
+/// Cycles that end within a duration, but at least one.
+inline int cyclesWithin(double duration_s, double period_s) noexcept {
+  const int covering = cyclesLasting(duration_s, period_s);
+  constexpr double kRoundOff = 1e-6;
+  return covering > 1 && covering * period_s > duration_s + kRoundOff * period_s ? covering - 1
+                                                                                 : covering;
+}
+
 }  // namespace tactus
