@@ -43,6 +43,12 @@ double BusLoad::bitsPerSecond() const noexcept {
   return sum;
 }
 
+int BusLoad::framesACycle(double cycle_s) const noexcept {
+  int sum = 0;
+  for (const BusLoadTerm& term : terms) sum += term.framesACycle(cycle_s);
+  return sum;
+}
+
 std::vector<BusLoad> busLoads(const HardwareConfig& hardware, double period_s) {
   std::vector<BusLoad> loads;
   for (std::size_t i = 0; i < hardware.buses.size(); ++i) {

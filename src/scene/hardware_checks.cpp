@@ -45,6 +45,10 @@ bool isOverloaded(const BusLoad& load) {
   return load.share() > kMaxBusLoad + kRounding;
 }
 
+bool hasTooManyFrames(const BusLoad& load, double period_s) {
+  return load.framesACycle(period_s) > kMaxFramesACycle;
+}
+
 /// How a bus is relieved: by the shortest cycle that overloads none and fits all else, or by other
 /// means where there is no such cycle.
 std::string cureOfOverload(double period_s, const RobotConfig& config,
@@ -61,7 +65,9 @@ std::string cureOfOverload(double period_s, const RobotConfig& config,
     const double longer_s = static_cast<double>(steps) / kStepsPerSecond;
     if (longer_s <= period_s || longer_s > hardware.canopen.heartbeat_period_s ||
         !interpolationPeriod(longer_s) || !fitsModules(longer_s) ||
-        std::ranges::any_of(busLoads(hardware, longer_s), isOverloaded))
+        std::ranges::any_of(busLoads(hardware, longer_s), [longer_s](const BusLoad& load) {
+          return isOverloaded(load) || hasTooManyFrames(load, longer_s);
+        }))
       continue;
     return fmt::format("a period_s of at least {}", longer_s);
   }
@@ -72,14 +78,20 @@ void checkBusLoads(const YamlNode& root, double period_s, const RobotConfig& con
                    const HardwareConfig& hardware) {
   const std::vector<BusLoad> loads = busLoads(hardware, period_s);
   for (std::size_t i = 0; i < loads.size(); ++i) {
-    if (!isOverloaded(loads[i])) continue;
     const std::string& interface = hardware.buses[i].interface;
     const auto given = std::ranges::find(config.can->buses, interface, &BusConfig::interface);
     const std::string key = fmt::format("can.buses[{}]", given - config.can->buses.begin());
-    failAt(locate(root, key), key,
-           fmt::format("{} is overloaded: {}", interface, describeBusLoad(loads[i], period_s)),
-           fmt::format("expected at most {:.4g} %: {}", 100.0 * kMaxBusLoad,
-                       cureOfOverload(period_s, config, hardware)));
+    if (isOverloaded(loads[i]))
+      failAt(locate(root, key), key,
+             fmt::format("{} is overloaded: {}", interface, describeBusLoad(loads[i], period_s)),
+             fmt::format("expected at most {:.4g} %: {}", 100.0 * kMaxBusLoad,
+                         cureOfOverload(period_s, config, hardware)));
+    if (hasTooManyFrames(loads[i], period_s))
+      failAt(locate(root, key), key,
+             fmt::format("{} has up to {} frames a cycle: {}", interface,
+                         loads[i].framesACycle(period_s), describeBusLoad(loads[i], period_s)),
+             fmt::format("expected at most {}: a shorter period_s, or less on this bus",
+                         kMaxFramesACycle));
   }
 }
 

@@ -48,6 +48,16 @@ TEST(BusLoad, ThreeDrivesWithHeartbeatsStayBelowTheLimitAndFourDoNot) {
   EXPECT_GT(busLoads(withDrives(4, 1), 0.001)[1].share(), kMaxBusLoad);
 }
 
+TEST(BusLoad, CountsTheFramesThatMayComeInACycle) {
+  HardwareConfig hardware = withDrives(3, 0);
+  EXPECT_EQ(busLoads(hardware, 0.001)[0].framesACycle(0.001), 3 + 3 + 1 + 4);
+  hardware.tactile_modules.emplace_back();
+  hardware.tactile_modules.front().channels.sample_period_s = 0.004;
+  EXPECT_EQ(busLoads(hardware, 0.001)[0].framesACycle(0.001), 11 + 4);
+  EXPECT_EQ(busLoads(hardware, 0.01)[0].framesACycle(0.01), 11 + 3 * 4);
+  EXPECT_EQ(busLoads(hardware, 0.02)[0].framesACycle(0.02), 11 + 5 * 4);
+}
+
 TEST(BusLoad, ABusWithoutDrivesHasNoSyncAndNoHeartbeat) {
   HardwareConfig hardware = withDrives(3, 0);
   EXPECT_TRUE(busLoads(hardware, 0.001)[1].terms.empty());

@@ -296,6 +296,17 @@ TEST(RobotWithCan, HasACycleThatDrivesCanBeToldOf) {
                      "drives cannot be told of 0.0003333333333333333 s", "60C2"});
 }
 
+/// The loop reads so many at once, and takes full batches for a flood.
+TEST(RobotWithCan, HasNoMoreFramesACycleThanAreRead) {
+  SceneFiles files = test::hardwareFiles();
+  files.robot = test::replaced(files.robot, "sample_period_s: 0.005",
+                               "sample_period_s: 0.001\n  max_sample_age_s: 0.05");
+  test::expectError(test::loadError(files.sources(), {{"period_s", "0.02"}}),
+                    {"", "", "robot.yaml:7:7: can.buses[1]: ", "can1 has up to 85 frames a cycle: ",
+                     "at most 63: a shorter period_s"});
+  EXPECT_EQ(test::loadError(files.sources(), {{"period_s", "0.01"}}), "");
+}
+
 TEST(RobotWithCan, SendsHeartbeatsAtMostOnceACycle) {
   SceneFiles files = test::hardwareFiles();
   files.robot =

@@ -4,12 +4,17 @@
 #include <vector>
 
 #include "tactus/canopen/can_frame.h"
+#include "tactus/canopen/cycle_count.h"
 #include "tactus/canopen/hardware_config.h"
 
 namespace tactus {
 
 /// Share of the bit rate that a scene may use: the rest is for set-up, emergencies and repeats.
 inline constexpr double kMaxBusLoad = 0.8;
+
+/// That may come in a cycle, the daemon's own among them, which come back once they are sent: a
+/// batch that is full says that more are waiting.
+inline constexpr int kMaxFramesACycle = static_cast<int>(FrameBatch::kCapacity) - 1;
 
 /// Bits of a classic frame with 11-bit id and all the stuff bits that n data bytes can need, with
 /// the pause behind it.
@@ -61,6 +66,10 @@ struct BusLoadTerm {
     return bits.arbitration + bits.data / fd->rate_ratio;
   }
   double bitsPerSecond() const noexcept { return frames * bitsAFrame() / period_s; }
+  /// At worst, in a cycle.
+  int framesACycle(double cycle_s) const noexcept {
+    return frames * cyclesLasting(cycle_s, period_s);
+  }
 };
 
 /// Worst-case load of a bus in operation, as a sum whose terms can be printed.
@@ -69,6 +78,7 @@ struct BusLoad {
   double bit_rate_per_s = 0.0;
 
   double bitsPerSecond() const noexcept;
+  int framesACycle(double cycle_s) const noexcept;
   double share() const noexcept { return bitsPerSecond() / bit_rate_per_s; }
 };
 
