@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tactus/canopen/moteus_faults.h"
 #include "tactus/canopen/sdo_abort.h"
 
 namespace tactus {
@@ -20,13 +21,19 @@ std::string describeRefusal(const SetupFailure& failure) {
                      refusalText(failure));
 }
 
+/// As the drive's manual has it.
+std::string describeCode(const DriveConfig& drive, int code) {
+  if (drive.kind != DriveKind::kMoteus) return fmt::format(", emergency code 0x{:04X}", code);
+  const char* const name = moteusFaultName(code);
+  return fmt::format(", fault code {}", code) + (name ? fmt::format(" ({})", name) : "");
+}
+
 std::string describeDrive(const FaultReport& report, const Scene& scene) {
   const DriveConfig& drive = scene.hardware->drives[report.joint];
   std::string text =
       fmt::format("drive {} on {} (joint {})", drive.node_id,
                   scene.hardware->buses[drive.bus].interface, scene.joint_names[report.joint]);
-  if (report.drive.emergency_code != 0)
-    text += fmt::format(", emergency code 0x{:04X}", report.drive.emergency_code);
+  if (report.drive.emergency_code != 0) text += describeCode(drive, report.drive.emergency_code);
   if (report.fault == Fault::kDriveSetupRefused)
     text += describeRefusal(report.drive.setup_failure);
   return text + fmt::format(", {}", driveStateName(report.drive.state));

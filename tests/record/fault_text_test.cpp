@@ -76,6 +76,22 @@ TEST_F(FaultText, TellsAnEmergencyCodeOnce) {
   EXPECT_EQ(faultJson(report, scene_).at("value"), 0x8611);
 }
 
+TEST(FaultTextOfMoteus, TellsTheFaultCodeAsItsDocumentationDoes) {
+  const Scene scene = test::shippedScene("robots/planar2_moteus");
+  FaultReport report = ofDrive(Fault::kDriveFault, {.value = 39.0, .unit = "fault code"});
+  report.joint = 1;
+  report.drive.state = DriveState::kFault;
+  report.drive.emergency_code = 39;
+  EXPECT_EQ(faultEvent(report, scene).find("drive_fault, drive 2 on can0 (joint "), 0U);
+  EXPECT_NE(
+      faultEvent(report, scene).find("), fault code 39 (start outside of position limits), fault"),
+      std::string::npos)
+      << faultEvent(report, scene);
+  report.drive.emergency_code = 61;
+  EXPECT_NE(faultEvent(report, scene).find("), fault code 61, fault"), std::string::npos)
+      << faultEvent(report, scene);
+}
+
 TEST_F(FaultText, OfTheLawNamesTheJointAlone) {
   FaultReport report = ofDrive(Fault::kCommandNotFinite, {});
   EXPECT_EQ(faultEvent(report, scene_), "command_not_finite, joint j5");
