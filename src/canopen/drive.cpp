@@ -18,6 +18,11 @@ constexpr int kSettledCycles = 3;
 /// Feedback of two cycles in one, where the first was late; more is another's.
 constexpr int kMostPeriodsHeard = 2;
 
+// What is missing of a silent drive.
+constexpr const char* kNoFeedback = "cycles without feedback";
+constexpr const char* kNoHeartbeat = "cycles without heartbeat";
+constexpr const char* kNeither = "cycles without feedback and heartbeat";
+
 bool isWithoutPower(DriveState state) noexcept {
   return state == DriveState::kNotReady || state == DriveState::kSwitchOnDisabled ||
          state == DriveState::kReadyToSwitchOn || state == DriveState::kFault;
@@ -158,9 +163,13 @@ void Drive::continueSetup(FrameBatch& out) noexcept {
 void Drive::awaitOperation() noexcept {
   takeFeedback();
   if (is_operational_ && report_.has_position) return onConfigured();
-  if (++starting_cycles_ <= heartbeat_timeout_cycles_ + answer_timeout_cycles_) return;
+  const int limit_cycles = heartbeat_timeout_cycles_ + answer_timeout_cycles_;
+  if (++starting_cycles_ <= limit_cycles) return;
   phase_ = Phase::kUnconfigured;
-  fail(Fault::kDriveSilent);
+  failSilent(starting_cycles_, limit_cycles,
+             report_.has_position ? kNoHeartbeat
+             : is_operational_    ? kNoFeedback
+                                  : kNeither);
 }
 
 void Drive::onConfigured() noexcept {
@@ -192,10 +201,13 @@ void Drive::takeFeedback() noexcept {
 }
 
 void Drive::watchSilence() noexcept {
-  const bool is_silent = cycles_without_feedback_ > kMaxSilentCycles ||
-                         cycles_without_heartbeat_ > heartbeat_timeout_cycles_;
-  report_.is_silent = is_silent;
-  if (is_silent) fail(Fault::kDriveSilent);
+  const bool lacks_feedback = cycles_without_feedback_ > kMaxSilentCycles;
+  const bool lacks_heartbeat = cycles_without_heartbeat_ > heartbeat_timeout_cycles_;
+  report_.is_silent = lacks_feedback || lacks_heartbeat;
+  if (lacks_feedback)
+    failSilent(cycles_without_feedback_, kMaxSilentCycles, kNoFeedback);
+  else if (lacks_heartbeat)
+    failSilent(cycles_without_heartbeat_, heartbeat_timeout_cycles_, kNoHeartbeat);
 }
 
 void Drive::watchFault() noexcept {
@@ -239,6 +251,10 @@ std::int32_t Drive::velocityCounts(DriveGoal goal, double velocity, double posit
     return 0;
   }
   return velocity_counts_.next(trackingVelocity(config_, velocity, position, report_.position));
+}
+
+void Drive::failSilent(int cycles, int limit, const char* what) noexcept {
+  fail(Fault::kDriveSilent, {static_cast<double>(cycles), static_cast<double>(limit), what});
 }
 
 void Drive::fail(Fault fault, const FaultDetail& detail) noexcept { latch(fault, detail, report_); }

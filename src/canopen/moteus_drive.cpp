@@ -168,7 +168,9 @@ void MoteusDrive::takePosition(const MoteusReply& reply) noexcept {
 }
 
 void MoteusDrive::judgeOperation(double position) noexcept {
-  if (report_.is_silent) fail(Fault::kDriveSilent);
+  if (report_.is_silent)
+    fail(Fault::kDriveSilent, {static_cast<double>(silent_cycles_),
+                               static_cast<double>(kMaxSilentCycles), "cycles without reply"});
   if (reply_ && (report_.state == DriveState::kFault || !std::isfinite(reply_->position) ||
                  !std::isfinite(reply_->velocity)))
     fail(Fault::kDriveFault, {.value = static_cast<double>(reply_->fault), .unit = "fault code"});

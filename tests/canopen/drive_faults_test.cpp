@@ -222,6 +222,9 @@ TEST(DriveFaults, MissesTheHeartbeatInTime) {
     ++cycles;
   }
   EXPECT_EQ(rig.report().fault, Fault::kDriveSilent);
+  EXPECT_STREQ(rig.report().detail.unit, "cycles without heartbeat");
+  EXPECT_EQ(rig.report().detail.value, 61.0);
+  EXPECT_EQ(rig.report().detail.limit, 60.0);
   EXPECT_GT(cycles, 60 - 20);
   EXPECT_LE(cycles, 60 + 2);
 }
@@ -262,6 +265,9 @@ TEST(DriveFaults, PowerThatReturnsFindsNoSetpoint) {
   rig.slave.is_powered = false;
   rig.cycles(5000, DriveGoal::kQuickStop, kVelocity);
   EXPECT_EQ(rig.report().fault, Fault::kDriveSilent);
+  EXPECT_STREQ(rig.report().detail.unit, "cycles without feedback");
+  EXPECT_EQ(rig.report().detail.value, 6.0);
+  EXPECT_EQ(rig.report().detail.limit, 5.0);
   rig.slave.powerUp();
   for (int cycle = 0; cycle < 100; ++cycle) {
     const auto frames = rig.cycle(DriveGoal::kEnabled, kVelocity);

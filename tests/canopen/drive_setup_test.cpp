@@ -301,6 +301,8 @@ TEST(DriveSetup, IsSilentWhenTheDriveDoesNotRunAfterwards) {
     rig.slave.sends_heartbeat = without_feedback;
     rig.configure();
     EXPECT_EQ(rig.report().fault, Fault::kDriveSilent);
+    EXPECT_STREQ(rig.report().detail.unit,
+                 without_feedback ? "cycles without feedback" : "cycles without heartbeat");
     EXPECT_FALSE(rig.report().is_configured);
   }
 }

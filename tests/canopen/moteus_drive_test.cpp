@@ -298,6 +298,7 @@ TEST(MoteusDrive, IsNotSilentWhileNobodyAsks) {
   EXPECT_EQ(rig.drive.report().fault, Fault::kNone);
   rig.quietCycle(DriveGoal::kDisabled);
   EXPECT_EQ(rig.drive.report().fault, Fault::kDriveSilent);
+  EXPECT_STREQ(rig.drive.report().detail.unit, "cycles without reply");
 }
 
 TEST(MoteusDrive, ARequestThatIsNoNumberIsNone) {

@@ -56,6 +56,13 @@ TEST_F(FaultText, NamesDriveBusAndJoint) {
   EXPECT_EQ(jsonText(json.at("time_s")), "null\n");
 }
 
+TEST_F(FaultText, TellsWhatASilentDriveOwes) {
+  const FaultReport report = ofDrive(Fault::kDriveSilent, {6.0, 5.0, "cycles without feedback"});
+  EXPECT_EQ(faultEvent(report, scene_),
+            "drive_silent, drive 2 on can1 (joint j5), operation enabled, 6 cycles without "
+            "feedback, at most 5");
+}
+
 TEST_F(FaultText, NamesABus) {
   FaultReport report;
   report.fault = Fault::kBusOff;

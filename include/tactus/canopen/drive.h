@@ -101,6 +101,7 @@ class Drive {
   std::uint16_t controlWord(DriveGoal goal) const noexcept;
   std::int32_t velocityCounts(DriveGoal goal, double velocity, double position) noexcept;
   void fail(Fault fault, const FaultDetail& detail = {}) noexcept;
+  void failSilent(int cycles, int limit, const char* what) noexcept;
   FaultDetail emergencyDetail() const noexcept;
 
   DriveConfig config_;
