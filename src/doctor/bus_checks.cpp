@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kCanHardware = 280;  ///< ARPHRD_CAN
 constexpr unsigned kUp = 1;        ///< IFF_UP
+constexpr long kFdMtu = 72;        ///< CANFD_MTU
 
 std::string bringUp(const BusConfig& bus) {
   const std::string fd = bus.data_bit_rate_per_s
@@ -77,6 +78,32 @@ Finding checkDataBitRate(const BusConfig& bus, const CanLink& link) {
           "no frame of CAN FD gets through", setAnew(bus)};
 }
 
+/// A controller says it by its MTU, and a virtual interface, too.
+Finding checkFd(const std::filesystem::path& folder, const BusConfig& bus, bool has_controller) {
+  if (readNumber(folder / "mtu").value_or(0) >= kFdMtu)
+    return {"can_fd", Level::kOk, bus.interface + ": carries CAN FD"};
+  return {"can_fd", Level::kNotFit,
+          bus.interface + ": not set up for CAN FD, but robot.yaml has data_bit_rate_per_s",
+          "tactusd does not start without it",
+          has_controller ? setAnew(bus)
+                         : fmt::format("ip link set {0} down, then ip link set {0} mtu {1} up",
+                                       bus.interface, kFdMtu)};
+}
+
+Finding checkState(const BusConfig& bus, const CanLink& link) {
+  const std::string mend = fmt::format(
+      "look at cable, termination, power and bit rate, then ip link set {0} down, and "
+      "ip link set {0} up",
+      bus.interface);
+  if (link.is_bus_off)
+    return {"can_state", Level::kNotFit, bus.interface + ": off the bus after too many errors",
+            "no frame gets through until it is started anew", mend};
+  if (link.is_passive)
+    return {"can_state", Level::kWarning, bus.interface + ": error-passive",
+            "frames were not acknowledged, or disturbed: nobody may be on the bus", mend};
+  return {"can_state", Level::kOk, bus.interface + ": on the bus"};
+}
+
 Finding checkRestart(const BusConfig& bus, const CanLink& link) {
   if (link.restart_ms == 0)
     return {"can_restart", Level::kOk, bus.interface + ": stays off after bus-off"};
@@ -109,21 +136,23 @@ std::vector<Finding> checkBus(const MachineRoot& root, const BusConfig& bus,
     return {missing("is missing", "load the adapter's driver; `ip link` lists the interfaces")};
   if (*hardware != kCanHardware)
     return {missing("is no CAN interface", "name another one in robot.yaml")};
+  const bool has_controller = link && link->kind == "can";
   std::vector<Finding> findings;
   if (isUp(folder)) {
     findings.push_back({"can_interface", Level::kOk, bus.interface + " is up"});
   } else {
-    const bool has_controller = link && link->kind == "can";
     findings.push_back(missing("is down", has_controller
                                               ? bringUp(bus)
                                               : fmt::format("ip link set {} up", bus.interface)));
   }
   findings.push_back(checkAdapter(folder, bus, link));
-  if (link && link->kind == "can") {
+  if (has_controller) {
     findings.push_back(checkBitRate(bus, *link));
     if (bus.data_bit_rate_per_s) findings.push_back(checkDataBitRate(bus, *link));
     findings.push_back(checkRestart(bus, *link));
+    if (isUp(folder)) findings.push_back(checkState(bus, *link));
   }
+  if (bus.data_bit_rate_per_s) findings.push_back(checkFd(folder, bus, has_controller));
   findings.push_back(checkQueue(folder, bus));
   return findings;
 }

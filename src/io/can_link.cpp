@@ -76,6 +76,9 @@ std::optional<CanLink> parseCanLink(std::span<const char> message) {
   link.bit_rate_per_s = frontOf<can_bittiming>(attribute(data, IFLA_CAN_BITTIMING)).bitrate;
   link.data_bit_rate_per_s =
       frontOf<can_bittiming>(attribute(data, IFLA_CAN_DATA_BITTIMING)).bitrate;
+  const auto state = frontOf<std::uint32_t>(attribute(data, IFLA_CAN_STATE));
+  link.is_passive = state == CAN_STATE_ERROR_PASSIVE;
+  link.is_bus_off = state == CAN_STATE_BUS_OFF;
   link.restart_ms = frontOf<std::uint32_t>(attribute(data, IFLA_CAN_RESTART_MS));
   return link;
 }

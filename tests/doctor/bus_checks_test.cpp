@@ -47,7 +47,7 @@ class BusChecks : public testing::Test {
 
 TEST_F(BusChecks, NothingToMendWhereAllIsInOrder) {
   const std::vector<Finding> findings = check();
-  EXPECT_EQ(findings.size(), 5u);
+  EXPECT_EQ(findings.size(), 6u);
   for (const Finding& finding : findings) EXPECT_EQ(finding.level, Level::kOk) << finding.what;
 }
 
@@ -106,7 +106,36 @@ TEST_F(BusChecks, ABusOfCanFdHasARateOfItsData) {
   EXPECT_EQ(levelOf(other, "can_data_bit_rate"), Level::kNotFit);
   EXPECT_EQ(other[3].what, "can0: data at 0 bit/s, but robot.yaml says 5000000");
   EXPECT_TRUE(contains(other[3].how_to_mend, "bitrate 1000000 dbitrate 5000000 fd on"));
-  EXPECT_EQ(check().size(), 5u) << "a classic bus is not asked for one";
+  EXPECT_EQ(check().size(), 6u) << "a classic bus is not asked for one";
+}
+
+/// A data bit rate alone does not let frames of CAN FD through; a virtual interface has none.
+TEST_F(BusChecks, AnInterfaceWithoutCanFdIsNotFitWhereRobotHasIt) {
+  const BusConfig bus{"can0", 1e6, 5e6};
+  for (const bool is_virtual : {false, true}) {
+    const CanLink link =
+        is_virtual ? CanLink{"vcan", 0, 0} : CanLink{"can", 1'000'000, 0, 5'000'000};
+    const auto findings = [&](const std::string& mtu) {
+      machine.write(kNet + "mtu", mtu);
+      return checkBus(machine.root(), bus, link);
+    };
+    EXPECT_EQ(levelOf(findings("72\n"), "can_fd"), Level::kOk);
+    const std::vector<Finding> classic = findings("16\n");
+    EXPECT_EQ(levelOf(classic, "can_fd"), Level::kNotFit);
+    const auto& finding = *std::ranges::find(classic, "can_fd", &Finding::name);
+    expectMendable(finding);
+    EXPECT_TRUE(contains(finding.how_to_mend, is_virtual ? "mtu 72" : "fd on"));
+  }
+}
+
+TEST_F(BusChecks, AControllerThatIsOffTheBusIsNotFit) {
+  CanLink link = controller();
+  EXPECT_EQ(levelOf(check(link), "can_state"), Level::kOk);
+  link.is_passive = true;
+  EXPECT_EQ(levelOf(check(link), "can_state"), Level::kWarning);
+  link.is_passive = false;
+  link.is_bus_off = true;
+  EXPECT_EQ(levelOf(check(link), "can_state"), Level::kNotFit);
 }
 
 TEST_F(BusChecks, RestartAfterBusOffIsWarnedOf) {

@@ -65,6 +65,19 @@ TEST(CanLink, ReadsTheRateOfTheData) {
   EXPECT_EQ(parseCanLink(linkMessage("can", controllerData(1, 0)))->data_bit_rate_per_s, 0);
 }
 
+TEST(CanLink, ReadsWhetherTheControllerIsOnTheBus) {
+  const auto linkIn = [](std::uint32_t state) {
+    return *parseCanLink(linkMessage(
+        "can", controllerData(1'000'000, 0) + attribute(IFLA_CAN_STATE, bytesOf(state))));
+  };
+  for (const std::uint32_t state :
+       {CAN_STATE_ERROR_ACTIVE, CAN_STATE_ERROR_WARNING, CAN_STATE_ERROR_PASSIVE, CAN_STATE_BUS_OFF,
+        CAN_STATE_STOPPED}) {
+    EXPECT_EQ(linkIn(state).is_passive, state == CAN_STATE_ERROR_PASSIVE) << state;
+    EXPECT_EQ(linkIn(state).is_bus_off, state == CAN_STATE_BUS_OFF) << state;
+  }
+}
+
 TEST(CanLink, AnotherKindsAttributesAreNotTakenForACans) {
   const auto link = parseCanLink(linkMessage("vcan", controllerData(500'000, 100)));
   ASSERT_TRUE(link);

@@ -10,7 +10,8 @@
 
 namespace tactus {
 
-/// A bus's interface: there and up, its adapter, bit rate, queue, and what it does after bus-off.
+/// A bus's interface: there, up and on the bus, its adapter, bit rates, CAN FD where the bus is to
+/// have it, queue, and what it does after bus-off.
 /// `link`: what the kernel says of it.
 std::vector<Finding> checkBus(const MachineRoot& root, const BusConfig& bus,
                               const std::optional<CanLink>& link);
