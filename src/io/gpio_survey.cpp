@@ -14,9 +14,11 @@ GpioSurvey surveyGpio(const GpioConfig& config) {
       if (!*line) continue;
       const int number = (*line)->line;
       requireGpioLine(*chip, config.chip, number);
-      if (const auto user = chip->user(number))
-        survey.users +=
-            (survey.users.empty() ? "line " : ", line ") + std::to_string(number) + ": " + *user;
+      const auto user = chip->user(number);
+      if (!user) continue;
+      survey.users +=
+          (survey.users.empty() ? "line " : ", line ") + std::to_string(number) + ": " + *user;
+      survey.has_others = survey.has_others || *user != kGpioConsumer;
     }
   } catch (const std::runtime_error& error) {
     survey.problem = error.what();

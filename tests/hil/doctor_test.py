@@ -40,7 +40,7 @@ class Doctor(unittest.TestCase):
         self.assertEqual((status, report["fit"]), (3, False))
         self.assertEqual(sorted(levels["can_interface"]), ["not_fit", "ok", "ok", "ok"])
         self.assertEqual(sorted(levels["can_queue"]), ["ok", "ok", "ok", "warning"])
-        self.assertEqual(levels["gpio"], ["warning"])
+        self.assertEqual(levels["gpio"], ["not_fit"])
 
 
 if __name__ == "__main__":

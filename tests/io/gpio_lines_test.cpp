@@ -222,13 +222,15 @@ TEST(GpioSurvey, NamesWhatIsMissingAndWhoHoldsLinesAndTakesNone) {
   EXPECT_FALSE(fake_chip.is_open);
   for (const test::FakeLine& line : fake_chip.lines)
     EXPECT_EQ(line.requested, test::Requested::kNo);
-  {
+  for (const bool has_others : {false, true}) {
     GpioConfig of_others;
     of_others.chip = config.chip;
     of_others.enable = config.enable;
     const GpioLines others(of_others, kPeriod_s);
-    fake_chip.lines[4].is_taken = true;
-    EXPECT_EQ(surveyGpio(config).users, "line 2: tactusd, line 4: the kernel");
+    fake_chip.lines[4].is_taken = has_others;
+    const GpioSurvey survey = surveyGpio(config);
+    EXPECT_EQ(survey.users, has_others ? "line 2: tactusd, line 4: the kernel" : "line 2: tactusd");
+    EXPECT_EQ(survey.has_others, has_others);
   }
   config.brake->line = 8;
   EXPECT_EQ(surveyGpio(config).problem, "gpiochip0: has no line 8, expected 0 to 7");

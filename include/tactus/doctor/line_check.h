@@ -5,7 +5,7 @@
 
 namespace tactus {
 
-/// Whether chip and lines are there, and free.
+/// Whether chip and lines are there, and free, but for a tactusd that runs.
 Finding checkLines(const GpioSurvey& survey);
 
 }  // namespace tactus
