@@ -41,7 +41,10 @@ MachineNeeds needsOf(const std::optional<Scene>& scene, const DoctorOptions& opt
   if (problem) needs.log_folder = options.log_folder;
   const double period_s = scene ? scene->period_s : kDefaultPeriod_s;
   const RecordShape shape = scene ? describeLog(*scene).shape : kLargestShape;
-  needs.log_bytes_per_s = static_cast<double>(logBytesACycle(shape)) / period_s;
+  const LogConfig log = scene ? scene->log : LogConfig{};
+  needs.log.bytes_per_s = static_cast<double>(logBytesACycle(shape)) / period_s;
+  needs.log.reserve_bytes = log.min_free_bytes;
+  if (log.max_bytes > 0.0) needs.log.most_bytes = (log.keep + 1) * log.max_bytes;
   if (!scene || !scene->hardware) return needs;
   needs.real_time = scene->hardware->real_time;
   needs.buses = scene->hardware->buses;

@@ -47,7 +47,7 @@ std::vector<Finding> inspectMachine(const MachineRoot& root, const MachineNeeds&
   const auto space = std::filesystem::space(folder, problem);
   if (!problem)
     findings.push_back(
-        checkDisk(needs.log_folder, static_cast<double>(space.available), needs.log_bytes_per_s));
+        checkDisk(needs.log_folder, static_cast<double>(space.available), needs.log));
   return findings;
 }
 

@@ -76,14 +76,32 @@ TEST(LoopMeasurement, ACpuThatIsNotThereIsRefusedAsTheDaemonRefusesIt) {
             1);
 }
 
-TEST(DiskCheck, AShiftHasToFit) {
+TEST(DiskCheck, AShiftHasToFitOfALogWithoutLimit) {
   constexpr double kShift_s = 8 * 3600.0;
-  EXPECT_EQ(checkDisk("/x", kShift_s * 1001.0, 1000.0).level, Level::kOk);
-  const Finding finding = checkDisk("/x", kShift_s * 999.0, 1000.0);
+  const LogNeeds log{.bytes_per_s = 1e5, .reserve_bytes = 1e8};
+  const Finding fits = checkDisk("/x", kShift_s * 1e5 + 1e8, log);
+  EXPECT_EQ(fits.level, Level::kOk);
+  EXPECT_EQ(fits.what,
+            "/x: 2980 MB free, 2880 MB of them for a log that grows by 0.10 MB/s without a limit: "
+            "8.0 h");
+  const Finding finding = checkDisk("/x", kShift_s * 1e5 + 0.99e8, log);
+  EXPECT_EQ(finding.level, Level::kWarning) << "it stops with min_free_bytes left";
+  expectMendable(finding);
+  EXPECT_TRUE(contains(finding.how_to_mend, "8 h, 2980 MB")) << finding.how_to_mend;
+  EXPECT_TRUE(contains(checkDisk("/x", 5e7, log).what, "50 MB free, 0 MB of them"));
+}
+
+/// Older files go: however long it runs it takes no more.
+TEST(DiskCheck, AllFilesThatAreKeptHaveToFitOfALogWithALimit) {
+  const LogNeeds log{.bytes_per_s = 6e5, .most_bytes = 5e9, .reserve_bytes = 1e8};
+  EXPECT_EQ(checkDisk("/x", 5.1e9, log).level, Level::kOk) << "though a shift is 17 GB";
+  const Finding finding = checkDisk("/x", 5.09e9, log);
   EXPECT_EQ(finding.level, Level::kWarning);
   expectMendable(finding);
-  EXPECT_TRUE(contains(finding.what, "/x: 29 MB free, a log grows by 0.00 MB/s: 8.0 h"))
-      << finding.what;
+  EXPECT_TRUE(contains(finding.what, "grows by 0.60 MB/s to at most 5000 MB")) << finding.what;
+  EXPECT_TRUE(contains(finding.how_to_mend, "5100 MB")) << finding.how_to_mend;
+  const LogNeeds slow{.bytes_per_s = 1e4, .most_bytes = 5e9};
+  EXPECT_EQ(checkDisk("/x", 4e9, slow).level, Level::kWarning) << "it runs for more than a shift";
 }
 
 TEST(LineCheck, LinesHaveToBeThereAndFree) {
@@ -105,7 +123,7 @@ TEST(Verdict, WarningsAloneAreFit) {
 TEST(Inspection, LooksAtAllThatARunNeeds) {
   const MachineTree machine;
   MachineNeeds needs;
-  needs.log_bytes_per_s = 1.0;
+  needs.log.bytes_per_s = 1.0;
   const auto names = [&] {
     std::vector<std::string> seen;
     for (const Finding& finding : inspectMachine(machine.root(), needs)) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tactus/canopen/hardware_config.h"
+#include "tactus/doctor/disk_check.h"
 #include "tactus/doctor/finding.h"
 #include "tactus/doctor/machine_files.h"
 
@@ -15,7 +16,7 @@ struct MachineNeeds {
   RealTimeConfig real_time;
   std::vector<BusConfig> buses;
   std::optional<GpioConfig> gpio;
-  double log_bytes_per_s = 0.0;
+  LogNeeds log;
   std::filesystem::path log_folder = ".";
 };
 
