@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tactus/math/filter.h"
+
 namespace tactus {
 namespace {
 
@@ -43,7 +45,8 @@ Fault readSample(const TactileModuleConfig& module, const TactileSample& sample,
   reading.sequence = sample.sequence;
   const double interval_s = reading.age_s + period_s;
   reading.age_s = 0.0;
-  reading.hardest.force_N *= fadedShare(module.filter_cutoff_hz, interval_s);
+  reading.hardest.force_N =
+      flushed(fadedShare(module.filter_cutoff_hz, interval_s) * reading.hardest.force_N);
   if (!isValid(sample, module)) {
     refuse({judgedForce_N(sample), module.max_force_N, "N"}, reading);
     reading.has_excess = reading.detail.value < kMaxBelievable_N;

@@ -67,6 +67,18 @@ TEST(HardestPush, IsOfTheSideThatStruckWhateverTheFilterSaysAfterIt) {
   EXPECT_LE(other_way_N, 0.01);
 }
 
+/// Else each operation on what is left of it would cost a hundred times as much, for ever.
+TEST(HardestPush, FadesToZeroAndNotToSubnormalNumbers) {
+  const TactileModuleConfig module = moduleThatFilters(15.0);
+  TactileReading reading;
+  for (std::uint32_t i = 1; i < 100000; ++i) {
+    const double force_N = i == 1 ? 10.0 : 0.0;
+    readSample(module, test::touchAt(kAt_m, force_N, 0.0, i), test::kPeriod_s, reading);
+    ASSERT_NE(std::fpclassify(reading.hardest.force_N), FP_SUBNORMAL) << i;
+  }
+  EXPECT_EQ(reading.hardest.force_N, 0.0);
+}
+
 TEST(HardestPush, IsAtLeastTheNewestAndFades) {
   test::Random random(940);
   const TactileModuleConfig module = moduleThatFilters(15.0);
