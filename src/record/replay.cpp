@@ -75,9 +75,9 @@ double ReplayDifference::size() const noexcept { return std::abs(recorded - repl
 ReplayComparison::ReplayComparison(const RecordShape& shape) : outputs_(recordColumns(shape)) {
   std::erase_if(outputs_,
                 [](const RecordColumn& column) { return column.role != FieldRole::kOutput; });
-  constexpr std::array<std::string_view, 4> kFields = {"dq", "u_n", "u_j", "u_t"};
-  for (std::size_t i = 0; i < kFields.size(); ++i)
-    groups_[i].columns = columnsOf(kFields[i], shape);
+  constexpr std::array<std::string_view, 4> kComparedFields = {"dq", "u_n", "u_j", "u_t"};
+  for (std::size_t i = 0; i < kComparedFields.size(); ++i)
+    groups_[i].columns = columnsOf(kComparedFields[i], shape);
 }
 
 void ReplayComparison::add(const CycleRecord& recorded, const CycleRecord& replayed) {
