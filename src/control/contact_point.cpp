@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tactus/math/filter.h"
-
 namespace tactus {
 namespace {
 

@@ -128,11 +128,18 @@ TEST(LocateContact, MixesTwoContactsIntoTheOneThatExplainsThem) {
   EXPECT_NEAR(contact.position_m, 0.25, 1e-12);
 }
 
-TEST(TactileSampleIsValid, DoesNotCalculateWithSubnormalNumbers) {
-  volatile double tiny = 5e-324;  // not folded at compile time
-  std::feclearexcept(FE_UNDERFLOW);
-  EXPECT_TRUE(isValid({tiny, -tiny, tiny, -tiny, 1}, {}));
-  EXPECT_EQ(std::fetestexcept(FE_UNDERFLOW), 0);
+TEST(TactileSample, IsNotCalculatedWithInSubnormalNumbers) {
+  const TactileModuleConfig module = test::moduleOfLength(kLength_m);
+  for (const double force_N : {5e-324, 1e-300, 1e-160}) {  // of the last the square would be one
+    volatile double tiny = force_N;                        // not folded at compile time
+    const TactileSample sample{tiny, -tiny, tiny, -tiny, 1};
+    ContactPointState contact;
+    std::feclearexcept(FE_UNDERFLOW);
+    EXPECT_TRUE(isValid(sample, module));
+    EXPECT_FALSE(tellsItsPlace(sample, module));
+    locateContact(sample, module, contact);
+    EXPECT_EQ(std::fetestexcept(FE_UNDERFLOW), 0) << force_N;
+  }
 }
 
 TEST(TactileSampleIsValid, RefusesWhatNoModuleCanMean) {

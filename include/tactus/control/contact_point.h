@@ -2,6 +2,7 @@
 
 #include "tactus/control/controller_config.h"
 #include "tactus/control/robot.h"
+#include "tactus/math/filter.h"
 #include "tactus/math/serial_chain.h"
 
 namespace tactus {
@@ -54,8 +55,8 @@ inline constexpr double kTellingShare = 0.1;
 
 inline bool tellsItsPlace(const TactileSample& sample, const TactileModuleConfig& config) noexcept {
   const double telling_N = kTellingShare * config.max_force_N;
-  return sample.force_y_N * sample.force_y_N + sample.force_z_N * sample.force_z_N >
-         telling_N * telling_N;
+  const double F_y = flushed(sample.force_y_N), F_z = flushed(sample.force_z_N);
+  return F_y * F_y + F_z * F_z > telling_N * telling_N;
 }
 
 /// How far off the cover the push is that explains a sample with a force, m; 0: on it.
