@@ -27,7 +27,8 @@ def build(folder, programs):
 
 
 def compile_flags(folder, layer):
-    """Compiler and flags of a layer, without its optimisation, precompiled header, input and output."""
+    """Compiler and flags of a layer, without its optimisation, precompiled header, input and output, and without
+    what clang does not know of the packages'."""
     for entry in json.loads((folder / "compile_commands.json").read_text()):
         if f"/tactus_{layer}.dir/" in entry["command"] and "/tests/" not in entry["command"]:
             words = iter(shlex.split(entry["command"]))
@@ -35,7 +36,7 @@ def compile_flags(folder, layer):
             for word in words:
                 if word in ("-o", "-c", "-include"):
                     next(words)
-                elif not re.match(r"-(O\d|Winvalid-pch|Werror|W|-param)", word):
+                elif not re.match(r"-(O\d|Winvalid-pch|Werror|W|-param|fno-var-tracking)", word):
                     flags.append(word)
                 elif word == "--param":
                     next(words)
