@@ -18,6 +18,7 @@ TEST(InterpolationPeriod, IsExactOrRefused) {
   EXPECT_EQ(interpolationPeriod(0.00125), (InterpolationPeriod{125, -5}));
   EXPECT_EQ(interpolationPeriod(0.000125), (InterpolationPeriod{125, -6}));
   EXPECT_EQ(interpolationPeriod(20.0), (InterpolationPeriod{20, 0}));
+  EXPECT_EQ(interpolationPeriod(123e-9), (InterpolationPeriod{123, -9}));
   for (double period_s : {0.001 / 3.0, 0.00333, 0.0, -0.001, std::nan(""), HUGE_VAL, 1e-12})
     EXPECT_EQ(interpolationPeriod(period_s), std::nullopt) << period_s;
   for (int value = 1; value <= 255; ++value) {

@@ -226,6 +226,7 @@ TEST(ClearanceRows, AskNoStopThatLeavesTheJointsLimits) {
   for (const double side : {1.0, -1.0}) {
     EXPECT_TRUE(canStop(side * (0.5 - 1.001 * way_m), side * 0.1));
     EXPECT_FALSE(canStop(side * (0.5 - 0.999 * way_m), side * 0.1));
+    EXPECT_TRUE(canStop(side * 0.5, 0.0)) << "at rest on the limit";
   }
 }
 

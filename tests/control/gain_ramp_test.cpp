@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
+
+#include "support/random.h"
 
 namespace tactus {
 namespace {
@@ -17,11 +21,21 @@ Gains other() {
   return gains;
 }
 
+Gains drawn(test::Random& random) {
+  std::array<double, sizeof(Gains) / sizeof(double)> words;
+  for (double& word : words) word = random.uniform(0.1, 10.0);
+  return std::bit_cast<Gains>(words);
+}
+
+/// Drawn, as from + (to - from) is not always to.
 TEST(GainRamp, EndsAreTheSetsToTheBit) {
-  const Gains from, to = other();
-  EXPECT_TRUE(isSame(gainsBetween(from, to, 0.0), from));
-  EXPECT_TRUE(isSame(gainsBetween(from, to, 1.0), to));
-  EXPECT_TRUE(isSame(gainsBetween(to, to, 0.3), to));
+  test::Random random(46);
+  for (int i = 0; i < 20; ++i) {
+    const Gains from = drawn(random), to = drawn(random);
+    EXPECT_TRUE(isSame(gainsBetween(from, to, 0.0), from));
+    EXPECT_TRUE(isSame(gainsBetween(from, to, 1.0), to));
+    EXPECT_TRUE(isSame(gainsBetween(to, to, 0.3), to));
+  }
 }
 
 TEST(GainRamp, TimesAndStiffnessesGoInEqualRatios) {
@@ -31,6 +45,22 @@ TEST(GainRamp, TimesAndStiffnessesGoInEqualRatios) {
   EXPECT_NEAR(half.force.estimator.max_N_per_m, 1e5, 1e-8);
   EXPECT_NEAR(half.force.damping, 1.0, 1e-15);
   EXPECT_EQ(half.force.contact_threshold_N, Gains{}.force.contact_threshold_N);
+}
+
+TEST(GainRamp, OnlyTimesAndStiffnessesGoInRatios) {
+  Gains from, to;
+  from.force.min_approach_stiffness_N_per_m = 2.0;
+  to.force.min_approach_stiffness_N_per_m = 8.0;
+  from.force.velocity_gain_per_s = 2.0;
+  to.force.velocity_gain_per_s = 8.0;
+  from.force.estimator = {2.0, 2.0, 2.0, 2.0};
+  to.force.estimator = {8.0, 8.0, 8.0, 8.0};
+  const ForceGains half = gainsBetween(from, to, 0.5).force;
+  EXPECT_DOUBLE_EQ(half.min_approach_stiffness_N_per_m, 4.0);
+  EXPECT_DOUBLE_EQ(half.estimator.filter_time_constant_s, 4.0);
+  EXPECT_DOUBLE_EQ(half.estimator.min_N_per_m, 4.0);
+  EXPECT_DOUBLE_EQ(half.estimator.min_force_change_N, 5.0);
+  EXPECT_DOUBLE_EQ(half.velocity_gain_per_s, 5.0);
 }
 
 TEST(GainRamp, WhatIsInfiniteHasNoWay) {

@@ -244,6 +244,30 @@ TEST(Mode, WaitsForTheBrakesWhileAllDrivesFollow) {
   EXPECT_EQ(cyclesToRun({}, {}), 2 + 4) << "through boot and ready";
 }
 
+/// The brakes have closed meanwhile.
+TEST(Mode, GivesBrakesAllOfTheirTimeAfterAnEnablingThatWasGivenUp) {
+  ModeConfig config;
+  config.brake_cycles = 3;
+  ModeInput input;
+  input.has_enable_line = input.are_configured = input.are_enabled = true;
+  ModeState state;
+  state.mode = Mode::kEnabling;
+  for (int i = 0; i < 3; ++i) updateMode(config, input, state);
+  input.enable = false;
+  while (state.mode != Mode::kReady) {
+    updateMode(config, input, state);
+    ASSERT_TRUE(state.mode == Mode::kStopping || state.mode == Mode::kReady);
+  }
+  input.enable = true;
+  updateMode(config, input, state);
+  for (int i = 0; i < 3; ++i) {
+    updateMode(config, input, state);
+    ASSERT_EQ(state.mode, Mode::kEnabling) << i;
+  }
+  updateMode(config, input, state);
+  EXPECT_EQ(state.mode, Mode::kRunning);
+}
+
 ModeInput randomInput(test::Random& random) {
   ModeInput input;
   if (random.chance(0.05)) input.fault = static_cast<Fault>(random.integer(0, 21));
