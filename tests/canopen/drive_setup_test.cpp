@@ -197,6 +197,16 @@ TEST(DriveSetup, RefusesADeviceThatIsNoDrive) {
   EXPECT_EQ(rig.report().setup_failure.index, 0x1000);
 }
 
+TEST(DriveSetup, TakesDrivesOfAnyType) {
+  for (const std::uint32_t type :
+       {0x0001u, 0x0002u, 0x0004u, 0xFFFFu}) {  // inverter, servo, stepper
+    DriveRig rig;
+    rig.slave.objects[{0x1000, 0}] = type << 16 | 402;
+    rig.configure();
+    EXPECT_TRUE(rig.report().is_configured) << type;
+  }
+}
+
 TEST(DriveSetup, RefusesAnotherProductAndSaysWhatItIs) {
   DriveConfig config = test::driveConfig();
   config.vendor_id = 0x12345678;
