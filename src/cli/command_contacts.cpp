@@ -104,8 +104,7 @@ class ContactPrinter {
   void readOlder() {
     std::vector<std::string> paths = logsOfRun(path_);
     paths.pop_back();
-    std::vector<std::ifstream> files;  // opened at once, as the daemon renames them
-    for (const std::string& path : paths) files.push_back(openLog(path));
+    std::vector<std::ifstream> files = openLogs(paths);
     for (std::size_t i = 0; i < paths.size(); ++i) {
       UlogReader reader(files[i], paths[i]);
       if (logPart(reader.description(), paths[i]).part >= next_part_) read(reader);

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "tactus/canopen/moteus_faults.h"
 #include "tactus/canopen/sdo_abort.h"
@@ -64,7 +63,7 @@ std::string describeValue(const FaultReport& report) {
   if (is_said || *detail.unit == '\0') return "";  // with the place
   const std::string text = fmt::format(", {:.6g} {}", detail.value, detail.unit);
   if (std::isnan(detail.limit)) return text;
-  const bool is_long = std::string_view(detail.unit).starts_with("cycles without");
+  const bool is_long = report.fault == Fault::kDriveSilent;  // "cycles without feedback"
   return text + fmt::format(", at most {:.6g}", detail.limit) +
          (is_long ? "" : fmt::format(" {}", detail.unit));
 }

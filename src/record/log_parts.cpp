@@ -56,6 +56,12 @@ std::vector<std::string> logsOfRun(const std::string& newest) {
   return paths;
 }
 
+std::vector<std::ifstream> openLogs(const std::vector<std::string>& paths) {
+  std::vector<std::ifstream> files;
+  for (const std::string& path : paths) files.push_back(openLog(path));
+  return files;
+}
+
 void checkOrder(const std::string& path, const LogPart& part, const std::string& path_before,
                 const LogPart& before) {
   if (part.run.empty() || part.run != before.run) {

@@ -13,13 +13,6 @@
 namespace tactus {
 namespace {
 
-/// All opened at once: the daemon that writes them renames them.
-std::vector<std::ifstream> openLogs(const std::vector<std::string>& paths) {
-  std::vector<std::ifstream> files;
-  for (const std::string& path : paths) files.push_back(openLog(path));
-  return files;
-}
-
 Scene sceneOfLog(std::ifstream& file, const std::string& path) {
   Scene scene = loggedScene(UlogReader(file, path), path);
   file.clear();

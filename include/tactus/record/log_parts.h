@@ -1,5 +1,6 @@
 #pragma once
 
+#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,9 @@ bool isOfRun(const LogDescription& description, const std::string& path,
 
 /// The files that are there of a run that writes `newest`, a run.ulg: the oldest first.
 std::vector<std::string> logsOfRun(const std::string& newest);
+
+/// All opened at once, as the daemon that writes them renames them. Throws InputError as openLog().
+std::vector<std::ifstream> openLogs(const std::vector<std::string>& paths);
 
 /// Throws InputError unless a part is a later one of the same run as the one before it.
 void checkOrder(const std::string& path, const LogPart& part, const std::string& path_before,
