@@ -11,6 +11,16 @@ namespace {
 
 using test::TroubledRig;
 
+/// At this object, before the drive had power. Returns what was refused.
+SetupFailure expectSetUpRefused(TroubledRig& rig, std::uint16_t index) {
+  const JointTrouble trouble = rig.trouble();
+  EXPECT_EQ(trouble.kind, JointTroubleKind::kStroke);
+  EXPECT_EQ(trouble.stroke.fault, Fault::kDriveSetupRefused);
+  EXPECT_EQ(trouble.stroke.drive.setup_failure.index, index);
+  EXPECT_EQ(rig.most_powered, 0);
+  return trouble.stroke.drive.setup_failure;
+}
+
 TEST(CommissionDrive, DriveThatRefusesItsSetUp) {
   TroubledRig rig;
   rig.on_send = [&rig](int bus, CanFrame& frame) {
@@ -18,12 +28,7 @@ TEST(CommissionDrive, DriveThatRefusesItsSetUp) {
     rig.own_answers.emplace_back(bus, test::sdoAnswer(2, frame, 0x80, 0x06090030));
     return false;
   };
-  const JointTrouble trouble = rig.trouble();
-  EXPECT_EQ(trouble.kind, JointTroubleKind::kStroke);
-  EXPECT_EQ(trouble.stroke.fault, Fault::kDriveSetupRefused);
-  EXPECT_EQ(trouble.stroke.drive.setup_failure.index, 0x6060);
-  EXPECT_EQ(trouble.stroke.drive.setup_failure.abort_code, 0x06090030u);
-  EXPECT_EQ(rig.most_powered, 0);
+  EXPECT_EQ(expectSetUpRefused(rig, 0x6060).abort_code, 0x06090030u);
 }
 
 /// By its data sheet and its profile.
@@ -53,12 +58,7 @@ TEST(CommissionDrive, DriveOfAnotherProductIsNotMoved) {
   rig.config.hardware.drives[test::kTroubledJoint].product_code = 2;
   rig.restart();
   ASSERT_TRUE(rig.scan());
-  const JointTrouble trouble = rig.trouble();
-  EXPECT_EQ(trouble.kind, JointTroubleKind::kStroke);
-  EXPECT_EQ(trouble.stroke.fault, Fault::kDriveSetupRefused);
-  EXPECT_EQ(trouble.stroke.drive.setup_failure.index, 0x1018);
-  EXPECT_EQ(trouble.stroke.drive.setup_failure.expected, 2u);
-  EXPECT_EQ(rig.most_powered, 0);
+  EXPECT_EQ(expectSetUpRefused(rig, 0x1018).expected, 2u);
 }
 
 TEST(CommissionDrive, DrivesOwnCountsAreTakenWhereMarksConfirmThem) {
