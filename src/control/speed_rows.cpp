@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/math/pair.h"
+
 namespace tactus {
 namespace {
 
@@ -56,22 +58,34 @@ void RowProblem::multiply() noexcept {
 /// K and delta.
 void RowProblem::respond(const RowSpace& space, RowMatrix& K, RowVector& delta) const noexcept {
   const double difference = space.task - space.null_space;
+  const Pair null_spaces{space.null_space, space.null_space};
+  const Pair differences{difference, difference};
   K.resize(rows_.size, rows_.size);
+  RowVector own(rows_.size);  // K_ii
+  RowVector presence(rows_.size);
   RowVector opposition(rows_.size);
   for (int i = 0; i < rows_.size; ++i) {
     const double length_squared = in_all_(i, i);
-    const double own = space.null_space * length_squared + difference * in_task_(i, i);
-    K(i, i) = std::max({own, 1e-3 * length_squared, 1e-4});
-    opposition[i] = 0.0;
-    for (int j = 0; j < i; ++j) {
-      const double K_ij = space.null_space * in_all_(j, i) + difference * in_task_(j, i);
-      K(i, j) = K(j, i) = K_ij;
-      if (K_ij >= 0.0) continue;
-      const double o_ij =
-          rows_.row[i].presence * rows_.row[j].presence * (K_ij * K_ij / (K(i, i) * K(j, j)));
-      opposition[i] += o_ij;
-      opposition[j] += o_ij;
+    own[i] = std::max({space.null_space * length_squared + difference * in_task_(i, i),
+                       1e-3 * length_squared, 1e-4});
+    const Pair own_i{own[i], own[i]};
+    const Pair presence_i{rows_.row[i].presence, rows_.row[i].presence};
+    Pair sum{0.0, 0.0};
+    presence[i] = opposition[i] = 0.0;  // i itself may be of the last pair
+    for (int j = 0; j < i; j += 2) {
+      const Pair K_ij =
+          null_spaces * pairAt(&in_all_(j, i)) + differences * pairAt(&in_task_(j, i));
+      storePair(K_ij, &K(j, i));
+      const Pair against = K_ij < 0.0 ? K_ij : Pair{0.0, 0.0};
+      const Pair o_ij =
+          presence_i * pairAt(&presence[j]) * (against * against / (own_i * pairAt(&own[j])));
+      storePair(pairAt(&opposition[j]) + o_ij, &opposition[j]);
+      sum += o_ij;
     }
+    opposition[i] = sum[0] + sum[1];
+    presence[i] = rows_.row[i].presence;
+    K(i, i) = own[i];
+    for (int j = 0; j < i; ++j) K(i, j) = K(j, i);
   }
   delta.resize(rows_.size);
   for (int i = 0; i < rows_.size; ++i) {

@@ -3,19 +3,38 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/math/pair.h"
+
 namespace tactus {
 namespace {
 
 constexpr double kTolerance = 1e-12;
+/// As many as one contact with friction has are solved by plain sums and quotients; with more,
+/// whose solution takes most of the time, by pairs and products.
+constexpr int kFew = 4;
 constexpr double kLeastPivot = 1e-15;  ///< of K_ii: rounding must not make K indefinite
 
 /// Where a row of a triangle begins.
 constexpr int rowAt(int i) noexcept { return i * (i + 1) / 2; }
 
+/// The last ones by themselves: a pair of numbers that have only just been stored one by one waits
+/// until they have reached memory.
 double sumOfProducts(const double* a, const double* b, int size) noexcept {
-  double sum = 0.0;
-  for (int i = 0; i < size; ++i) sum += a[i] * b[i];
+  Pair sums{0.0, 0.0};
+  int i = 0;
+  if (size > kFew)
+    for (; i + 4 <= size; i += 2) sums += pairAt(a + i) * pairAt(b + i);
+  double sum = sums[0] + sums[1];
+  for (; i < size; ++i) sum += a[i] * b[i];
   return sum;
+}
+
+/// a -= factor b
+void subtract(double factor, const double* b, int size, double* a) noexcept {
+  const Pair factors{factor, factor};
+  int i = 0;
+  for (; i + 2 <= size; i += 2) storePair(pairAt(a + i) - factors * pairAt(b + i), a + i);
+  if (i < size) a[i] -= factor * b[i];
 }
 
 }  // namespace
@@ -26,12 +45,18 @@ Complementarity::Complementarity(const RowMatrix& K) noexcept
 /// L of K = L L^T gets one row more.
 void Complementarity::hold(int row) noexcept {
   double* const l = L_.data() + rowAt(size_);
-  for (int j = 0; j < size_; ++j) {
+  const double* const K_row = K_.data() + row * K_.rows();
+  const int few = std::min(size_, kFew);
+  for (int j = 0; j < few; ++j) {
     const double* const other = L_.data() + rowAt(j);
-    l[j] = (K_(row, held_[j]) - sumOfProducts(l, other, j)) / other[j];
+    l[j] = (K_row[held_[j]] - sumOfProducts(l, other, j)) / other[j];
   }
-  const double K_ii = K_(row, row);
+  for (int j = few; j < size_; ++j)
+    l[j] = (K_row[held_[j]] - sumOfProducts(l, L_.data() + rowAt(j), j)) * inverse_[j];
+  const double K_ii = K_row[row];
   l[size_] = std::sqrt(std::max(K_ii - sumOfProducts(l, l, size_), kLeastPivot * K_ii));
+  inverse_[size_] = 1.0 / l[size_];
+  column_[size_] = K_row;
   held_[size_++] = row;
 }
 
@@ -46,24 +71,33 @@ void Complementarity::letGo() noexcept {
 }
 
 /// z of K z = d, of the rows that are held alone.
-void Complementarity::solveHeld(const RowVector& d) noexcept {
-  const int size = size_;
-  for (int i = forward_; i < size; ++i) {
+inline void Complementarity::solveHeld(const RowVector& d) noexcept {
+  for (int i = forward_; i < size_; ++i) {
     const double* const l = L_.data() + rowAt(i);
     double left = d[held_[i]];
-    for (int j = 0; j < i; ++j) left -= l[j] * y_[j];
-    y_[i] = left / l[i];
+    if (i < kFew) {
+      for (int j = 0; j < i; ++j) left -= l[j] * y_[j];
+      y_[i] = left / l[i];
+    } else {
+      y_[i] = (left - sumOfProducts(l, y_.data(), i)) * inverse_[i];
+    }
   }
-  forward_ = size;
-  for (int i = size - 1; i >= 0; --i) {
+  forward_ = size_;
+  for (int i = 0; i < size_; i += 2) storePair(pairAt(y_.data() + i), z_.data() + i);
+  for (int i = size_ - 1; i >= kFew; --i) {
+    z_[i] *= inverse_[i];
+    subtract(z_[i], L_.data() + rowAt(i), i, z_.data());
+  }
+  const int few = std::min(size_, kFew);
+  for (int i = few - 1; i >= 0; --i) {
     double sum = 0.0;
-    for (int j = i + 1; j < size; ++j) sum += L_[rowAt(j) + i] * z_[j];
-    z_[i] = (y_[i] - sum) / L_[rowAt(i) + i];
+    for (int j = i + 1; j < few; ++j) sum += L_[rowAt(j) + i] * z_[j];
+    z_[i] = (z_[i] - sum) / L_[rowAt(i) + i];
   }
 }
 
 /// From l towards z as far as no multiplier becomes negative; false if that was not all the way.
-bool Complementarity::goToZ() noexcept {
+inline bool Complementarity::goToZ() noexcept {
   double share = 1.0;
   bool is_whole = true;
   for (int i = 0; i < size_; ++i) {
@@ -81,7 +115,7 @@ bool Complementarity::goToZ() noexcept {
 }
 
 /// Until all that are held have multipliers.
-bool Complementarity::settle(const RowVector& d, int& steps) noexcept {
+inline bool Complementarity::settle(const RowVector& d, int& steps) noexcept {
   while (size_ > 0) {
     if (steps-- <= 0) return false;
     solveHeld(d);
@@ -91,19 +125,37 @@ bool Complementarity::settle(const RowVector& d, int& steps) noexcept {
   return true;
 }
 
+/// d - K l of 2 kPairs rows; z is l of what is held.
+template <int kPairs>
+inline void Complementarity::lackOf(int first, const RowVector& d) noexcept {
+  std::array<Pair, kPairs> has{};
+  for (int j = 0; j < size_; ++j) {
+    const Pair z{z_[j], z_[j]};
+    for (int k = 0; k < kPairs; ++k) has[k] += z * pairAt(column_[j] + first + 2 * k);
+  }
+  for (int i = first, k = 0; k < kPairs; i += 2, ++k)
+    storePair(pairAt(d.data() + i) - has[k], lack_.data() + i);
+}
+
 /// The row that lacks most of those that are not held; -1: none.
-inline int Complementarity::neediest(const RowVector& d) const noexcept {
+inline int Complementarity::neediest(const RowVector& d) noexcept {
+  const auto rows = static_cast<int>(l_.size());
+  if (rows == 1) {
+    lack_[0] = d[0];  // as it is not held
+  } else if (rows < 4) {
+    lackOf<1>(0, d);
+    lackOf<1>(rows - 2, d);
+  } else {
+    int i = 0;
+    for (; i + 8 <= rows; i += 8) lackOf<4>(i, d);
+    for (; i < rows; i += 4) lackOf<2>(std::min(i, rows - 4), d);
+  }
   int found = -1;
   double most = 0.0;
-  const auto rows = static_cast<int>(l_.size());
-  const double* const l = l_.data();
-  const double* K_row = K_.data();
-  for (int i = 0; i < rows; ++i, K_row += rows) {
-    if (l[i] > 0.0) continue;
-    double has = 0.0;
-    for (int j = 0; j < size_; ++j) has += K_row[held_[j]] * l[held_[j]];
-    const double lack = d[i] - has;
-    if (lack <= most || lack <= kTolerance * (std::abs(d[i]) + std::abs(has))) continue;
+  for (int i = 0; i < rows; ++i) {
+    const double lack = lack_[i];
+    if (lack <= most || l_[i] > 0.0) continue;
+    if (lack <= kTolerance * (std::abs(d[i]) + std::abs(d[i] - lack))) continue;
     most = lack;
     found = i;
   }
@@ -118,14 +170,12 @@ void Complementarity::forget() noexcept {
 bool Complementarity::solve(const RowVector& d, int steps_each_row) noexcept {
   int steps = steps_each_row * static_cast<int>(l_.size());
   forward_ = 0;
-  if (!settle(d, steps)) return false;
-  while (size_ < static_cast<int>(l_.size())) {
-    const int row = neediest(d);
-    if (row < 0) break;
+  while (settle(d, steps)) {
+    const int row = size_ < static_cast<int>(l_.size()) ? neediest(d) : -1;
+    if (row < 0) return true;
     hold(row);
-    if (!settle(d, steps)) return false;
   }
-  return true;
+  return false;
 }
 
 }  // namespace tactus

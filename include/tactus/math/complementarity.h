@@ -40,13 +40,18 @@ class Complementarity {
   void solveHeld(const RowVector& d) noexcept;
   bool goToZ() noexcept;
   bool settle(const RowVector& d, int& steps) noexcept;
-  int neediest(const RowVector& d) const noexcept;
+  template <int kPairs>
+  void lackOf(int first, const RowVector& d) noexcept;
+  int neediest(const RowVector& d) noexcept;
 
   const RowMatrix& K_;
   RowVector l_;
   int size_ = 0;                                       ///< rows that are held with equality
   int forward_ = 0;                                    ///< of them have y for this d
   std::array<int, kMaxRows> held_;                     ///< they
+  std::array<const double*, kMaxRows> column_;         ///< of K, theirs
+  std::array<double, kMaxRows> inverse_;               ///< of the diagonal of L
+  std::array<double, kMaxRows> lack_;                  ///< d - K l, of all rows
   std::array<double, kMaxRows> y_;                     ///< L y = d
   std::array<double, kMaxRows> z_;                     ///< theirs, if none were to be positive
   std::array<double, kMaxRows*(kMaxRows + 1) / 2> L_;  ///< K = L L^T of them, a row after another
