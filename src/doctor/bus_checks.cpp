@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "tactus/io/can_socket.h"
 
@@ -90,6 +91,29 @@ Finding checkFd(const std::filesystem::path& folder, const BusConfig& bus, bool 
                                        bus.interface, kFdMtu)};
 }
 
+/// Modes are kept while an interface is down, so each is named to be switched off.
+std::vector<Finding> checkModes(const BusConfig& bus, const CanLink& link) {
+  std::vector<Finding> findings;
+  const auto find = [&](Level level, const char* what, const char* why, const char* mode) {
+    findings.push_back({"can_mode", level, fmt::format("{}: {}", bus.interface, what), why,
+                        fmt::format("{} {} off", setAnew(bus), mode)});
+  };
+  if (link.is_listen_only)
+    find(Level::kNotFit, "listens only", "nothing is sent, not even acknowledgements",
+         "listen-only");
+  if (link.is_loopback)
+    find(Level::kNotFit, "hears itself", "what is sent counts as received by drives", "loopback");
+  if (link.is_one_shot)
+    find(Level::kNotFit, "sends each frame only once",
+         "what is disturbed, or loses the bus to another frame, is lost", "one-shot");
+  if (link.presumes_ack)
+    find(Level::kWarning, "takes frames for acknowledged that nobody has acknowledged",
+         "a cut cable or a bus without power is noticed late", "presume-ack");
+  if (findings.empty())
+    findings.push_back({"can_mode", Level::kOk, bus.interface + ": sends, repeats and listens"});
+  return findings;
+}
+
 Finding checkState(const BusConfig& bus, const CanLink& link) {
   const std::string mend = fmt::format(
       "look at cable, termination, power and bit rate, then ip link set {0} down, and "
@@ -149,6 +173,7 @@ std::vector<Finding> checkBus(const MachineRoot& root, const BusConfig& bus,
   if (has_controller) {
     findings.push_back(checkBitRate(bus, *link));
     if (bus.data_bit_rate_per_s) findings.push_back(checkDataBitRate(bus, *link));
+    for (Finding& finding : checkModes(bus, *link)) findings.push_back(std::move(finding));
     findings.push_back(checkRestart(bus, *link));
     if (isUp(folder)) findings.push_back(checkState(bus, *link));
   }

@@ -79,6 +79,11 @@ std::optional<CanLink> parseCanLink(std::span<const char> message) {
   const auto state = frontOf<std::uint32_t>(attribute(data, IFLA_CAN_STATE));
   link.is_passive = state == CAN_STATE_ERROR_PASSIVE;
   link.is_bus_off = state == CAN_STATE_BUS_OFF;
+  const auto modes = frontOf<can_ctrlmode>(attribute(data, IFLA_CAN_CTRLMODE)).flags;
+  link.is_listen_only = (modes & CAN_CTRLMODE_LISTENONLY) != 0;
+  link.is_loopback = (modes & CAN_CTRLMODE_LOOPBACK) != 0;
+  link.is_one_shot = (modes & CAN_CTRLMODE_ONE_SHOT) != 0;
+  link.presumes_ack = (modes & CAN_CTRLMODE_PRESUME_ACK) != 0;
   link.restart_ms = frontOf<std::uint32_t>(attribute(data, IFLA_CAN_RESTART_MS));
   return link;
 }

@@ -47,7 +47,7 @@ class BusChecks : public testing::Test {
 
 TEST_F(BusChecks, NothingToMendWhereAllIsInOrder) {
   const std::vector<Finding> findings = check();
-  EXPECT_EQ(findings.size(), 6u);
+  EXPECT_EQ(findings.size(), 7u);
   for (const Finding& finding : findings) EXPECT_EQ(finding.level, Level::kOk) << finding.what;
 }
 
@@ -106,7 +106,7 @@ TEST_F(BusChecks, ABusOfCanFdHasARateOfItsData) {
   EXPECT_EQ(levelOf(other, "can_data_bit_rate"), Level::kNotFit);
   EXPECT_EQ(other[3].what, "can0: data at 0 bit/s, but robot.yaml says 5000000");
   EXPECT_TRUE(contains(other[3].how_to_mend, "bitrate 1000000 dbitrate 5000000 fd on"));
-  EXPECT_EQ(check().size(), 6u) << "a classic bus is not asked for one";
+  EXPECT_EQ(check().size(), 7u) << "a classic bus is not asked for one";
 }
 
 /// A data bit rate alone does not let frames of CAN FD through; a virtual interface has none.
@@ -136,6 +136,25 @@ TEST_F(BusChecks, AControllerThatIsOffTheBusIsNotFit) {
   link.is_passive = false;
   link.is_bus_off = true;
   EXPECT_EQ(levelOf(check(link), "can_state"), Level::kNotFit);
+}
+
+TEST_F(BusChecks, AModeThatKeepsFramesFromDrivesIsSwitchedOff) {
+  struct Mode {
+    bool CanLink::*is_on;
+    Level level;
+    const char* name;
+  };
+  for (const Mode& mode : {Mode{&CanLink::is_listen_only, Level::kNotFit, "listen-only off"},
+                           {&CanLink::is_loopback, Level::kNotFit, "loopback off"},
+                           {&CanLink::is_one_shot, Level::kNotFit, "one-shot off"},
+                           {&CanLink::presumes_ack, Level::kWarning, "presume-ack off"}}) {
+    CanLink link = controller();
+    link.*mode.is_on = true;
+    const std::vector<Finding> findings = check(link);
+    EXPECT_EQ(levelOf(findings, "can_mode"), mode.level) << mode.name;
+    const auto& finding = *std::ranges::find(findings, "can_mode", &Finding::name);
+    EXPECT_TRUE(finding.how_to_mend.ends_with(mode.name)) << finding.how_to_mend;
+  }
 }
 
 TEST_F(BusChecks, RestartAfterBusOffIsWarnedOf) {

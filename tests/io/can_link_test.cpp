@@ -65,6 +65,20 @@ TEST(CanLink, ReadsTheRateOfTheData) {
   EXPECT_EQ(parseCanLink(linkMessage("can", controllerData(1, 0)))->data_bit_rate_per_s, 0);
 }
 
+TEST(CanLink, ReadsTheControllersModes) {
+  const auto linkIn = [](unsigned modes) {
+    const can_ctrlmode mode{.mask = 0xffff, .flags = modes};
+    return *parseCanLink(
+        linkMessage("can", attribute(IFLA_CAN_CTRLMODE, bytesOf(mode)) + controllerData(1, 0)));
+  };
+  for (unsigned mode = 1; mode <= 0x8000; mode *= 2) {
+    EXPECT_EQ(linkIn(mode).is_loopback, mode == 0x01);
+    EXPECT_EQ(linkIn(mode).is_listen_only, mode == 0x02);
+    EXPECT_EQ(linkIn(mode).is_one_shot, mode == 0x08);
+    EXPECT_EQ(linkIn(mode).presumes_ack, mode == 0x40);
+  }
+}
+
 TEST(CanLink, ReadsWhetherTheControllerIsOnTheBus) {
   const auto linkIn = [](std::uint32_t state) {
     return *parseCanLink(linkMessage(

@@ -10,9 +10,8 @@
 
 namespace tactus {
 
-/// A bus's interface: there, up and on the bus, its adapter, bit rates, CAN FD where the bus is to
-/// have it, queue, and what it does after bus-off.
-/// `link`: what the kernel says of it.
+/// A bus's interface: there, up and on the bus, its adapter, bit rates, modes, CAN FD where the bus
+/// is to have it, queue, and what it does after bus-off. `link`: what the kernel says of it.
 std::vector<Finding> checkBus(const MachineRoot& root, const BusConfig& bus,
                               const std::optional<CanLink>& link);
 

@@ -14,6 +14,10 @@ struct CanLink {
   long data_bit_rate_per_s = 0;  ///< of CAN FD; 0: not set
   bool is_passive = false;       ///< error-passive, as where nobody acknowledges
   bool is_bus_off = false;       ///< sends and hears nothing until it is started anew
+  bool is_listen_only = false;   ///< sends nothing, not even acknowledgements
+  bool is_loopback = false;      ///< hears itself, and acknowledges what it sends
+  bool is_one_shot = false;      ///< does not repeat what was disturbed or has lost arbitration
+  bool presumes_ack = false;     ///< takes for sent what nobody has acknowledged
 };
 
 /// From an RTM_NEWLINK message of rtnetlink, whole or not. nullopt: says nothing of that kind.
