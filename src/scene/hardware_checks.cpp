@@ -71,7 +71,7 @@ std::string cureOfOverload(double period_s, const RobotConfig& config,
       continue;
     return fmt::format("a period_s of at least {}", longer_s);
   }
-  return "fewer drives on this bus";
+  return "less on this bus: fewer drives or modules, or fewer samples a second";
 }
 
 void checkBusLoads(const YamlNode& root, double period_s, const RobotConfig& config,
