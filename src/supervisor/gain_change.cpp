@@ -47,8 +47,11 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
     case GainState::kKept:
       return;
     case GainState::kWaiting:
-      // The way back that was begun goes on, or it would wait on half of it.
-      if (mustWait() && isGoingBack()) return advance(GainState::kWaiting);
+      // A way that was begun goes on, or it would wait on half of it.
+      if (mustWait() && !isSame(gains_, to_)) {
+        if (isGoingBack() || !trips(seen)) advance(GainState::kWaiting);
+        return;
+      }
       // Over others that are on trial, which are watched as before.
       if (isSame(gains_, kept_) || (!trips(seen) && !isOver())) begin();
       return;

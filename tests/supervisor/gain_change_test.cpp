@@ -225,5 +225,29 @@ TEST_F(GainChangeTest, WhatIsOrderedOnTheWayBackIsNeitherLostNorHoldsItUp) {
   }
 }
 
+/// Of gains that nobody has asked for: half way to those that the change which waits is laid over.
+TEST_F(GainChangeTest, WhatWaitsDoesNotHoldUpTheRampBeforeIt) {
+  for (const bool swings : {false, true}) {
+    change_ = GainChange(Gains{}, kPeriod_s);
+    pass(1.0);
+    change_.order(order(1, 0.3));
+    pass(0.2);
+    GainOrder next = order(2, 0.2);
+    next.waits_for_free = true;
+    change_.order(next);
+    if (swings) {
+      passForce(5.0, swinging);
+      EXPECT_EQ(change_.report().trouble, GainTrouble::kSwings);
+      EXPECT_EQ(T_s(), 0.1);
+      continue;
+    }
+    pass(5.0);
+    EXPECT_EQ(state(), GainState::kWaiting);
+    EXPECT_EQ(T_s(), 0.3);
+    pass(2.0, {});
+    EXPECT_EQ(T_s(), 0.2);
+  }
+}
+
 }  // namespace
 }  // namespace tactus
