@@ -34,8 +34,8 @@ std::string strokeText(const Scene& scene, int joint, const StrokeReport& stroke
     return "its counts run against the command: encoder and motor of the drive disagree in sense; "
            "set its polarity (607E), or its wiring, right";
   if (stroke.fault == Fault::kDriveSetupRefused && refused.index != 0)
-    return fmt::format("the drive refuses its set-up at object {:04x}:{:02x}: {}", refused.index,
-                       refused.subindex, refusalText(refused));
+    return "the drive refuses its set-up at " +
+           refusalText(scene.hardware->drives[joint], stroke.drive);
   if (stroke.fault == Fault::kFollowingError)
     return fmt::format(
         "it does not follow, {} behind the command; is it stuck, or its brake "

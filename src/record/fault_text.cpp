@@ -16,11 +16,6 @@ bool isOfDrive(Fault fault) {
   return fault >= Fault::kDriveSilent && fault <= Fault::kDriveSetupRefused;
 }
 
-std::string describeRefusal(const SetupFailure& failure) {
-  return fmt::format(", object {:04X}:{:02X}: {}", failure.index, failure.subindex,
-                     refusalText(failure));
-}
-
 /// As the drive's manual has it.
 std::string describeCode(const DriveConfig& drive, int code) {
   if (drive.kind != DriveKind::kMoteus) return fmt::format(", emergency code 0x{:04X}", code);
@@ -33,9 +28,12 @@ std::string describeDrive(const FaultReport& report, const Scene& scene) {
   std::string text =
       fmt::format("drive {} on {} (joint {})", drive.node_id,
                   scene.hardware->buses[drive.bus].interface, scene.joint_names[report.joint]);
-  if (report.drive.emergency_code != 0) text += describeCode(drive, report.drive.emergency_code);
-  if (report.fault == Fault::kDriveSetupRefused)
-    text += describeRefusal(report.drive.setup_failure);
+  if (report.drive.emergency_code != 0)
+    text += describeCode(drive, report.drive.emergency_code);
+  else if (report.fault == Fault::kDriveFault && drive.kind == DriveKind::kMoteus &&
+           report.drive.state != DriveState::kFault)
+    text += ", its position or velocity is NaN";
+  if (report.fault == Fault::kDriveSetupRefused) text += ", " + refusalText(drive, report.drive);
   return text + fmt::format(", {}", driveStateName(report.drive.state));
 }
 
@@ -77,10 +75,16 @@ Json busName(const FaultReport& report, const Scene& scene) {
 
 }  // namespace
 
-std::string refusalText(const SetupFailure& failure) {
+std::string refusalText(const DriveConfig& drive, const DriveReport& report) {
+  const SetupFailure& failure = report.setup_failure;
+  const bool is_moteus = drive.kind == DriveKind::kMoteus;
+  std::string text = is_moteus
+                         ? fmt::format("register 0x{:03X}: ", failure.index)
+                         : fmt::format("object {:04X}:{:02X}: ", failure.index, failure.subindex);
   if (failure.is_other_value)
-    return fmt::format("is {:#x}, expected {:#x}", failure.value, failure.expected);
-  return failure.abort_code == 0 ? "no answer" : sdoAbortName(failure.abort_code);
+    return text + fmt::format("is {:#x}, expected {:#x}", failure.value, failure.expected);
+  if (failure.abort_code != 0) return text + sdoAbortName(failure.abort_code);
+  return text + (is_moteus && report.has_state ? "is NaN" : "no answer");
 }
 
 std::string faultEvent(const FaultReport& report, const Scene& scene) {

@@ -99,6 +99,35 @@ TEST(FaultTextOfMoteus, TellsTheFaultCodeAsItsDocumentationDoes) {
       << faultEvent(report, scene);
 }
 
+TEST(FaultTextOfMoteus, NamesTheRegisterAndWhatIsNaN) {
+  const Scene scene = test::shippedScene("robots/planar2_moteus");
+  FaultReport report = ofDrive(Fault::kDriveFault, {.value = 0.0, .unit = "fault code"});
+  report.joint = 1;
+  const auto has = [&](const std::string& text) {
+    return faultEvent(report, scene).find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(has("), its position or velocity is NaN, operation enabled"));
+  report.drive.state = DriveState::kFault;
+  EXPECT_FALSE(has("NaN"));
+  report.fault = Fault::kDriveSetupRefused;
+  report.drive.setup_failure = {.index = 1};
+  EXPECT_TRUE(has("), register 0x001: no answer, "));
+  report.drive.has_state = true;
+  EXPECT_TRUE(has("), register 0x001: is NaN, "));
+  report.drive.setup_failure = {0x102, 0, 0, true, 4, 5};
+  EXPECT_TRUE(has("), register 0x102: is 0x4, expected 0x5, "));
+}
+
+TEST_F(FaultText, TellsTheObjectThatADriveRefuses) {
+  FaultReport report = ofDrive(Fault::kDriveSetupRefused, {});
+  report.drive.setup_failure = {0x60c2, 1, 0x06090030};
+  const std::string text = faultEvent(report, scene_);
+  EXPECT_NE(text.find(", object 60C2:01: "), std::string::npos) << text;
+  report.drive.has_state = true;
+  report.drive.setup_failure.abort_code = 0;
+  EXPECT_NE(faultEvent(report, scene_).find(", object 60C2:01: no answer, "), std::string::npos);
+}
+
 TEST_F(FaultText, OfTheLawNamesTheJointAlone) {
   FaultReport report = ofDrive(Fault::kCommandNotFinite, {});
   EXPECT_EQ(faultEvent(report, scene_), "command_not_finite, joint j5");

@@ -15,9 +15,9 @@ std::string faultEvent(const FaultReport& report, const Scene& scene);
 /// The same, what that fault is, and how the arm comes to rest.
 std::string describeFault(const FaultReport& report, const Scene& scene);
 
-/// Why a drive refused its set-up at an object: "no answer", "invalid value", "is 0x1, expected
-/// 0x2".
-std::string refusalText(const SetupFailure& failure);
+/// Where and why a drive refused its set-up: "object 6502:00: no answer", "register 0x102: is 0x4,
+/// expected 0x5".
+std::string refusalText(const DriveConfig& drive, const DriveReport& report);
 
 /// "running", or "fault: drive_silent, drive 2 on can1 (joint j5), ...: no feedback ..." and so on.
 std::string describeMode(const ModeReport& report, const Scene& scene);
