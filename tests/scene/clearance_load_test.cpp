@@ -112,6 +112,23 @@ TEST(ClearanceLoad, RefusesToAvoidFasterThanACycleCanFollow) {
   EXPECT_NE(errorWith(1.01 * most_per_s), "");
 }
 
+/// What each of several bodies asks for adds up: of two walls in one place half of the gain.
+TEST(ClearanceLoad, BoundsTheGainOfAllBodiesTogether) {
+  const auto bound_per_s = [](int walls) {
+    std::string section =
+        "  self_collision: false\n  avoid: {distance_m: 0.5, gain_per_s: 900}\n  keep_out:\n";
+    for (int i = 0; i < walls; ++i)
+      section += "    - plane: {point_m: [0, 0, -0.3], normal: [0, 0, 1]}\n";
+    const std::string error = test::loadError(clearFiles(section).sources());
+    const std::size_t at = error.find("expected at most ");
+    EXPECT_NE(at, std::string::npos) << error;
+    return at == std::string::npos ? 0.0 : std::stod(error.substr(at + 17));
+  };
+  const double one_per_s = bound_per_s(1);
+  EXPECT_GT(one_per_s, 1.0);
+  EXPECT_NEAR(bound_per_s(2), one_per_s / 2.0, 1e-2 * one_per_s);
+}
+
 TEST(ClearanceLoad, EndsAsOneLine) {
   const auto expectError = [](const std::string& section, const std::string& part) {
     const std::string error = test::loadError(clearFiles(section).sources());
