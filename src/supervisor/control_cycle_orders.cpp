@@ -75,6 +75,8 @@ void ControlCycle::goOnWithGains() noexcept {
     seen.is_at_limit |= std::abs(output_.velocity[i]) >= kFullSpeed * most[i];
   seen.has_fault = mode_.fault != Fault::kNone;
   seen.is_running = isRunning();
+  const ControllerConfig& config = controller_.config();
+  seen.can_feel = config.force_control && !config.tactile_modules.empty();
   gain_change_.update(seen);
   if (gain_change_.isChanging()) gains_ = gain_change_.gains();
 }

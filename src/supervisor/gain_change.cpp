@@ -91,7 +91,8 @@ void GainChange::advance(GainState next) noexcept {
 }
 
 void GainChange::watch(const GainWatchInput& seen) noexcept {
-  contact_s_ += is_in_contact_ && seen.is_running ? period_s_ : 0.0;
+  const bool is_tried = seen.is_running && (is_in_contact_ || !seen.can_feel);
+  contact_s_ += is_tried ? period_s_ : 0.0;
   if (isOver()) return;
   const double trial_s = std::max(kLeastTrial_s, kTrialTimeConstants * to_.force.time_constant_s);
   if (for_s_ < kNoLimit || contact_s_ < trial_s) return;

@@ -73,6 +73,16 @@ TEST_F(GainChangeTest, OnlyContactCountsForTheTrial) {
   EXPECT_EQ(state(), GainState::kOnTrial);
 }
 
+/// Else its gains would be on trial for ever, and a fault of days later would take them back.
+TEST_F(GainChangeTest, AnArmThatFeelsNothingTriesThemByMoving) {
+  change_.order(order(1, 0.2));
+  pass(60.0, {.is_running = false, .can_feel = false});
+  EXPECT_EQ(state(), GainState::kOnTrial);
+  pass(4.1, {.can_feel = false});
+  EXPECT_EQ(state(), GainState::kKept);
+  EXPECT_EQ(T_s(), 0.2);
+}
+
 TEST_F(GainChangeTest, NeverSteps) {
   double before = T_s();
   std::uint32_t number = 0;

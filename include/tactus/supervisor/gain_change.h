@@ -22,6 +22,7 @@ struct GainWatchInput {
   bool is_at_limit = false;  ///< a joint moves as fast as it may
   bool has_fault = false;
   bool is_running = true;  ///< the law moves the arm: an arm that holds tries no gains
+  bool can_feel = true;    ///< else its motion alone is what tries them
 };
 
 enum class GainState : std::uint8_t {
