@@ -86,6 +86,22 @@ class Running(unittest.TestCase):
         self.assertNotIn(self.daemon.task()["state"], ("arrived", "blocked"))
         self.assertIn(self.daemon.stream(start)["state"], ("moving", "holding", "arrived", "late"))
 
+    def test_answers_each_thread_what_it_asked(self):
+        wrong = []
+
+        def ask(request, of_it):
+            for _ in range(200):
+                answer = self.daemon.ask({"do": request})
+                if (of_it in answer) != (request == "show"):
+                    wrong.append((request, sorted(answer)))
+
+        threads = [threading.Thread(target=ask, args=(request, "ordered")) for request in ("show", "hold")]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(wrong, [])
+
     def test_leads_the_tool_by_the_commands(self):
         os.environ["RUNTIME_DIRECTORY"] = str(self.rig.runtime)
         self.addCleanup(os.environ.pop, "RUNTIME_DIRECTORY")

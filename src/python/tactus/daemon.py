@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import socket
+import threading
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from types import TracebackType
@@ -26,6 +27,8 @@ class Daemon:
     path: of the socket; None: /run/tactus/control, or in the folder that RUNTIME_DIRECTORY names, as of
     the commands. timeout_s: how long an answer may take. RunError: no daemon runs, it may not
     be asked, or does not answer; then a new connection is needed. DaemonError: it refuses.
+
+    Threads may share it: each gets the answer to its own request, one after the other.
     """
 
     def __init__(self, path: str | os.PathLike[str] | None = None,
@@ -34,6 +37,7 @@ class Daemon:
         self.path = os.path.join(folder, "control") if path is None else os.fspath(path)
         self._socket: socket.socket | None = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._socket.settimeout(timeout_s)
+        self._turn = threading.RLock()  # a handler of a signal that holds the arm may not wait for itself
         try:
             self._socket.connect(self.path)
         except (FileNotFoundError, ConnectionRefusedError) as error:
@@ -59,18 +63,9 @@ class Daemon:
 
     def ask(self, request: Mapping[str, object]) -> dict[str, Any]:
         """One request of docs/control.md as it stands there, and its answer."""
-        if self._socket is None:
-            raise ValueError("the connection is closed, expected a new tactus.Daemon")
         text = json.dumps(dict(request), allow_nan=False)
-        try:
-            self._socket.send(text.encode())
-            packet = self._socket.recv(_MAX_ANSWER)
-        except OSError as error:
-            self.close()  # an answer that comes late would be taken for the next one
-            raise RunError(f"{self.path}: the daemon does not answer: {error}") from error
-        except BaseException:  # Ctrl-C, likewise
-            self.close()
-            raise
+        with self._turn:  # an answer does not say to which request
+            packet = self._exchange(text.encode())
         try:
             answer = json.loads(packet)
         except ValueError:
@@ -82,6 +77,19 @@ class Daemon:
         if answer["done"] is not True:
             raise DaemonError(answer.get("error", "refused"))
         return answer
+
+    def _exchange(self, packet: bytes) -> bytes:
+        if self._socket is None:
+            raise ValueError("the connection is closed, expected a new tactus.Daemon")
+        try:
+            self._socket.send(packet)
+            return self._socket.recv(_MAX_ANSWER)
+        except OSError as error:
+            self.close()  # an answer that comes late would be taken for the next one
+            raise RunError(f"{self.path}: the daemon does not answer: {error}") from error
+        except BaseException:  # Ctrl-C, likewise
+            self.close()
+            raise
 
     def status(self) -> dict[str, Any]:
         """What `tactus status --json` prints: mode, fault, force, times of the loop."""
