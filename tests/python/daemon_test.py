@@ -16,6 +16,7 @@ import threading
 import time
 import unittest
 
+import numpy as np
 from common import ROOT, TACTUS, program, tactus
 
 sys.path.insert(0, str(ROOT / "tests/support"))
@@ -66,10 +67,29 @@ class Running(unittest.TestCase):
             self.assertRegex(str(refused.exception), r"^[^\n]{10,}$")
         for call in (lambda: self.daemon.set({"controller.damping": float("nan")}),
                      lambda: self.daemon.set({"controller.damping": object()}),
-                     lambda: self.daemon.move(["a", 1, 2]), lambda: self.daemon.move(3)):
+                     lambda: self.daemon.move(["a", 1, 2]), lambda: self.daemon.move(3),
+                     lambda: self.daemon.move("000", relative=True),
+                     lambda: self.daemon.move(["0", "0", "0"], relative=True),
+                     lambda: self.daemon.move([True, 0, 0], relative=True),
+                     lambda: self.daemon.move([0, float("inf"), 0], relative=True),
+                     lambda: self.daemon.move([0, 0, 0], relative="no"),
+                     lambda: self.daemon.stream([0, 0, 0], relative=1),
+                     lambda: self.daemon.follow([{"to_m": [0, {1}, 0]}])):
             with self.assertRaises((TypeError, ValueError)):
                 call()
         self.assertTrue(self.daemon.show()["done"])  # the connection still works
+
+    def test_takes_numbers_of_numpy(self):
+        damping = self.daemon.show()["ordered"]["controller.damping"]
+        for one in (np.float32, np.float64, np.int64):
+            self.daemon.set({"controller.damping": one(1)})
+            self.assertEqual(self.daemon.show()["ordered"]["controller.damping"], 1)
+        self.daemon.set({"controller.damping": damping})
+        with self.assertRaises(ValueError):
+            self.daemon.set({"controller.damping": np.float32("nan")})
+        still = np.zeros(3, np.float32)
+        self.daemon.move(still, relative=np.bool_(True), speed_m_per_s=np.float32(0.05))
+        self.assertEqual(self.daemon.follow([{"to_m": still, "relative": True}], wait=True)["state"], "arrived")
 
     def test_moves_the_tool(self):
         start = self.daemon.task()["p_BaseTool_m"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import pathlib
 import socket
@@ -11,6 +12,8 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from types import TracebackType
 from typing import Any
+
+import numpy as np
 
 from .errors import DaemonError, RunError
 from .scene import Scene
@@ -63,7 +66,7 @@ class Daemon:
 
     def ask(self, request: Mapping[str, object]) -> dict[str, Any]:
         """One request of docs/control.md as it stands there, and its answer."""
-        text = json.dumps(dict(request), allow_nan=False)
+        text = json.dumps(dict(request), allow_nan=False, default=_plain)
         with self._turn:  # an answer does not say to which request
             packet = self._exchange(text.encode())
         try:
@@ -195,12 +198,33 @@ def _without_none(request: Mapping[str, object]) -> dict[str, object]:
     return {key: value for key, value in request.items() if value is not None}
 
 
+def _plain(value: object) -> object:
+    """Of NumPy's numbers and arrays, for which JSON has no word."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    raise TypeError(f"{value!r}: a {type(value).__name__}, expected numbers, texts, bools, None, or lists "
+                    "or mappings of these")
+
+
+def _numbers(name: str, point: _Point | None) -> list[float | None] | None:
+    """Text is refused: "123" would be three numbers."""
+    return None if point is None else [None if x is None else _number(name, x) for x in point]
+
+
+def _number(name: str, value: object) -> float:
+    array = np.asarray(value)
+    if array.ndim != 0 or array.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: {value!r} in it, expected numbers, or None for what stays")
+    if not math.isfinite(array):
+        raise ValueError(f"{name}: {value} in it, expected finite numbers")
+    return float(array)
+
+
 def _target(to_m: _Point | None, rotate_rad: _Point | None, relative: bool,
             speed_m_per_s: float | None, speed_rad_per_s: float | None) -> dict[str, object]:
-    def numbers(point: _Point | None) -> list[float | None] | None:
-        return None if point is None else [None if x is None else float(x) for x in point]
-
-    target = {"to_m": numbers(to_m), "rotate_rad": numbers(rotate_rad),
+    if not isinstance(relative, (bool, np.bool_)):  # any text would be true, "no" as well
+        raise TypeError(f"relative: {relative!r}, expected True or False")
+    target = {"to_m": _numbers("to_m", to_m), "rotate_rad": _numbers("rotate_rad", rotate_rad),
               "relative": True if relative else None, "speed_m_per_s": speed_m_per_s,
               "speed_rad_per_s": speed_rad_per_s}
     return _without_none(target)
