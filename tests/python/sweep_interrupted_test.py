@@ -101,6 +101,33 @@ class Interrupted(Sweeps):
             begun = self.file_.read_bytes().count(b"\n")
         self.finish()
 
+    def test_before_the_first_run(self):
+        """While the study is read: out of a pipe into which nobody writes."""
+        study = self.folder / "slow.yaml"
+        os.mkfifo(study)
+        sweep = subprocess.Popen(self.command(study, self.out), stderr=subprocess.PIPE, text=True)
+        writer = os.open(study, os.O_WRONLY)  # waits for the reader
+        self.addCleanup(os.close, writer)
+        sweep.send_signal(signal.SIGINT)
+        _, said = sweep.communicate(timeout=60)
+        self.assertEqual((sweep.returncode, said.count("\n")), (3, 1), said)
+        self.assertIn("SIGINT: stopped", said)
+
+    def test_where_nobody_takes_its_answer(self):
+        self.file_.write_bytes(self.content)
+        for arguments in ((), ("--json",)):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run(self.command(self.folder / "study.yaml", self.out, *arguments), stdout=full,
+                                      stderr=subprocess.PIPE, text=True)
+            self.assertEqual((done.returncode, done.stderr), (3, "standard output: cannot be written\n"))
+        read, write = os.pipe()
+        os.close(read)
+        done = subprocess.run(self.command(self.folder / "study.yaml", self.out), stdout=write,
+                              stderr=subprocess.PIPE, text=True)
+        os.close(write)
+        self.assertEqual((done.returncode, done.stderr), (-signal.SIGPIPE, ""))
+        self.expect_whole()
+
     def wait_for_lines(self, count):
         for _ in range(6000):
             if self.file_.exists() and self.file_.read_bytes().count(b"\n") >= min(count, RUNS + 1):

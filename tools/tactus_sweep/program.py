@@ -1,5 +1,6 @@
 """`tactus sweep`."""
 
+import contextlib
 import json
 import os
 import signal
@@ -26,6 +27,8 @@ def stop(number, _):
 
 def run_program(arguments):
     """Exit code."""
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, stop)
     try:
         study = read_study(arguments.study)
         plan = make_plan(study, scenes.load_files(study))
@@ -40,21 +43,32 @@ def run_program(arguments):
     except Stopped as stopped:
         return refuse(f"{stopped}: stopped; the runs so far are kept, and the same command goes on", FAULT,
                       arguments)
-    print(json.dumps(answer) if arguments.json else text_of(answer))
-    return DONE if answer["completed"] else FAULT
+    code = DONE if answer["completed"] else FAULT
+    return code if say(json.dumps(answer) if arguments.json else text_of(answer)) else FAULT
 
 
 def refuse(error, exit_code, arguments):
-    print(error, file=sys.stderr)
+    with contextlib.suppress(OSError):  # there is nobody left to tell
+        print(error, file=sys.stderr)
     if arguments.json:
-        print(json.dumps({"done": False, "error": str(error)}))
+        say(json.dumps({"done": False, "error": str(error)}))
     return exit_code
+
+
+def say(text):
+    """False: it cannot be written. Who has gone ends this, as of the other commands."""
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    try:
+        print(text, flush=True)
+    except OSError:
+        print("standard output: cannot be written", file=sys.stderr)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or it is tried once more
+        return False
+    return True
 
 
 def sweep(study, plan, arguments):
     me = identity()
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, stop)
     kept = results.Results(arguments.output, results.header_of(plan, me))
     before = len(kept.rows)
     try:

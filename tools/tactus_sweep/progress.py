@@ -1,5 +1,6 @@
 """How far a sweep has come, on standard error: one line that changes on a terminal, else a line now and then."""
 
+import contextlib
 import math
 import sys
 import time
@@ -29,9 +30,13 @@ class Progress:
             return
         self.shown = now
         text = progress_text(done, self.total, done - self.before, now - self.begin)
-        print(f"\r{text}\x1b[K" if self.is_terminal else text, end="" if self.is_terminal else "\n",
-              file=sys.stderr, flush=True)
+        self.write(f"\r{text}\x1b[K" if self.is_terminal else text + "\n")
 
     def end(self):
         if self.is_terminal:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+            self.write("\r\x1b[K")
+
+    def write(self, text):
+        """A terminal that has gone is no reason to stop."""
+        with contextlib.suppress(OSError):
+            print(text, end="", file=sys.stderr, flush=True)
