@@ -7,6 +7,7 @@ usage: pick_around.py X Y Z     where the tool shall go: m, base frame
 Needs nothing but Python, and a running tactusd whose scene has `task: {source: commands}`."""
 
 import json
+import math
 import os
 import socket
 import sys
@@ -59,12 +60,22 @@ def ways_round(start, target):
         yield name, (aside, ahead, target)
 
 
-def main():
-    target = [float(word) for word in sys.argv[1:4]]
-    if len(target) != 3:
+def target_of(words):
+    try:
+        target = [float(word) for word in words]
+    except ValueError:
+        target = []
+    if len(target) != 3 or not all(map(math.isfinite, target)):
         sys.exit(__doc__)
-    arm = Arm()
-    start = arm.tool()["p_BaseTool_m"]
+    return target
+
+
+def pick(arm, target):
+    """Exit code."""
+    tool = arm.tool()
+    if tool is None:
+        raise RuntimeError("the scene's task is a trajectory, expected task.source: commands")
+    start = tool["p_BaseTool_m"]
     state, contact = arm.follow(target)
     print(f"straight on: {state}")
     if state == "given_up" and contact:
@@ -81,6 +92,16 @@ def main():
                 break
     arm.ask(do="hold")
     return 0 if state == "arrived" else 1
+
+
+def main():
+    target = target_of(sys.argv[1:])
+    try:
+        return pick(Arm(), target)
+    except KeyboardInterrupt:  # a connection of its own: an answer may be on its way in the other
+        Arm().ask(do="hold")
+        print("held")
+        return 1
 
 
 if __name__ == "__main__":
