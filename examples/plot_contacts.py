@@ -54,7 +54,7 @@ def main():
         log = tactus.read_log(arguments.log)
         contacts = log.contacts
         draw(log, contacts, arguments.output)
-    except (tactus.ConfigError, OSError) as error:
+    except (tactus.ConfigError, OSError, ValueError) as error:  # also of matplotlib: an ending that it cannot
         print(error, file=sys.stderr)
         return 1
     for contact in contacts:

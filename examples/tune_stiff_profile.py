@@ -54,7 +54,12 @@ def main():
     parser.add_argument("--max-tool-error-mm", type=float, default=float("inf"), metavar="MM")
     arguments = parser.parse_args()
     pairs = list(itertools.product(arguments.T, arguments.d))
-    try:  # threads do, as a simulation lets others go on
+    try:
+        if tactus.Scene(arguments.scene).variant == "none":
+            print(f"{arguments.scene}: without force control there is nothing to tune, expected controller.variant",
+                  file=sys.stderr)
+            return 1
+        # threads do, as a simulation lets others go on
         with concurrent.futures.ThreadPoolExecutor() as threads:
             results = list(threads.map(lambda pair: attempt(arguments.scene, *pair), pairs))
     except tactus.ConfigError as error:

@@ -55,6 +55,9 @@ class Tuning(Scratch):
         done = example("tune_stiff_profile.py", self.folder / "nix.yaml")
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"^\S+nix.yaml:1:1: -: [^\n]*\n$")
+        done = example("tune_stiff_profile.py", SCENES / "scenario1_none.yaml")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"^\S+scenario1_none.yaml: without force control [^\n]*\n$")
 
 
 class Plotting(Scratch):
@@ -74,6 +77,10 @@ class Plotting(Scratch):
         done = example("plot_contacts.py", self.file("run.ulg", "no log"))
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"^\S+run.ulg:1:[^\n]*\n$")
+        program("simulate", SCENES / "robots/planar2_free.yaml", "-o", self.folder)
+        done = example("plot_contacts.py", self.folder / "planar2_free/run.ulg", "-o", self.folder / "contacts.xyz")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"^Format 'xyz' is not supported [^\n]*\n$")
 
 
 class Spring:
