@@ -34,6 +34,23 @@ class Results(Sweeps):
         self.expect_front(one)
         self.expect_reruns(one)
 
+    def test_name_what_was_chosen_and_not_what_disturbed(self):
+        drawn = "disturbances: {draws: 3, keys: {simulation.tactile_module.noise_N: {from: 0, to: 0.05}}}"
+        other = SCENE.parent / "ur5e_contact.yaml"
+        for number, (scenes_, grid, named) in enumerate((
+                ([SCENE], "[0.5, 0.7]", r"controller\.damping=0\.[57]"),
+                ([SCENE], "[0.5]", r"controller\.damping=0\.5, simulation\.tactile_module\.noise_N=\S+"),
+                ([SCENE, other], "[0.5]", r"\S+_contact\.yaml, controller\.damping=0\.5, simulation\S+noise_N=\S+"))):
+            text = (f"scenes: {json.dumps([str(scene) for scene in scenes_])}\nset: {{simulation.duration_s: 1}}\n"
+                    f"grid: {{controller.damping: {grid}}}\n{drawn}\n")
+            done = self.sweep(self.study(text), self.folder / f"out{number}")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, rf"(?m)^best: {named}$")
+            page = html.unescape((self.folder / f"out{number}/report.html").read_text())
+            part = page[page.index('<table class="best">'):]
+            names = re.findall(r'<th scope="row">(.*?)</th>', part[:part.index("</table>")])
+            self.assertEqual(len(set(names)), len(names), names)
+
     def expect_all_kinds(self, rows):
         outcomes = {row["outcome"] for row in rows}
         self.assertIn("refused", outcomes)

@@ -6,6 +6,8 @@ import math
 import numpy as np
 from tactus._sweep import OF_CONTACTS
 
+from .table import scene_name
+
 FORCE, ERROR = "peak_force_N", "tcp_error_max_m"
 BINS = 16
 LEAST_RUNS = 8  # for a sensitivity that says something
@@ -50,13 +52,26 @@ def is_kept(row, name, limit):
     return row[name] <= limit
 
 
+def has_choice(plan):
+    return len(plan.parts[0]) * len(plan.parts[1]) > 1
+
+
+def candidate_text(study, plan, row):
+    """What tells a candidate from others, of one of its runs: not the disturbances that it meets."""
+    axes = study.grid + study.points.axes if has_choice(plan) else study.axes
+    chosen = {axis.key for axis in axes}
+    words = [setting for setting in plan.settings(row["run"]) if setting.split("=")[0] in chosen]
+    if not has_choice(plan) and (len(plan.scenes) > 1 or not words):
+        words.insert(0, scene_name(study, plan, row))
+    return ", ".join(words)
+
+
 def candidates(plan, rows):
     """The best first. Where there is nothing to choose, each run is one."""
     groups = {}
-    has_choice = len(plan.parts[0]) * len(plan.parts[1]) > 1
     for row in rows:
         place = plan.place(row["run"])
-        groups.setdefault(place[1:3] if has_choice else place, []).append(row)
+        groups.setdefault(place[1:3] if has_choice(plan) else place, []).append(row)
     found = [candidate_of(place, runs) for place, runs in groups.items()]
     return sorted(found, key=lambda one: (not one.is_fit, one.objective, one.place))
 

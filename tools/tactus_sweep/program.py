@@ -83,7 +83,7 @@ def sweep(study, plan, arguments):
     from . import study_page  # takes a second
 
     table.write_whole(arguments.output / study_page.NAME, study_page.build_page(study, plan, rows))
-    return answer_of(plan, rows, plan.runs - before, arguments.output)
+    return answer_of(study, plan, rows, plan.runs - before, arguments.output)
 
 
 def compute(plan, kept, arguments, me):
@@ -111,14 +111,15 @@ def make_pool(plan, arguments, me):
     return DaskPool(plan, arguments.scheduler, me)
 
 
-def answer_of(plan, rows, run_now, folder):
+def answer_of(study, plan, rows, run_now, folder):
     best = judge.candidates(plan, rows)[0]
     outcomes = [row["outcome"] for row in rows]
     return {"done": True, "runs": plan.runs, "run_now": run_now, "completed": outcomes.count("completed"),
             "refused": outcomes.count("refused"), "failed": outcomes.count("failed"),
             "faults": sum(outcome not in ("completed", "refused", "failed") for outcome in outcomes),
             "within_limits": sum(row["is_within"] for row in rows),
-            "best": {"is_fit": best.is_fit, "run": best.worst["run"], "set": plan.settings(best.worst["run"]),
+            "best": {"is_fit": best.is_fit, "candidate": judge.candidate_text(study, plan, best.worst),
+                     "run": best.worst["run"], "set": plan.settings(best.worst["run"]),
                      judge.FORCE: known(best.force_N), judge.ERROR: known(best.error_m),
                      "objective": known(best.objective)},
             "table": str(folder / table.NAME), "report": str((folder / "report.html").resolve())}
@@ -134,7 +135,7 @@ def text_of(answer):
              f"{answer['within_limits']} within the limits, {answer['faults']} with a fault, {answer['refused']} refused, "
              f"{answer['failed']} failed"]
     if best["objective"] is not None:
-        lines.append(f"best: {', '.join(best['set'])}" + ("" if best["is_fit"] else " (not within the limits)"))
+        lines.append(f"best: {best['candidate']}" + ("" if best["is_fit"] else " (not within the limits)"))
     return "\n".join([*lines, f"table: {answer['table']}", f"report: {answer['report']}"])
 
 

@@ -9,7 +9,7 @@ import matplotlib
 from tactus_report.document import html_page, table
 from tactus_report.figures import BLUE, GRID, RED, as_figure, as_svg, new_figure
 
-from .judge import ERROR, FORCE, candidates, completed, front, sensitivities
+from .judge import ERROR, FORCE, candidate_text, candidates, completed, front, sensitivities
 from .table import scene_name
 
 NAME = "report.html"
@@ -67,24 +67,18 @@ def front_figure(found, best):
     return as_figure("front", drawing, "Pareto front.", note)
 
 
-def candidate_settings(study, plan, row):
-    """What tells a candidate from others, of one of its runs."""
-    chosen = {axis.key for axis in study.grid + study.points.axes} or {axis.key for axis in study.axes}
-    return ", ".join(setting for setting in plan.settings(row["run"]) if setting.split("=")[0] in chosen)
-
-
 def figures_of(one):
     return [number(one.force_N), number(1e3 * one.error_m), number(one.objective)]
 
 
 def front_table(study, plan, best):
-    rows = [[candidate_settings(study, plan, one.runs[0]), *figures_of(one), "yes" if one.is_fit else "no"]
+    rows = [[candidate_text(study, plan, one.runs[0]), *figures_of(one), "yes" if one.is_fit else "no"]
             for one in best[::max(1, math.ceil(len(best) / MAX_FRONT_ROWS))]]
     return table(["On the front", "Peak force, N", "TCP error, mm", "Objective", "Within limits"], rows, "front")
 
 
 def best_table(study, plan, found):
-    rows = [[candidate_settings(study, plan, one.runs[0]), *figures_of(one), "yes" if one.is_fit else "no",
+    rows = [[candidate_text(study, plan, one.runs[0]), *figures_of(one), "yes" if one.is_fit else "no",
              rerun_line(study, plan, one.worst)] for one in found]
     return table(["Candidate", "Peak force, N", "TCP error, mm", "Objective", "Within limits",
                   "Its worst run again"], rows, "best")
