@@ -72,7 +72,8 @@ Json ControlClient::change(const Json& request, bool until_kept, double at_most_
   Json answer = ask(request);
   const Json number = answer.at("number");
   const Json changes = answer.at("changes");
-  if (changes.empty()) return answer;
+  // Also an order in which nothing differs is on its way; a reload without one answers as it is.
+  if (changes.empty() && answer.at("state") != "waiting") return answer;
   do {
     std::this_thread::sleep_for(kAskAgain);  // the loop takes an order within some cycles
     answer = ask({{"do", "show"}});

@@ -52,6 +52,15 @@ class Running(unittest.TestCase):
         self.daemon.set({"controller.damping": before + 0.02}, for_s=600)
         self.assertEqual(self.daemon.reload()["ordered"]["controller.damping"], before)
 
+    def test_does_not_say_that_what_runs_already_waits(self):
+        os.environ["RUNTIME_DIRECTORY"] = str(self.rig.runtime)
+        self.addCleanup(os.environ.pop, "RUNTIME_DIRECTORY")
+        value = self.daemon.show()["ordered"]["controller.damping"]
+        for answer in (self.daemon.set({"controller.damping": value}),
+                       json.loads(program("set", f"controller.damping={value}", "--json").stdout)):
+            self.assertEqual((answer["changes"], answer["state"]), ({}, "on_trial"))
+        self.assertEqual(self.daemon.reload()["changes"], {})
+
     def test_refuses_as_the_daemon_does(self):
         for call in (lambda: self.daemon.set({"controller.damping": -1}),
                      lambda: self.daemon.set({"controller.dampng": 1}),

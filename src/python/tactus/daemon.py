@@ -176,7 +176,8 @@ class Daemon:
         answer = self.ask(request)
         number, changes = answer["number"], answer["changes"]
         on_its_way = {"ramping", "going_back"} | ({"waiting", "on_trial"} if until_kept else set())
-        while changes:
+        # Also an order in which nothing differs is on its way; a reload without one answers as it is.
+        while changes or answer["state"] == "waiting":
             time.sleep(0.1)  # the loop takes an order within some cycles
             answer = self.show()
             if answer["number"] != number or answer["state"] not in on_its_way:
