@@ -161,6 +161,19 @@ Json ToolRequests::move(const Json& request) {
   return order(goal.order, duration_s);
 }
 
+/// A mistake says in which of up to 256 it is.
+ToolRequests::Target ToolRequests::asked(const std::string& what, const Json& waypoint,
+                                         const Pose& from, Kind kind) const {
+  try {
+    if (!waypoint.is_object()) refuseRequest("no object", "to_m and more");
+    refuseUnknown(waypoint, {"to_m", "rotate_rad", "relative", "speed_m_per_s", "speed_rad_per_s",
+                             "pause_s"});
+    return target(waypoint, from, kind);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", what, error.what()));
+  }
+}
+
 Json ToolRequests::follow(const Json& request) {
   refuseUnknown(request, {"do", "waypoints"});
   requireArm();
@@ -174,11 +187,9 @@ Json ToolRequests::follow(const Json& request) {
   Pose from = poseOf(sight_);
   JointVector q = jointsOf(sight_);
   for (const Json& waypoint : *found) {
-    if (!waypoint.is_object()) refuseRequest("a waypoint is no object", "to_m and more");
-    refuseUnknown(waypoint, {"to_m", "rotate_rad", "relative", "speed_m_per_s", "speed_rad_per_s",
-                             "pause_s"});
-    const Target next = target(waypoint, from, orders.empty() ? Kind::kGo : Kind::kGoNext);
-    q = reach(fmt::format("waypoint {}", orders.size() + 1), q, next).q_end;
+    const std::string what = fmt::format("waypoint {}", orders.size() + 1);
+    const Target next = asked(what, waypoint, from, orders.empty() ? Kind::kGo : Kind::kGoNext);
+    q = reach(what, q, next).q_end;
     orders.push_back(next.order);
     from = next.X_BaseTool;
   }

@@ -173,6 +173,10 @@ TEST_F(ToolRequestsTest, RefusesInOneLineAndDoesNothing) {
   const Json far = {{"to_m", {0.9, 0.3, 0.3}}};
   EXPECT_NE(refusal({{"do", "follow"}, {"waypoints", {far, 5}}}).find("no object"),
             std::string::npos);
+  const Json flat = {{"to_m", {0.0, 0.0}}};
+  const Json here = {{"to_m", {0.0, 0.0, 0.0}}, {"relative", true}};
+  EXPECT_EQ(refusal({{"do", "follow"}, {"waypoints", {here, flat}}}),
+            "waypoint 2: request: to_m is no vector, expected three numbers");
   Json many = Json::array();
   for (int i = 0; i < 257; ++i) many.push_back(far);
   EXPECT_NE(refusal({{"do", "follow"}, {"waypoints", many}}).find("at most 256"),

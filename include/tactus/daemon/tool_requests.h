@@ -35,6 +35,8 @@ class ToolRequests {
 
   void requireArm();
   Target target(const Json& request, const Pose& from, ToolOrder::Kind kind) const;
+  Target asked(const std::string& what, const Json& waypoint, const Pose& from,
+               ToolOrder::Kind kind) const;
   JointVector jointsOf(const ToolSight& sight) const;
   Reach reach(const std::string& what, const JointVector& q, const Target& target) const;
   Json order(const ToolOrder& order, double duration_s);
