@@ -52,7 +52,7 @@ class Daemon:
             raise RunError(f"{self.path}: {error.strerror or error}") from error
 
     def close(self) -> None:
-        """Ends the connection; the daemon goes on."""
+        """Ends the connection; the daemon goes on, and so does a motion that it was told."""
         if self._socket is not None:
             self._socket.close()
         self._socket = None
@@ -148,7 +148,8 @@ class Daemon:
         """Tells the tool where to go: to_m, base frame, None for one that stays; rotate_rad, axis times
         angle, base frame; at least one of them. relative: both from where the tool is.
 
-        Returns the task; with `wait` when the tool has arrived, was given up, or stopped.
+        Returns the task; with `wait` when the tool has arrived, was given up, or stopped. Ctrl-C ends the
+        waiting alone: hold() stops the tool.
         """
         return self._tell({"do": "move", **_target(to_m, rotate_rad, relative, speed_m_per_s,
                                                    speed_rad_per_s)}, wait)
