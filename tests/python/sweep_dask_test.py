@@ -75,6 +75,22 @@ class Cluster(Sweeps):
         self.assertEqual(sorted(runs_in(self.folder / "out")), list(range(runs)))
         self.assertEqual(table_of(self.folder / "out"), table_of(whole))
 
+    def test_says_in_one_line_how_it_ended_early(self):
+        """Of what dask is told late, when nobody waits for it, nothing is printed."""
+        study = self.study(STUDY.replace("points: 5", "points: 2000"))
+        self.worker("first")
+        command = self.command(study, self.folder / "out", "--scheduler", self.scheduler)
+        for end in (lambda sweep: sweep.send_signal(signal.SIGINT),
+                    lambda sweep: sweep.send_signal(signal.SIGTERM),
+                    lambda _: self.processes[0].kill()):  # the scheduler
+            before = self.done()
+            sweep = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+            self.wait(lambda: self.done() > before + 5)
+            end(sweep)
+            said, errors = sweep.communicate(timeout=120)
+            self.assertEqual((sweep.returncode, said), (3, ""), errors)
+            self.assertRegex(without_progress(errors), r"\A[^\n]*(stopped|is lost); the runs [^\n]*\n\Z")
+
     def test_refuses_workers_with_another_tactus(self):
         other = self.folder / "other"
         shutil.copytree(FOLDER, other)

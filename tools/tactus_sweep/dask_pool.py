@@ -21,7 +21,8 @@ class DaskPool:
     """As Pool."""
 
     def __init__(self, plan, scheduler, identity):
-        for name in ("distributed", "distributed.client"):  # what it says, this says in one line
+        # What it says, and what its connections say behind its back once they are gone, this says in one line.
+        for name in ("distributed", "distributed.client", "asyncio", "tornado", "tornado.application"):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
         self.plan, self.identity = plan, identity
         self.batches = {}  # future: runs
