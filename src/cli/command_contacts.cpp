@@ -82,6 +82,15 @@ std::string contactsText(const LoggedContacts& logged) {
   return text;
 }
 
+/// A contact at the begin of an older file that is not there would pass for a touch without a peak.
+void tellOfBegin(const std::string& path, int part, double begin_s) {
+  if (part > 0)
+    fmt::print(stderr,
+               "{}: begins at {:.3f} s of the run: what was before is not in it, nor counts for a "
+               "contact of then\n",
+               escaped(path), begin_s);
+}
+
 void printContacts(const Scene& scene, const std::vector<ContactFigures>& contacts, bool as_json) {
   for (const ContactFigures& contact : contacts) {
     const std::string line = as_json ? contactJson(contact, scene.module_links).dump() + "\n"
@@ -129,11 +138,16 @@ class ContactPrinter {
  private:
   /// False: it is of another run.
   bool read(UlogReader& reader) {
+    const bool is_first = !run_;
     if (!isOfRun(reader.description(), path_, run_)) return false;
-    next_part_ = logPart(reader.description(), path_).part + 1;
+    const int part = logPart(reader.description(), path_).part;
+    next_part_ = part + 1;
     reader.assumeGains(scene_.controller.gains);
     CycleRecord record;
-    while (reader.next(record)) printContacts(scene_, watch_.add(record), as_json_);
+    for (bool is_begin = is_first; reader.next(record); is_begin = false) {
+      if (is_begin) tellOfBegin(path_, part, record.t_s);
+      printContacts(scene_, watch_.add(record), as_json_);
+    }
     return true;
   }
 
@@ -165,8 +179,10 @@ void addContactsCommand(CLI::App& app, int& exit_code) {
     const bool whole_run = options->log.empty();
     if (whole_run) options->log = runningLog();
     if (options->follows) return ContactPrinter(options->log, options->json).follow(whole_run);
-    const LoggedContacts logged =
-        readContacts(whole_run ? logsOfRun(options->log) : std::vector<std::string>{options->log});
+    const std::vector<std::string> paths =
+        whole_run ? logsOfRun(options->log) : std::vector<std::string>{options->log};
+    const LoggedContacts logged = readContacts(paths);
+    tellOfBegin(paths.front(), logged.first_part, logged.begin_s);
     if (logged.is_cut_off) fmt::print(stderr, "{}: the log was cut off\n", escaped(options->log));
     std::fputs((options->json ? jsonText(contactsJson(logged)) : contactsText(logged)).c_str(),
                stdout);

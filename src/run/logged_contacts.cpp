@@ -38,7 +38,11 @@ LoggedContacts readContacts(const std::vector<std::string>& paths) {
     const LogPart part = logPart(reader.description(), paths[i]);
     if (i > 0) checkOrder(paths[i], part, paths[i - 1], before);
     before = part;
-    for (; reader.next(record); is_empty = false) keep(watch.add(record));
+    if (i == 0) logged.first_part = part.part;
+    for (; reader.next(record); is_empty = false) {
+      if (is_empty) logged.begin_s = record.t_s;
+      keep(watch.add(record));
+    }
     logged.is_cut_off = reader.cutOff();
   }
   if (is_empty) refuseEmptyLog(paths.back());

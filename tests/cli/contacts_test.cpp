@@ -116,6 +116,31 @@ TEST(Contacts, OfTheDaemonThatRunsAreThoseOfAllItsFiles) {
   EXPECT_EQ(Json(followedContacts({"contacts", "--json", "--follow"})), run.contacts());
 }
 
+/// The newest file alone: where its run goes on from another one is said.
+TEST(Contacts, OfAPartOfARunDoNotPassForThoseOfAll) {
+  const LoggedRun run("whole_arm/crops9_skin_two_links");
+  const test::RunFolder folder;
+  Scene scene = run.scene;
+  scene.log.max_bytes = static_cast<double>(run.log.content().size()) / 5.0 + 3e5;
+  scene.log.keep = 20;
+  RunLog log(scene, folder.path());
+  for (const CycleRecord& record : run.records) log.write(record);
+  log.close();
+  std::ofstream(folder.path() + "/summary.json") << "{}";
+  const auto said = [&](const std::string& name, bool follows) {
+    std::vector<std::string> arguments{"contacts", folder.path() + "/" + name};
+    if (follows) arguments.emplace_back("--follow");
+    std::string output;
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(test::runCommand(addContactsCommand, std::move(arguments), output), 0);
+    return testing::internal::GetCapturedStderr();
+  };
+  for (const bool follows : {false, true}) {
+    EXPECT_NE(said("run.ulg", follows).find("/run.ulg: begins at "), std::string::npos);
+    EXPECT_EQ(said(logName(log.state().files - 1), follows), "");
+  }
+}
+
 TEST(Contacts, OfARunWithoutAny) {
   const LoggedRun run("free_motion");
   EXPECT_TRUE(run.contacts().empty());

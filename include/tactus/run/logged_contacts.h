@@ -14,6 +14,8 @@ struct LoggedContacts {
   Scene scene;
   std::vector<ContactFigures> contacts;  ///< in the order of their start
   bool is_cut_off = false;               ///< the newest log
+  int first_part = 0;                    ///< of the run; above 0: what was before is not there
+  double begin_s = 0.0;                  ///< of the first cycle
 };
 
 /// Of the logs of one run, the oldest first. Throws InputError, also of logs without a cycle.
