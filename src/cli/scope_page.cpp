@@ -160,16 +160,22 @@ std::string titleOf(const ScopeTrace& trace) {
                      trace.peak_N, trace.variant, gainsText(trace), touchText(trace));
 }
 
-std::string forceFigure(const ScopeView& view) {
-  const Drawing drawing{forceRange(view), kForceHeight};
-  const ScopeTrace& newest = view.traces.back();
+std::string restOf(const Drawing& drawing, const ScopeTrace& newest) {
+  if (std::isnan(newest.rest_N)) return "";
   const double high = drawing.y(newest.rest_N * (1.0 + kDrawnBand));
   const double low = drawing.y(newest.rest_N * (1.0 - kDrawnBand));
-  std::string svg = fmt::format(
+  const std::string band = fmt::format(
       "<rect class=\"band\" x=\"{}\" y=\"{:.1f}\" width=\"{}\" height=\"{:.1f}\">"
       "<title>5 % about {:g} N</title></rect>\n",
       kLeft, high, kWidth - kLeft - kRight, low - high, newest.rest_N);
-  svg += levelOf(drawing, newest.rest_N, fmt::format("{:g} N: where it shall rest", newest.rest_N));
+  return band +
+         levelOf(drawing, newest.rest_N, fmt::format("{:g} N: where it shall rest", newest.rest_N));
+}
+
+std::string forceFigure(const ScopeView& view) {
+  const Drawing drawing{forceRange(view), kForceHeight};
+  const ScopeTrace& newest = view.traces.back();
+  std::string svg = restOf(drawing, newest);
   if (!newest.predicted.t_s.empty())
     svg += curveOf(drawing, newest.predicted, "predicted",
                    "predicted for " + touchText(newest) + "; " + gainsText(newest));
@@ -180,9 +186,7 @@ std::string forceFigure(const ScopeView& view) {
           ? "No prediction: " + newest.why_not_predicted + "."
           : std::string("Dotted, predicted for the newest: ") + kPredictionText;
   return figureOf(drawing, "Force of the contacts over time", svg,
-                  fmt::format("F_sen in N. Dashed: {:g} N, where it shall rest, with a band "
-                              "of 5 % about it. {}",
-                              newest.rest_N, prediction));
+                  fmt::format("F_sen in N. {} {}", restText(newest), prediction));
 }
 
 std::string signalFigure(const ScopeView& view) {

@@ -81,9 +81,11 @@ std::string forcePlot(const ScopeView& view, const ScopeScreen& screen) {
   BrailleCanvas canvas(screen.columns - kAxisColumns, kForceRows, range);
   const ScopeTrace& newest = view.traces.back();
   canvas.drawTime(0.0, kGrey, 1, 4);
-  canvas.drawLevel(newest.rest_N * (1.0 - kDrawnBand), kGrey, 1, 6);
-  canvas.drawLevel(newest.rest_N * (1.0 + kDrawnBand), kGrey, 1, 6);
-  canvas.drawLevel(newest.rest_N, kRest, 4, 8);
+  if (!std::isnan(newest.rest_N)) {
+    canvas.drawLevel(newest.rest_N * (1.0 - kDrawnBand), kGrey, 1, 6);
+    canvas.drawLevel(newest.rest_N * (1.0 + kDrawnBand), kGrey, 1, 6);
+    canvas.drawLevel(newest.rest_N, kRest, 4, 8);
+  }
   canvas.draw(newest.predicted, kPredicted, 1, 3);
   for (std::size_t i = 0; i < view.traces.size(); ++i)
     canvas.draw(view.traces[i].force, colourOf(view, i));
@@ -102,12 +104,8 @@ std::string signalPlot(const ScopeView& view, const ScopeScreen& screen) {
 
 std::string legend(const ScopeView& view, std::size_t columns) {
   const ScopeTrace& newest = view.traces.back();
-  std::string text = wrapped(
-      fmt::format(
-          "Force in N. Solid: F_sen, * the newest. Dashed: {:g} N, where it shall rest, and "
-          "5 % to each side.",
-          newest.rest_N),
-      columns);
+  const std::string text =
+      wrapped("Force in N. Solid: F_sen, * the newest. " + restText(newest), columns);
   if (newest.predicted.t_s.empty())
     return text + wrapped("No prediction: " + newest.why_not_predicted + ".", columns);
   return text + wrapped(std::string("Dotted, predicted: ") + kPredictionText, columns);
@@ -134,8 +132,10 @@ PlotRange forceRange(const ScopeView& view) {
   PlotRange range = timesOf(view);
   for (const ScopeTrace& trace : view.traces) {
     widen(trace.force, range);
-    range.high = std::max(range.high, trace.rest_N * (1.0 + 2.0 * kDrawnBand));
+    if (!std::isnan(trace.rest_N))
+      range.high = std::max(range.high, trace.rest_N * (1.0 + 2.0 * kDrawnBand));
   }
+  if (!(range.high > 0.0)) range.high = 1.0;  // nothing was felt
   // A prediction that goes through the roof shall not hide what was measured.
   const double measured = range.high;
   if (!view.traces.empty()) widen(view.traces.back().predicted, range);

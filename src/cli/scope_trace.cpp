@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -94,11 +95,12 @@ void predict(const Scene& scene, int module, const CycleRecord* felt, ScopeTrace
   if (trace.predicted.t_s.empty()) trace.why_not_predicted = "the loop alone does not come to F_th";
 }
 
-bool restsAboveActivation(const Scene& scene) {
-  if (!scene.controller.force_control) return false;
+double restForce_N(const Scene& scene, const ForceGains& gains) {
+  if (!scene.controller.force_control) return std::numeric_limits<double>::quiet_NaN();
   const Variant variant = scene.controller.force_control->variant;
-  return variant == Variant::kNullTask || variant == Variant::kNullJoint ||
-         variant == Variant::kNullLimit;
+  const bool is_above = variant == Variant::kNullTask || variant == Variant::kNullJoint ||
+                        variant == Variant::kNullLimit;
+  return gains.contact_threshold_N + (is_above ? gains.activation_force_N : 0.0);
 }
 
 Json curveJson(const ScopeCurve& curve, const char* name) {
@@ -121,8 +123,7 @@ ScopeTrace scopeTrace(const Scene& scene, const TriggerCondition& condition,
   trace.variant = scene.variant;
   trace.gains = trigger.gains.force;
   trace.law_stiffness_N_per_m = (felt ? *felt : trigger).stiffness_N_per_m;
-  trace.rest_N = trace.gains.contact_threshold_N +
-                 (restsAboveActivation(scene) ? trace.gains.activation_force_N : 0.0);
+  trace.rest_N = restForce_N(scene, trace.gains);
   for (const CycleRecord& record : capture.records) {
     const double t_s = record.t_s - capture.trigger_s;
     trace.force.t_s.push_back(t_s);
@@ -150,6 +151,11 @@ std::string touchText(const ScopeTrace& trace) {
                      touch.low_N_per_m, touch.high_N_per_m, touch.speed_m_per_s);
 }
 
+std::string restText(const ScopeTrace& trace) {
+  if (std::isnan(trace.rest_N)) return "Without force control it shall rest nowhere.";
+  return fmt::format("Dashed: {:g} N, where it shall rest, and 5 % to each side.", trace.rest_N);
+}
+
 Json scopeJson(const ScopeTrace& trace) {
   const TouchFit& touch = trace.touch;
   Json json = {{"trigger_s", trace.trigger_s},
@@ -163,7 +169,7 @@ Json scopeJson(const ScopeTrace& trace) {
                {"stiffness_N_per_m", trace.law_stiffness_N_per_m},
                {"contact_stiffness_N_per_m", nullptr},
                {"speed_m_per_s", nullptr},
-               {"rest_target_N", trace.rest_N},
+               {"rest_target_N", finiteOrNull(trace.rest_N)},
                {"peak_force_N", trace.peak_N},
                {"force", curveJson(trace.force, "force_N")},
                {"signal", curveJson(trace.signal, "value")},

@@ -76,6 +76,20 @@ TEST(Scope, ShowsTheContactsOfARunAroundTheirTouch) {
               0.02 * contact.touch.stiffness_N_per_m);
 }
 
+/// F_th is no force at which an arm rests that does not give way.
+TEST(Scope, NamesNoForceToRestAtWithoutForceControl) {
+  const ScopedRun run("scenario1_none", {{"simulation.duration_s", "5"}});
+  const Json traces = run.traces();
+  ASSERT_EQ(traces.size(), 1u);
+  EXPECT_TRUE(traces[0].at("rest_target_N").is_null());
+  const test::TemporaryFile page(".html");
+  const std::string text = run.scope({"-o", page.path()});
+  EXPECT_EQ(text.find("Dashed"), std::string::npos) << text;
+  const std::string html = page.content();
+  EXPECT_EQ(html.find("nan"), std::string::npos) << html;
+  EXPECT_NE(html.find("Without force control"), std::string::npos);
+}
+
 /// Of the first 0.15 s, in which posture, joint-limit cost and estimator have hardly begun to
 /// count; as a share of the largest force in it.
 double predictionError(const Json& trace) {

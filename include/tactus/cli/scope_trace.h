@@ -24,7 +24,8 @@ struct ScopeTrace {
   std::string variant;
   ForceGains gains;                    ///< at the trigger
   double law_stiffness_N_per_m = 0.0;  ///< c, when F_sen passed F_th; else at the trigger
-  double rest_N = 0.0;  ///< where it shall rest: F_act + F_th, or F_th of a law without F_act
+  /// Where it shall rest: F_act + F_th, or F_th of a law without F_act; NaN without a law.
+  double rest_N = 0.0;
   double peak_N = 0.0;
   TouchFit touch;
   ScopeCurve force;      ///< F_sen, N
@@ -51,6 +52,9 @@ inline constexpr const char* kPredictionText =
 std::string gainsText(const ScopeTrace& trace);
 /// "c_e 1092 (1091..1092) N/m met with 0.033 m/s", or that it is not known.
 std::string touchText(const ScopeTrace& trace);
+
+/// What is dashed: the force where it shall rest.
+std::string restText(const ScopeTrace& trace);
 
 Json scopeJson(const ScopeTrace& trace);
 
