@@ -128,6 +128,12 @@ class Interrupted(Sweeps):
         self.assertEqual((done.returncode, done.stderr), (-signal.SIGPIPE, ""))
         self.expect_whole()
 
+    def test_without_anybody_to_tell(self):
+        done = subprocess.run(self.command(self.folder / "study.yaml", self.out),
+                              preexec_fn=lambda: os.closerange(1, 3))
+        self.assertEqual(done.returncode, 0)
+        self.expect_whole()
+
     def wait_for_lines(self, count):
         for _ in range(6000):
             if self.file_.exists() and self.file_.read_bytes().count(b"\n") >= min(count, RUNS + 1):
