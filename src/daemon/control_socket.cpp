@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <exception>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -24,6 +25,18 @@ constexpr int kLook_ms = 50;
 bool hasRuntimeFolder() {
   const char* folder = std::getenv("RUNTIME_DIRECTORY");
   return folder && *folder;
+}
+
+/// Who has asked was told that nobody answers, or was interrupted.
+bool hasLeft(const PacketSocket& socket) noexcept {
+  pollfd end{socket.fd(), 0, 0};
+  return ::poll(&end, 1, 0) > 0 && (end.revents & POLLHUP) != 0;
+}
+
+bool isHold(std::span<const char> room, long size) {
+  const auto length = std::min(static_cast<std::size_t>(size), room.size());
+  const Json request = Json::parse(room.begin(), room.begin() + length, nullptr, false);
+  return request.is_object() && request.value("do", Json()) == "hold";
 }
 
 }  // namespace
@@ -99,6 +112,8 @@ bool ControlSocket::hear(Client& client) {
   std::array<char, kMaxControlMessage> room;
   const long size = client.socket.receive(room);
   if (size <= 0) return size < 0;
+  // What nobody waits for any more would move the arm unasked. To stop it is never wrong.
+  if (hasLeft(client.socket) && !isHold(room, size)) return true;
   const bool is_whole = static_cast<std::size_t>(size) <= room.size();
   return client.socket.send(answer(room, size)) && is_whole;
 }

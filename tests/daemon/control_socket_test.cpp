@@ -4,15 +4,18 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <systemd/sd-daemon.h>
 #include <unistd.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "support/run_folder.h"
 #include "support/shipped_scene.h"
 #include "tactus/daemon/control_client.h"
+#include "tactus/io/packet_socket.h"
 #include "tactus/record/run_error.h"
 
 namespace tactus {
@@ -50,6 +53,54 @@ TEST_F(ControlSocketTest, AnswersAndHandsOn) {
   ASSERT_TRUE(link_->tool_orders.pop(order));
   EXPECT_EQ(order.kind, ToolOrder::Kind::kHold);
   EXPECT_THROW(client.ask({{"do", "jump"}}), InputError);
+}
+
+/// As of a service manager: open before the daemon is.
+class ManagedSocket {
+ public:
+  explicit ManagedSocket(const std::string& path)
+      : before_(::dup(SD_LISTEN_FDS_START)), listening_(PacketSocket::listenAt(path, 8)) {
+    EXPECT_EQ(::dup2(listening_.fd(), SD_LISTEN_FDS_START), SD_LISTEN_FDS_START);
+    ::setenv("LISTEN_PID", std::to_string(::getpid()).c_str(), 1);
+    ::setenv("LISTEN_FDS", "1", 1);
+  }
+  ~ManagedSocket() {
+    if (before_ < 0) return;
+    ::dup2(before_, SD_LISTEN_FDS_START);
+    ::close(before_);
+  }
+  ManagedSocket(const ManagedSocket&) = delete;
+  ManagedSocket& operator=(const ManagedSocket&) = delete;
+
+ private:
+  int before_;
+  PacketSocket listening_;
+};
+
+/// An arm that moves by what somebody has asked in vain does so unasked. To stop is never wrong.
+TEST_F(ControlSocketTest, TakesOfWhoHasLeftNothingButAHold) {
+  const ManagedSocket managed(controlPath());
+  const std::string stream = R"({"do": "stream", "to_m": [0, 0.001, 0], "relative": true})";
+  const std::string hold = R"({"do": "hold"})";
+  for (const std::string& request : {stream, stream, hold}) {
+    const int fd = connect(controlPath());
+    EXPECT_EQ(::send(fd, request.data(), request.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(request.size()));
+    ::close(fd);
+  }
+  ToolSight sight;
+  sight.is_running = true;
+  link_->tool_sights.put(sight);
+  const ControlSocket socket(scene_, *link_);
+  const ControlClient client(controlPath());
+  client.ask({{"do", "show"}});  // behind all of them
+  ToolOrder order;
+  ASSERT_TRUE(link_->tool_orders.pop(order));
+  EXPECT_EQ(order.kind, ToolOrder::Kind::kHold);
+  EXPECT_FALSE(link_->tool_orders.pop(order));
+  client.ask(Json::parse(stream));
+  ASSERT_TRUE(link_->tool_orders.pop(order));
+  EXPECT_EQ(order.kind, ToolOrder::Kind::kStream);
 }
 
 TEST_F(ControlSocketTest, IsGoneWithTheDaemon) {
