@@ -197,6 +197,7 @@ class BadStudies(Sweeps):
                 (begin + "grid: {controller.damping: [0.5", r"expected YAML"),
                 (begin + "grid: {controller.damping: []}", r":2:28: grid.controller.damping: an empty list, "),
                 (begin + "grid: {controller.damping: [1, 1]}", r"'1' is there twice"),
+                (begin + "grid: {controller.damping: [0.5, 0.7, 0.50]}", r"'0.50' is there twice"),
                 (begin + "grid: {controller.dampin: [1]}", r":2:8: controller.dampin: unknown key, .*'damping'"),
                 (begin + "grid:\n  controller.damping: [1, -2]", r":3:3: controller.damping: '-2' is out of "),
                 (begin + "set: {controller.variant: 3}", r":2:7: controller.variant: '3', expected one of"),

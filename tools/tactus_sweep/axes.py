@@ -72,10 +72,21 @@ def read_list(entry):
     if len(items) > MAX_VALUES:
         raise entry.error(f"{len(items)} values", f"at most {MAX_VALUES}")
     texts = [item.setting() for item in items]
-    for number, text in enumerate(texts):
-        if text in texts[:number]:
-            raise items[number].error(f"'{text}' is there twice", "each value once")
+    found = set()
+    for item, text in zip(items, texts):
+        value = value_of(text)
+        if value in found:
+            raise item.error(f"'{text}' is there twice", "each value once")
+        found.add(value)
     return Axis(entry, texts)
+
+
+def value_of(text):
+    """0.5 and 0.50 are one."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def read_random(entry):
