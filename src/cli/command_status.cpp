@@ -124,11 +124,13 @@ bool showStatus(const StatusOptions& options) {
   const bool clears = options.watch && !options.json && ::isatty(STDOUT_FILENO) == 1;
   const std::string path = runtimePath(kStatusName);
   const Shown shown = readShown(path, options.json);
-  if (clears) std::fputs("\033[H\033[J", stdout);
-  std::fputs(shown.text.c_str(), stdout);
-  if (std::fflush(stdout) != 0) throw RunError("standard output: cannot be written");
   // A clock that starts anew may be behind: the file is of before.
-  if (shown.age_s >= 0.0 && shown.age_s <= kMaxAge_s) return shown.is_well;
+  const bool is_new = shown.age_s >= 0.0 && shown.age_s <= kMaxAge_s;
+  if (clears) std::fputs("\033[H\033[J", stdout);
+  // The last word is worth knowing to people; a program would take it for that of now.
+  if (is_new || !options.json) std::fputs(shown.text.c_str(), stdout);
+  if (std::fflush(stdout) != 0) throw RunError("standard output: cannot be written");
+  if (is_new) return shown.is_well;
   throw RunError(fmt::format("{}: no word from the daemon for {:.0f} s", escaped(path),
                              std::abs(shown.age_s)));
 }

@@ -101,6 +101,8 @@ TEST_F(RunStatusFile, AStatusThatIsOldIsNone) {
       {scene_, Mode::kRunning, Fault::kNone, description, {}, nullptr}, monotonicTime_s() - 60.0));
   EXPECT_EQ(errorOfRun(), path() + ": no word from the daemon for 60 s");
   EXPECT_NE(output_.find("running"), std::string::npos) << "the last word is worth knowing";
+  EXPECT_EQ(errorOfRun({"--json"}), path() + ": no word from the daemon for 60 s");
+  EXPECT_EQ(output_, "") << "a program would take it for that of now";
 }
 
 TEST_F(RunStatusFile, AStatusOfTheTimeToComeIsNone) {
