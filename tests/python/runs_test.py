@@ -5,6 +5,7 @@ usage: runs_test.py FOLDER TACTUS"""
 
 import gc
 import json
+import os
 import pathlib
 import struct
 import sys
@@ -206,6 +207,8 @@ class Replays(Scratch):
         self.assertFalse(replay.is_equal)
         self.assertEqual(vars(replay.first_difference), said["first_difference"])
         self.assertEqual([vars(one) for one in replay.largest_differences], said["largest_differences"])
+        for logs in ((self.log,), iter([self.log]), os.fsencode(self.log)):
+            self.assertEqual(tactus.replay(logs, set={"controller.damping": 0.7}), replay)
 
 
 class Logs(Scratch):

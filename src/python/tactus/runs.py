@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import functools
 import json
-from collections.abc import Iterator, Mapping
+import os
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -196,13 +197,13 @@ def _difference(json_difference: dict[str, Any] | None) -> Difference | None:
                          for name, value in json_difference.items()})
 
 
-def replay(path: Path | list[Path], set: Mapping[str, object] | None = None) -> Replay:
+def replay(path: Path | Iterable[Path], set: Mapping[str, object] | None = None) -> Replay:
     """Feeds the recorded inputs to the controller and compares its outputs, as `tactus replay` does.
 
     path: a log, or all logs of a run, the oldest first. set: shows what other values would change of
     the commands, while forces stay as they were recorded.
     """
-    paths = path if isinstance(path, list) else [path]
+    paths = [path] if isinstance(path, (str, bytes, os.PathLike)) else list(path)
     answer = json.loads(_core.replay([path_bytes(one) for one in paths], settings(set)))
     largest = [_difference(one) for one in answer["largest_differences"]]
     return Replay(answer["cycles"], answer["compared_cycles"], answer["not_replayed"],
