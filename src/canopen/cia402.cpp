@@ -41,32 +41,32 @@ const std::array<PowerTransition, 17>& powerTransitions() noexcept {
   // is for who knows that the axis rests. 15 is no step to any goal: clearing a fault is a
   // decision.
   static constexpr std::array<PowerTransition, 17> kTable = {{
-      {0, {}, kNotReady, true, kDisableVoltage, false, false, false},
-      {1, kNotReady, kSwitchOnDisabled, true, kDisableVoltage, true, true, false},
-      {2, kSwitchOnDisabled, kReadyToSwitchOn, false, kShutdown, false, true, false},
-      {3, kReadyToSwitchOn, kSwitchedOn, false, kSwitchOn, false, true, false},
-      {4, kSwitchedOn, kOperationEnabled, false, kEnableOperation, false, true, false},
-      {5, kOperationEnabled, kSwitchedOn, false, kDisableOperation, true, false, false},
-      {6, kSwitchedOn, kReadyToSwitchOn, false, kShutdown, false, false, false},
-      {7, kReadyToSwitchOn, kSwitchOnDisabled, false, kQuickStop, true, false, true},
-      {8, kOperationEnabled, kReadyToSwitchOn, false, kShutdown, false, false, false},
-      {9, kOperationEnabled, kSwitchOnDisabled, false, kDisableVoltage, false, false, false},
-      {10, kSwitchedOn, kSwitchOnDisabled, false, kQuickStop, true, false, true},
-      {11, kOperationEnabled, kQuickStopActive, false, kQuickStop, false, false, true},
-      {12, kQuickStopActive, kSwitchOnDisabled, true, kQuickStop, true, true, true},
-      {13, {}, kFaultReactionActive, true, kDisableVoltage, false, false, false},
-      {14, kFaultReactionActive, kFault, true, kDisableVoltage, false, false, false},
-      {15, kFault, kSwitchOnDisabled, false, kFaultReset, false, false, false},
-      {16, kQuickStopActive, kOperationEnabled, false, kEnableOperation, false, false, false},
+      {0, {}, kNotReady, true, kDisableVoltage, false, false},
+      {1, kNotReady, kSwitchOnDisabled, true, kDisableVoltage, true, true},
+      {2, kSwitchOnDisabled, kReadyToSwitchOn, false, kShutdown, false, true},
+      {3, kReadyToSwitchOn, kSwitchedOn, false, kSwitchOn, false, true},
+      {4, kSwitchedOn, kOperationEnabled, false, kEnableOperation, false, true},
+      {5, kOperationEnabled, kSwitchedOn, false, kDisableOperation, true, false},
+      {6, kSwitchedOn, kReadyToSwitchOn, false, kShutdown, false, false},
+      {7, kReadyToSwitchOn, kSwitchOnDisabled, false, kQuickStop, true, false},
+      {8, kOperationEnabled, kReadyToSwitchOn, false, kShutdown, false, false},
+      {9, kOperationEnabled, kSwitchOnDisabled, false, kDisableVoltage, false, false},
+      {10, kSwitchedOn, kSwitchOnDisabled, false, kQuickStop, true, false},
+      {11, kOperationEnabled, kQuickStopActive, false, kQuickStop, false, false},
+      {12, kQuickStopActive, kSwitchOnDisabled, true, kQuickStop, true, true},
+      {13, {}, kFaultReactionActive, true, kDisableVoltage, false, false},
+      {14, kFaultReactionActive, kFault, true, kDisableVoltage, false, false},
+      {15, kFault, kSwitchOnDisabled, false, kFaultReset, false, false},
+      {16, kQuickStopActive, kOperationEnabled, false, kEnableOperation, false, false},
   }};
   return kTable;
 }
 
 const PowerTransition* nextTransition(DriveState state, PowerGoal goal) noexcept {
+  if (goal == PowerGoal::kQuickStop) return nullptr;
   for (const PowerTransition& transition : powerTransitions()) {
-    const bool serves = goal == PowerGoal::kDisabled  ? transition.to_disabled
-                        : goal == PowerGoal::kEnabled ? transition.to_enabled
-                                                      : transition.to_quick_stop;
+    const bool serves =
+        goal == PowerGoal::kEnabled ? transition.to_enabled : transition.to_disabled;
     if (serves && transition.from == state) return &transition;
   }
   return nullptr;

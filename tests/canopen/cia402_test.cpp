@@ -98,8 +98,7 @@ TEST(PowerTable, LeavesNoChoice) {
       int rows = 0;
       for (const PowerTransition& row : powerTransitions()) {
         const bool serves = (goal == PowerGoal::kDisabled && row.to_disabled) ||
-                            (goal == PowerGoal::kEnabled && row.to_enabled) ||
-                            (goal == PowerGoal::kQuickStop && row.to_quick_stop);
+                            (goal == PowerGoal::kEnabled && row.to_enabled);
         rows += serves && row.from == state;
       }
       EXPECT_LE(rows, 1) << driveStateName(state);

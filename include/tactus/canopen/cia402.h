@@ -47,15 +47,15 @@ struct PowerTransition {
   int number;
   std::optional<DriveState> from;  ///< none: from any state, or from power-on
   DriveState to;
-  bool is_automatic;           ///< the drive's own, whatever is commanded
-  std::uint16_t control_word;  ///< that asks for it, or that lets an automatic one happen
-  bool to_disabled, to_enabled, to_quick_stop;  ///< goals to which this is the next step
+  bool is_automatic;             ///< the drive's own, whatever is commanded
+  std::uint16_t control_word;    ///< that asks for it, or that lets an automatic one happen
+  bool to_disabled, to_enabled;  ///< goals to which this is the next step
 };
 
 const std::array<PowerTransition, 17>& powerTransitions() noexcept;  ///< in order of the numbers
 
-/// The transition that is one step nearer to the goal; none at the goal, and where only the drive
-/// itself gets further.
+/// The transition that is one step nearer to the goal; none at the goal, where only the drive
+/// itself gets further, and for a quick stop, which is one command in every state.
 const PowerTransition* nextTransition(DriveState state, PowerGoal goal) noexcept;
 
 /// The control word for one step towards the goal, or for staying there. Never a fault reset: a
