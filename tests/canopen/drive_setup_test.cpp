@@ -226,6 +226,7 @@ TEST(DriveSetup, RefusesAnotherProductAndSaysWhatItIs) {
     EXPECT_EQ(other.report().fault, Fault::kDriveSetupRefused);
     EXPECT_EQ(failure.index, 0x1018);
     EXPECT_EQ(failure.subindex, subindex);
+    EXPECT_EQ(failure.abort_code, 0u);
     EXPECT_TRUE(failure.is_other_value);
     EXPECT_EQ(failure.value, 8u);
     EXPECT_EQ(failure.expected, subindex == 1 ? 0x12345678u : 7u);
