@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "support/controller_run.h"
+#include "support/rail_robot.h"
 
 /// Controllers at the acceleration level on random robots.
 namespace tactus {
@@ -83,6 +84,61 @@ TEST(AccelerationLevel, MovesFreelyAsTheVelocityLevelDoes) {
     }
     EXPECT_GT(fastest, 0.02);
   }
+}
+
+/// Next to no k_v has to bring the tool back: that joints which turn accelerate it is known.
+TEST(AccelerationLevel, FollowsAPathThatTurnsItsJoints) {
+  test::Random random(506);
+  for (int i = 0; i < 10; ++i) {
+    ControllerConfig config = accelerationController(random, 7, 3, Variant::kNullSpace);
+    config.task.components = {0, 1, 2};
+    config.gains.force.velocity_gain_per_s = 1e-3;
+    Waypoint there;
+    there.displacement_m = random.vector<Vector3>(3, -0.2, 0.2);
+    there.speed_m_per_s = 0.2;
+    config.task.trajectory = {0.1, {there}};
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    double apart_m = 0.0;
+    for (int cycle = 0; cycle < 2000; ++cycle) {
+      controller.update({state.q_desired, {test::touchAt(0.2, 0.0, 0.0, cycle + 1)}},
+                        controller.initialGains(), cycle * kCycle_s, kCycle_s, state, output);
+      apart_m = std::max(apart_m, output.error.norm());
+    }
+    EXPECT_LT(apart_m, 5e-4) << i;
+  }
+}
+
+/// On a rail, where nothing turns, the way off the limits is that of the velocity level, whatever
+/// k_v is.
+TEST(AccelerationLevel, LeavesLimitsAsTheVelocityLevelDoes) {
+  ControllerConfig config = test::railController(Variant::kNullSpace);
+  config.limits.lower.setConstant(-1.0);
+  config.limits.upper << 0.2, 3.0;
+  config.has_joint_limit_avoidance = true;
+  config.gains.joint_limit_avoidance.active_fraction = 1.0;
+  config.gains.force.velocity_gain_per_s = 1e-3;
+  const Controller direct(config);
+  config.force_control->level = ControlLevel::kAcceleration;
+  const Controller smooth(config);
+  ControllerState direct_state = direct.initialState();
+  ControllerOutput expected, output;
+  const auto update = [&](const Controller& controller, ControllerState& state,
+                          ControllerOutput& to) {
+    controller.update({state.q_desired, {test::touchAt(0.5, 0.0, 0.0, 1)}}, config.gains, 0.0,
+                      kCycle_s, state, to);
+  };
+  update(direct, direct_state, expected);
+  ControllerState state = direct_state;
+  const double first = expected.velocity[0];
+  for (int cycle = 0; cycle < 1000; ++cycle) {
+    update(direct, direct_state, expected);
+    update(smooth, state, output);
+    ASSERT_LT((output.velocity - expected.velocity).norm(), 0.01 * std::abs(first)) << cycle;
+  }
+  EXPECT_LT(std::abs(expected.velocity[0]), 0.5 * std::abs(first)) << "this test is blind";
+  EXPECT_LT(state.q_desired[0], -0.01);
 }
 
 TEST(AccelerationLevel, StaysWithinAllLimits) {

@@ -77,6 +77,37 @@ TEST(SpeedRows, ThatExcludeEachOtherShareByForce) {
   }
 }
 
+/// As of a contact beside the first joint's axis: what no speed of the joints gets away is not run
+/// away from.
+TEST(SpeedRows, OfAPointThatHardlyMovesAskForLittle) {
+  test::Random random(320);
+  for (int i = 0; i < 200; ++i) {
+    RowsCase c(random, 1);
+    const double length = random.logUniform(1e-9, 1e-4);
+    c.setRow(0, JointVector(length / c.A.row(0).norm() * c.A.row(0)));
+    c.rows.row[0].v_max_m_per_s = -0.1;
+    const double lacking = 0.1 - (c.A * c.joints(c.motion)).value();
+    const RowVector l = RowProblem(c.rows, c.m).keep(c.motion);
+    ASSERT_NEAR(l[0], lacking / 1e-4, 1e-3 * lacking / 1e-4) << i;
+  }
+}
+
+/// Nor is the null space asked for what next to nothing of it can do.
+TEST(SpeedRows, ThatTheNullSpaceHardlyMovesAskLittleOfIt) {
+  SpeedRows rows;
+  rows.size = 1;
+  SpeedRow& row = rows.row[0];
+  row = {ScaledVector::Unit(0), PaddedTaskVector::Unit(0), -0.1, 100.0, 1.0};
+  Motion rest;
+  rest.v_scaled.setZero();
+  rest.y.setZero();
+  for (const double length : {1.0, 2.0}) {
+    row.a_scaled[0] = row.a_task[0] = length;
+    const RowVector l = RowProblem(rows, 1).solve(ownSpeeds(rows), kNullSpaceAlone, rest).l;
+    EXPECT_NEAR(l[0], 0.1 / (1e-3 * length * length), 1e-4 / (1e-3 * length * length));
+  }
+}
+
 TEST(SpeedRows, LeaveAMotionAloneThatKeepsThem) {
   test::Random random(314);
   RowsCase c(random, 3);
