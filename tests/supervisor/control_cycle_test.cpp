@@ -283,6 +283,31 @@ TEST(ControlCycleMissed, TheDrivesAreWhereTheControllerThinksTheyAre) {
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(record.q[i], record.q_measured[i], 0.002) << i;
 }
 
+/// Drives stop where the daemon is silent for their time: of that, what was missed is a part.
+TEST(ControlCycleMissed, TellsDrivesInTimeThatItRuns) {
+  VirtualRobotCell cell(shippedScene("scenario1_null_space"));
+  int heartbeats = 0;
+  cell.on_send = [&](int bus, CanFrame& frame) {
+    heartbeats += bus == 0 && frame.id == 0x77F ? 1 : 0;
+    return true;
+  };
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  const auto untilHeartbeat = [&](int missed) {
+    const int before = heartbeats;
+    int cycles = 0;
+    for (; cycles < 1000 && heartbeats == before; ++cycles) {
+      cell.input.missed_cycles = cycles == 1 ? missed : 0;
+      cell.step();
+    }
+    return cycles;
+  };
+  untilHeartbeat(0);
+  const int cycles = untilHeartbeat(0);
+  EXPECT_GT(cycles, 5);
+  EXPECT_EQ(untilHeartbeat(3), cycles - 3);
+  EXPECT_EQ(untilHeartbeat(0), cycles);
+}
+
 TEST(ControlCycleAllocation, NoneFromTheFirstCycleToTheLast) {
   Scene scene = shippedScene("scenario2_estimated");
   VirtualRobotCell cell(scene);

@@ -166,6 +166,28 @@ TEST_F(GainChangeTest, GoesBackAfterAFault) {
   EXPECT_EQ(change_.report().trouble, GainTrouble::kFault);
 }
 
+/// Gains that were in contact for long enough are no less on trial while their time runs.
+TEST_F(GainChangeTest, GoesBackHoweverLongItWentWell) {
+  for (const bool is_fault : {false, true}) {
+    change_ = GainChange(Gains{}, kPeriod_s);
+    GainOrder passing = order(1, 0.05);
+    passing.for_s = 100.0;
+    change_.order(passing);
+    pass(20.0);
+    ASSERT_EQ(state(), GainState::kOnTrial);
+    if (is_fault)
+      pass(kPeriod_s, {.force_N = 5.0, .has_fault = true});
+    else
+      passForce(1.5, swinging);
+    pass(0.2);
+    EXPECT_EQ(T_s(), 0.1);
+    EXPECT_EQ(change_.kept().force.time_constant_s, 0.1);
+    EXPECT_EQ(change_.report().kept_number, 0u);
+    EXPECT_EQ(change_.report().trouble, is_fault ? GainTrouble::kFault : GainTrouble::kSwings);
+    EXPECT_EQ(state(), GainState::kKept);
+  }
+}
+
 /// A new order while one is on trial goes back to what was kept, not to what was not.
 TEST_F(GainChangeTest, ANewOrderGoesBackToWhatWasKept) {
   change_.order(order(1, 0.05));

@@ -114,6 +114,7 @@ TEST(Mode, ClearsFaultsOnlyByEnableOffAndOn) {
     robot.input.enable = true;
     EXPECT_EQ(robot.run(10), Mode::kRunning) << row.name;
     EXPECT_EQ(robot.state.fault, Fault::kNone);
+    EXPECT_FALSE(robot.state.may_clear) << "that was for this fault alone";
   }
 }
 
