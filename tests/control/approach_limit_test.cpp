@@ -65,6 +65,25 @@ TEST(ApproachLimit, KnowsAContactAsLongAsItIsFelt) {
   EXPECT_NEAR(stiffnessAfter(0.0), kC_N_per_m, 0.01 * 50.0 * kC_N_per_m);
 }
 
+/// What is taken for the stiffness at first is replaced by force over way: at once by more, as the
+/// arm else came too fast, and by less in its time.
+TEST(ApproachLimit, LearnsHowStiffTheContactIs) {
+  for (const double ratio : {0.3, 3.0}) {
+    ControllerConfig config = bareRail(0.01);
+    config.force_control->has_estimator = true;
+    config.gains.force.assumed_stiffness_N_per_m = ratio * kC_N_per_m;
+    const Controller controller(config);
+    const test::RailWorld world{kC_N_per_m, 0.001};
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    for (int cycle = 0; cycle < 1000; ++cycle)
+      controller.update(world.input(state), config.gains, cycle * kPeriod_s, kPeriod_s, state,
+                        output);
+    EXPECT_GT(output.contact.stiffness_N_per_m, 0.95 * kC_N_per_m) << ratio;
+    EXPECT_LT(output.contact.stiffness_N_per_m, (ratio < 1.0 ? 1.3 : 2.1) * kC_N_per_m);
+  }
+}
+
 /// Drift of the sensor, or what is left of a cover's weight, between F_rel and F_th looks like a
 /// contact that is about to be lost.
 TEST(ApproachLimit, AnOffsetBelowTheThresholdDoesNotMoveTheArmOnAndOn) {

@@ -106,6 +106,28 @@ TEST(ContactRows, TellWhatJointsTookOfTheRetreat) {
   }
 }
 
+/// As the contact is forgotten, what keeps joints off their limits beside it goes without a step,
+/// and is gone with it.
+TEST(ContactRows, OfJointsFadeWithTheMemory) {
+  constexpr double kLeft_m = 0.1;
+  for (const double share : {1.0, 0.5, 0.25}) {
+    ControllerConfig config = oneContactRail(10.0, 0.5);
+    config.limits.upper[1] = kLeft_m;
+    OneContactRun run(config);
+    run.press(4.0);
+    run.state.q_desired.setZero();
+    run.state.contact.approach.memory_N_per_m = share * kOneC_N_per_m;
+    run.press(0.0);
+    const double left = run.state.contact.approach.memory_N_per_m / kOneC_N_per_m;
+    EXPECT_NEAR(run.output.velocity[1], 5.0 * kLeft_m / left, 1e-3) << share;
+    EXPECT_TRUE(run.state.contact.keeps_joints);
+    run.state.contact.approach.memory_N_per_m = 1e-6;
+    run.press(0.0);
+    EXPECT_FALSE(run.state.contact.keeps_joints);
+    EXPECT_EQ(run.state.contact.cut_by_rows_m_per_s, 0.0);
+  }
+}
+
 /// Nothing that was felt has to be left: joints keep to their limits by other means.
 TEST(ContactRows, AreNoneBeforeAContact) {
   ControllerConfig config = oneContactRail(0.1, 0.5);
@@ -167,6 +189,21 @@ TEST(ContactIntegral, GoesBothWaysAboutTheThreshold) {
   run.press(kOneThreshold_N - 0.4);
   EXPECT_GT(more_m_per_s, 0.0);
   EXPECT_NEAR(V_m_per_s - before_m_per_s, -more_m_per_s, 1e-3 * more_m_per_s);
+}
+
+/// How far a contact is engaged is of the feedforward alone: what presses counts as it is.
+TEST(ContactIntegral, TakesASmallForceForWhatItIs) {
+  double at_once = 0.0;
+  for (const double engage_N : {0.0, 2.0}) {
+    ControllerConfig config = oneContactRail(0.0);
+    config.gains.force.transition.engage_force_N = engage_N;
+    OneContactRun run(config);
+    run.press(kOneThreshold_N + 0.5);
+    EXPECT_EQ(run.output.contact.gamma, engage_N > 0.0 ? 0.25 : 1.0);
+    if (engage_N == 0.0) at_once = run.output.contact.u_n;
+    EXPECT_LT(run.output.contact.u_n, 0.0);
+    EXPECT_NEAR(run.output.contact.u_n, at_once, 1e-12);
+  }
 }
 
 /// An arm that is held remembers what it holds against, and forgets it once nothing is felt.

@@ -102,6 +102,19 @@ TEST(SeveralContacts, HaveTheConesAroundTheResultantAndTheStiffnessCentre) {
   }
 }
 
+/// Until something is felt, of whatever length each module is.
+TEST(SeveralContacts, AreInTheMiddleOfTheirModulesAtFirst) {
+  ControllerConfig config = rowsRail(kRowsOf[0], 0.1);
+  for (const double length_m : {0.2, 0.7}) {
+    config.tactile_modules.push_back(config.tactile_modules.front());
+    config.tactile_modules.back().length_m = length_m;
+  }
+  const SeveralContactsState state = SeveralContacts(config, ScaledVector::Ones()).initialState();
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(state.modules[i].approach.smoother.contact.position_m,
+              0.5 * config.tactile_modules[i].length_m);
+}
+
 /// The null space holds a contact at F_th, and the tool does not notice.
 TEST(SeveralContacts, HoldTheThresholdInTheNullSpace) {
   for (const RowsOf& rows : kRowsOf) {
@@ -161,6 +174,50 @@ TEST(SeveralContacts, ForgetSlowlyAndSlowerWhatComesBack) {
     run.world.surface_m = run.state.q_desired[0] - 0.002;
     run.run(2);
     rate = std::max(0.5 * rate, 0.2 / kRailT_s / 64.0);
+  }
+}
+
+/// However often it came back: once the link has gone elsewhere it is not waited for.
+TEST(SeveralContacts, ForgetAtOnceWhatTheyHaveGoneAwayFrom) {
+  for (const double haste : {1.0, 0.25, 1.0 / 64.0}) {
+    for (const double away_m : {0.0, 0.1}) {
+      RowsRun run(rowsRail(kRowsOf[0], 1e-9), -0.002);
+      run.run(10);
+      run.state.several.modules[0].haste = haste;
+      run.world.surface_m = 1.0;
+      run.run(2);
+      run.state.q_desired.array() -= away_m;
+      run.run(2);
+      const double first = run.memory();
+      run.run(100);
+      const double rate = 0.2 / kRailT_s * (away_m > 0.0 ? 1.0 : haste);
+      EXPECT_NEAR(std::log(first / run.memory()) / (100 * kPeriod_s), rate, 0.01 * rate)
+          << haste << " " << away_m;
+    }
+  }
+}
+
+/// As long as something is felt what was learnt is of use, wherever the link is by then.
+TEST(SeveralContacts, KnowHowStiffItIsWhileItIsFelt) {
+  for (const double away_m : {0.0, 0.1}) {
+    for (const double force_N : {0.8, 0.0}) {
+      ControllerConfig config = rowsRail(kRowsOf[0], 1e-9);
+      config.force_control->has_estimator = true;
+      RowsRun run(config, -0.002);
+      run.run(10);
+      const double& c = run.state.several.modules[0].approach.estimator.stiffness_N_per_m;
+      run.state.several.modules[0].approach.estimator.stiffness_N_per_m = 50.0 * kRailC_N_per_m;
+      run.state.q_desired.array() -= away_m;
+      for (int i = 0; i < 1000; ++i) {
+        run.world.surface_m = run.state.q_desired[0] - force_N / kRailC_N_per_m;
+        run.step();
+      }
+      const bool is_known = force_N > 0.0 || away_m == 0.0;
+      if (is_known)
+        EXPECT_GT(c, 45.0 * kRailC_N_per_m) << away_m << " " << force_N;
+      else
+        EXPECT_LT(c, 25.0 * kRailC_N_per_m) << away_m << " " << force_N;
+    }
   }
 }
 
