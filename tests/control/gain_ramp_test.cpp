@@ -64,6 +64,7 @@ TEST(GainRamp, OnlyTimesAndStiffnessesGoInRatios) {
 }
 
 TEST(GainRamp, WhatIsInfiniteHasNoWay) {
+  EXPECT_EQ(gainsBetween(Gains{}, other(), 0.0).task.max_return_speed_m_per_s, kNoLimit);
   EXPECT_EQ(gainsBetween(Gains{}, other(), 0.1).task.max_return_speed_m_per_s, 0.1);
   EXPECT_EQ(gainsBetween(other(), Gains{}, 0.1).task.max_return_speed_m_per_s, kNoLimit);
 }

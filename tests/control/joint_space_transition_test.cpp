@@ -186,7 +186,11 @@ TEST_F(JointSpace, TakesThePointAtOnceFirstAndSmoothlyLater) {
   EXPECT_EQ(state_.contact.position_m, 0.1);
   EXPECT_EQ(state_.contact.direction, Vector3(Vector3::UnitY()));
   state_.gamma = 0.5;
-  for (int i = 0; i < 100; ++i)
+  followContact(gains_, {2.0, 0.2, Vector3::UnitZ()}, true, kPeriod_s, state_);
+  const double share = 1.0 - std::exp(-kPeriod_s / gains_.time_constant_s);
+  const Vector3 expected = Vector3(0.0, 1.0 - share, share).normalized();
+  EXPECT_LT((state_.contact.direction - expected).norm(), 1e-12);
+  for (int i = 1; i < 100; ++i)
     followContact(gains_, {2.0, 0.2, Vector3::UnitZ()}, true, kPeriod_s, state_);
   EXPECT_NEAR(state_.contact.position_m, 0.2 - 0.1 * std::exp(-1.0), 1e-9);
   EXPECT_NEAR(state_.contact.direction.norm(), 1.0, 1e-12);

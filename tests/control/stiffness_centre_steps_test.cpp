@@ -62,6 +62,10 @@ TEST(StiffnessCentreSteps, LearnOfChangesThatMeanSomething) {
     rig.read(5.0 + 1.01 * least_N, 0.2);
     EXPECT_NEAR(rig.state.weight, std::pow(1.01 * least_N, 2.0), 1e-12) << noise_N;
   }
+  CentreRig exactly(0.0, 1.0);
+  exactly.read(5.0, 0.2);
+  exactly.read(6.0, 0.25);
+  EXPECT_EQ(exactly.state.weight, 0.0) << "it may all be noise";
   CentreRig falling;
   falling.read(5.0, 0.2);
   falling.read(3.0, 0.2);

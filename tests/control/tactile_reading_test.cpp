@@ -103,6 +103,17 @@ TEST(HardestPush, IsAtLeastTheNewestAndFades) {
   EXPECT_LE(reading.hardest.force_N, before_N * std::exp(-0.4 / kPushFades_s) * 1.01);
 }
 
+/// Of two that are as hard, the newer says where the push is.
+TEST(HardestPush, IsTheNewerOfTwoThatAreAsHard) {
+  const TactileModuleConfig module = moduleThatFilters(1e6);
+  TactileReading reading;
+  readSample(module, test::touchAt(kAt_m, 4.0, 0.0, 1), test::kPeriod_s, reading);
+  ASSERT_EQ(reading.hardest.force_N, 4.0);
+  readSample(module, test::touchAt(0.1, 2.0, 0.0, 2), 0.5 * kPushFades_s, reading);
+  EXPECT_EQ(reading.hardest.force_N, 2.0) << "half of 4 N, and the newest";
+  EXPECT_EQ(reading.hardest.position_m, 0.1);
+}
+
 /// A reading that no arm or obstacle bears is none of a push.
 TEST(Excess, IsOfAReadingThatMayBeOne) {
   const TactileModuleConfig module = moduleThatFilters(15.0);
