@@ -7,19 +7,12 @@
 namespace tactus {
 namespace {
 
-/// a^T v; an array's dot product, without the choice of a way that costs as much.
-double retreat(const ScaledVector& a, const JointVector& velocity) noexcept {
+/// a^T (from - to); an array's dot product, without the choice of a way that costs as much.
+double lostRetreat(const ScaledVector& a, const JointVector& from, const JointVector& to) noexcept {
   double sum = 0.0;
-  const auto joints = static_cast<int>(velocity.size());
-  for (int i = 0; i < joints; ++i) sum += a.data()[i] * velocity.data()[i];
+  const auto joints = static_cast<int>(from.size());
+  for (int i = 0; i < joints; ++i) sum += a.data()[i] * (from.data()[i] - to.data()[i]);
   return sum;
-}
-
-bool isEqual(const JointVector& a, const JointVector& b) noexcept {
-  const auto joints = static_cast<int>(a.size());
-  for (int i = 0; i < joints; ++i)
-    if (a.data()[i] != b.data()[i]) return false;
-  return true;
 }
 
 }  // namespace
@@ -55,9 +48,8 @@ void Controller::cut(const PreparedCycle& prepared, double period_s, ControllerS
   if (gate_.clearance())
     gate_.clearance()->holdBack(prepared.kinematics.pose, prepared.kinematics.near, state.q_desired,
                                 state.velocity_before, period_s, output.velocity);
-  if (contact_controller_ && state.mayMove() && !isEqual(wanted, output.velocity))
-    state.contact.cut_m_per_s =
-        std::max(0.0, retreat(motion.a, wanted) - retreat(motion.a, output.velocity));
+  if (contact_controller_ && state.mayMove())
+    state.contact.cut_m_per_s = std::max(0.0, lostRetreat(motion.a, wanted, output.velocity));
   if (finite) return;
   state.fault = Fault::kCommandNotFinite;
   output.fault_detail = notFinite(motion);
