@@ -73,6 +73,23 @@ TEST(CanRobot, IsNotOffWhileOneOfItsDrivesHasPower) {
   }
 }
 
+/// Of several that fail the first is named, and none where none does.
+TEST(CanRobot, NamesTheFirstOfItsDrivesThatFails) {
+  for (const int failing : {0, 1, 2, 3}) {  // by bits
+    RobotRig rig;
+    rig.enable();
+    EXPECT_EQ(rig.robot.drives().joint, -1);
+    if ((failing & 1) != 0) rig.slaves[0].fault(0x7500);
+    if ((failing & 2) != 0) rig.slaves[1].sends_feedback = false;
+    rig.cycles(20, DriveGoal::kEnabled);
+    const DrivesReport all = rig.robot.drives();
+    EXPECT_EQ(all.joint, failing == 0 ? -1 : failing == 2 ? 1 : 0);
+    EXPECT_EQ(all.fault, failing == 0   ? Fault::kNone
+                         : failing == 2 ? Fault::kDriveSilent
+                                        : Fault::kDriveFault);
+  }
+}
+
 /// It says that it boots: whatever it said of its power is of before.
 TEST(CanRobot, IsNotHeldByADriveThatHasBooted) {
   RobotRig rig;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <random>
 #include <stdexcept>
 
@@ -101,6 +102,51 @@ TEST(MoteusDrive, TurnsRadiansIntoTurnsAndBack) {
   other.enable();
   EXPECT_FLOAT_EQ(other.cycle(DriveGoal::kEnabled, 1.5).velocity, -0.75F);
   EXPECT_FLOAT_EQ(other.cycle(DriveGoal::kEnabled, 9.0).velocity, -1.0F) << "at most 2 rad/s";
+}
+
+/// What is not as it has to be is named: by it a user knows what to mend.
+TEST(MoteusDrive, NamesTheRegisterThatKeepsItFromItsSetUp) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  constexpr int kOtherMap = kMoteusMap + 1;
+  struct Refused {
+    std::optional<CanFrame> reply;
+    SetupFailure failure;
+  };
+  const auto other = [](std::uint16_t number, int value, int expected) {
+    return SetupFailure{number,
+                        0,
+                        0,
+                        true,
+                        static_cast<std::uint32_t>(value),
+                        static_cast<std::uint32_t>(expected)};
+  };
+  const Refused all[] = {{moteusReply(0, 0.0F, 0.0F, 0, kOtherMap),
+                          other(moteus_register::kMapVersion, kOtherMap, kMoteusMap)},
+                         {moteusReply(5, 0.0F, 0.0F, 33, kOtherMap),
+                          other(moteus_register::kMapVersion, kOtherMap, kMoteusMap)},
+                         {moteusReply(1, 0.0F, 0.0F, 33), other(moteus_register::kFault, 33, 0)},
+                         {moteusReply(5, 0.0F, 0.0F, 0), other(moteus_register::kMode, 5, 0)},
+                         {moteusReply(0, kNaN, 0.0F, 0), {moteus_register::kPosition, 0, 0}},
+                         {std::nullopt, {moteus_register::kPosition, 0, 0}}};
+  CanopenConfig canopen;
+  canopen.boot_timeout_s = 0.02;
+  for (const Refused& refused : all) {
+    MoteusRig rig{MoteusDrive(moteusConfig(), canopen, test::kPeriod_s)};
+    for (int i = 0; i < 30; ++i) {
+      if (refused.reply) rig.drive.receive(*refused.reply);
+      rig.quietCycle(DriveGoal::kConfigure, 0.0, i == 0);
+    }
+    const SetupFailure& failure = rig.drive.report().setup_failure;
+    SCOPED_TRACE(refused.failure.index);
+    EXPECT_EQ(rig.drive.report().fault, Fault::kDriveSetupRefused);
+    EXPECT_FALSE(rig.drive.report().is_configured);
+    EXPECT_EQ(failure.index, refused.failure.index);
+    EXPECT_EQ(failure.subindex, 0);
+    EXPECT_EQ(failure.abort_code, 0u);
+    EXPECT_EQ(failure.is_other_value, refused.failure.is_other_value);
+    EXPECT_EQ(failure.value, refused.failure.value);
+    EXPECT_EQ(failure.expected, refused.failure.expected);
+  }
 }
 
 TEST(MoteusDrive, ThatDoesNotAnswerIsWaitedForToTheCycle) {
