@@ -109,10 +109,12 @@ TEST(SeveralContacts, AreInTheMiddleOfTheirModulesAtFirst) {
     config.tactile_modules.push_back(config.tactile_modules.front());
     config.tactile_modules.back().length_m = length_m;
   }
-  const SeveralContactsState state = SeveralContacts(config, ScaledVector::Ones()).initialState();
-  for (int i = 0; i < 3; ++i)
-    EXPECT_EQ(state.modules[i].approach.smoother.contact.position_m,
-              0.5 * config.tactile_modules[i].length_m);
+  const ControllerState state = Controller(config).initialState();
+  for (int i = 0; i < 3; ++i) {
+    const double middle_m = 0.5 * config.tactile_modules[i].length_m;
+    EXPECT_EQ(state.several.modules[i].approach.smoother.contact.position_m, middle_m);
+    EXPECT_EQ(state.modules[i].contact.position_m, middle_m);
+  }
 }
 
 /// The null space holds a contact at F_th, and the tool does not notice.
