@@ -170,6 +170,21 @@ TEST(RetreatWay, IsAQuarterAsFastWhereNothingIsFelt) {
   }
 }
 
+/// A sample counts for as long as it may be old, to the end; one that cannot be read for nothing.
+TEST(RetreatWay, FeelsAsLongAsItsSampleMayBeOld) {
+  Carriage carriage({50.0, 1000.0, 0.0, 0.0});
+  carriage.step(felt(50.0));
+  EXPECT_TRUE(carriage.state.is_felt);
+  carriage.step({false, true, kMaxAge_s, kMaxAge_s, 0.0});
+  EXPECT_TRUE(carriage.state.is_felt);
+  carriage.step({false, true, 1.01 * kMaxAge_s, kMaxAge_s, 0.0});
+  EXPECT_FALSE(carriage.state.is_felt);
+  carriage.step(felt(50.0));
+  EXPECT_TRUE(carriage.state.is_felt);
+  carriage.step({true, false, 0.0, kMaxAge_s, 50.0});
+  EXPECT_FALSE(carriage.state.is_felt);
+}
+
 TEST(RetreatWay, ThatIsOverStaysSo) {
   Carriage carriage({50.0, 1000.0, 0.0, 0.0});
   for (int i = 0; i < 250; ++i) carriage.step(felt(0.5));
