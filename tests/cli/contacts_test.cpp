@@ -35,6 +35,18 @@ struct LoggedRun {
     return Json::parse(output);
   }
 
+  /// As the daemon's log, cut into files, some of them in the middle of a contact. How many.
+  int writeFiles(const test::RunFolder& folder) const {
+    Scene cut = scene;
+    cut.log.max_bytes = static_cast<double>(log.content().size()) / 5.0 + 3e5;
+    cut.log.keep = 20;
+    RunLog files(cut, folder.path());
+    for (const CycleRecord& record : records) files.write(record);
+    files.close();
+    EXPECT_EQ(files.state().stop_reason, "");
+    return files.state().files;
+  }
+
   Scene scene;
   std::vector<CycleRecord> records;
   RunFigures figures;
@@ -97,17 +109,10 @@ TEST(Contacts, FollowedAreTheSame) {
   }
 }
 
-/// The daemon's log has been cut into files, some of them in the middle of a contact.
 TEST(Contacts, OfTheDaemonThatRunsAreThoseOfAllItsFiles) {
   const LoggedRun run("whole_arm/crops9_skin_two_links");
   const test::RunFolder folder;
-  Scene scene = run.scene;
-  scene.log.max_bytes = static_cast<double>(run.log.content().size()) / 5.0 + 3e5;
-  scene.log.keep = 20;
-  RunLog log(scene, folder.path());
-  for (const CycleRecord& record : run.records) log.write(record);
-  log.close();
-  ASSERT_GE(log.state().files, 3) << log.state().stop_reason;
+  ASSERT_GE(run.writeFiles(folder), 3);
   std::ofstream(folder.path() + "/status.json") << Json({{"log", {{"folder", folder.path()}}}});
   std::ofstream(folder.path() + "/summary.json") << "{}";
   std::string output;
@@ -120,12 +125,7 @@ TEST(Contacts, OfTheDaemonThatRunsAreThoseOfAllItsFiles) {
 TEST(Contacts, OfAPartOfARunDoNotPassForThoseOfAll) {
   const LoggedRun run("whole_arm/crops9_skin_two_links");
   const test::RunFolder folder;
-  Scene scene = run.scene;
-  scene.log.max_bytes = static_cast<double>(run.log.content().size()) / 5.0 + 3e5;
-  scene.log.keep = 20;
-  RunLog log(scene, folder.path());
-  for (const CycleRecord& record : run.records) log.write(record);
-  log.close();
+  const int files = run.writeFiles(folder);
   std::ofstream(folder.path() + "/summary.json") << "{}";
   const auto said = [&](const std::string& name, bool follows) {
     std::vector<std::string> arguments{"contacts", folder.path() + "/" + name};
@@ -137,7 +137,7 @@ TEST(Contacts, OfAPartOfARunDoNotPassForThoseOfAll) {
   };
   for (const bool follows : {false, true}) {
     EXPECT_NE(said("run.ulg", follows).find("/run.ulg: begins at "), std::string::npos);
-    EXPECT_EQ(said(logName(log.state().files - 1), follows), "");
+    EXPECT_EQ(said(logName(files - 1), follows), "");
   }
 }
 
