@@ -49,7 +49,7 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
     case GainState::kWaiting:
       // A way that was begun goes on, or it would wait on half of it.
       if (mustWait() && !isSame(gains_, to_)) {
-        if (isGoingBack() || !trips(seen)) advance(GainState::kWaiting);
+        if (isSame(to_, kept_) || !trips(seen)) advance(GainState::kWaiting);
         return;
       }
       // Over others that are on trial, which are watched as before.
@@ -67,10 +67,6 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
 }
 
 bool GainChange::mustWait() const noexcept { return order_.waits_for_free && is_in_contact_; }
-
-bool GainChange::isGoingBack() const noexcept {
-  return isSame(to_, kept_) && !isSame(gains_, kept_);
-}
 
 void GainChange::begin() noexcept {
   if (mustWait()) return;

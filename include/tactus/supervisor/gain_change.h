@@ -79,7 +79,6 @@ class GainChange {
 
   void observe(const GainWatchInput& seen) noexcept;
   bool mustWait() const noexcept;
-  bool isGoingBack() const noexcept;
   void begin() noexcept;
   void advance(GainState next) noexcept;
   void watch(const GainWatchInput& seen) noexcept;
