@@ -65,6 +65,30 @@ TEST(ApproachLimit, KnowsAContactAsLongAsItIsFelt) {
   EXPECT_NEAR(stiffnessAfter(0.0), kC_N_per_m, 0.01 * 50.0 * kC_N_per_m);
 }
 
+/// What was commanded since the last sample counts as gone; the next sample tells of it.
+TEST(ApproachLimit, LooksAheadAsFarAsNoSampleHasToldOf) {
+  ControllerConfig config = bareRail(0.1);
+  config.drive_lag_s = 0.0;
+  const ApproachLimit limit(config, config.tactile_modules.front());
+  ApproachLimitState state = limit.initialState();
+  ScaledVector a = ScaledVector::Zero();
+  a[0] = -0.5;  // the obstacle is where the first joint leads
+  JointVector q = config.q_start;
+  const auto observe = [&](double interval_s) {
+    state.smoother.contact.interval_s = interval_s;
+    limit.observe(kGains, a, {1.0, 1.0}, q, kPeriod_s, state);
+  };
+  observe(kPeriod_s);
+  EXPECT_EQ(state.way_ahead_m, 0.0);
+  for (int cycle = 1; cycle <= 4; ++cycle) {
+    q[0] += 0.01;
+    observe(0.0);
+    EXPECT_NEAR(state.way_ahead_m, 0.005 * cycle, 1e-15);
+  }
+  for (int cycle = 0; cycle < 1000; ++cycle) observe(kPeriod_s);  // the module's filter
+  EXPECT_NEAR(state.way_ahead_m, 0.0, 1e-9);
+}
+
 /// What is taken for the stiffness at first is replaced by force over way: at once by more, as the
 /// arm else came too fast, and by less in its time.
 TEST(ApproachLimit, LearnsHowStiffTheContactIs) {

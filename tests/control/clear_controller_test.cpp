@@ -104,6 +104,36 @@ TEST(ClearController, PreparesTheSameToTheBit) {
   }
 }
 
+/// As long as nothing is touched, the law of contacts has no say in how the arm keeps clear.
+TEST(ClearController, KeepsClearOfWhatItNeverTouchesAsWithoutALaw) {
+  test::Random random(432);
+  int slowed = 0;
+  for (int run = 0; run < 60; ++run) {
+    ControllerConfig config = clearController(random);
+    while (config.force_control->variant != Variant::kNullLimit) config = clearController(random);
+    ControllerConfig lawless = config, anywhere = config;
+    lawless.force_control.reset();
+    anywhere.clearance.reset();
+    const Controller with(config), without(lawless), free(anywhere);
+    ControllerState state = with.initialState(), other = without.initialState();
+    ControllerState free_state = free.initialState();
+    ControllerOutput output, other_output, free_output;
+    for (int cycle = 0; cycle < 200; ++cycle) {
+      const double t_s = 0.001 * cycle;
+      const TactileSample sample = test::touchAt(0.2, 0.0, 0.0, cycle + 1);
+      with.update({state.q_desired, sample}, config.gains, t_s, 0.001, state, output);
+      without.update({other.q_desired, sample}, config.gains, t_s, 0.001, other, other_output);
+      free.update({free_state.q_desired, sample}, config.gains, t_s, 0.001, free_state,
+                  free_output);
+      const double tolerance = 1e-9 * (1.0 + other_output.velocity.norm());
+      ASSERT_NEAR((output.velocity - other_output.velocity).norm(), 0.0, tolerance)
+          << run << " cycle " << cycle;
+    }
+    slowed += (state.q_desired - free_state.q_desired).norm() > 1e-3;
+  }
+  EXPECT_GT(slowed, 10) << "this test is blind";
+}
+
 constexpr double kAvoid_m = 0.06;
 
 /// What is lacking of all distances to kAvoid_m, squared, where a run ends that only holds its

@@ -153,6 +153,19 @@ TEST(ModuleLoss, IsBorneExactlyWhereNothingPushesAndAnotherIsGood) {
   EXPECT_GT(cycles_lost, 2000);
 }
 
+/// What was sensed at last is no sample of the next cycle, too: laws would learn from it.
+TEST(ModuleLoss, LeavesNothingThatWasSensed) {
+  TactileReading reading;
+  reading.contact.force_N = reading.hardest.force_N = 3.0;
+  reading.contact.interval_s = kPeriod_s;
+  lose(reading);
+  EXPECT_TRUE(reading.is_lost);
+  EXPECT_EQ(reading.contact.force_N, 0.0);
+  EXPECT_EQ(reading.hardest.force_N, 0.0);
+  EXPECT_FALSE(reading.contact.isNew());
+  EXPECT_EQ(reading.unproven_s, kModuleProof_s);
+}
+
 /// Everything of the task's own is slowed alike: the arm goes the same way, later.
 TEST(ModuleLoss, LeavesTheWayAsItIs) {
   test::Random random(77);
