@@ -105,6 +105,10 @@ SetupSteps setupSteps(const DriveConfig& drive, const CanopenConfig& canopen, do
       write(0x1A00, 0, 1, 2),
       write(0x1800, 2, 1, kEverySync),
   });
+  // By default a drive may obey what comes in these, too (CiA 301, 7.3.5: 0x300 to 0x500 + node id
+  // by RPDOs 2 to 4, those above are off). One that cannot be switched off is no worse than before.
+  for (std::uint16_t index = 0x1401; index <= 0x1403; ++index)
+    steps.push_back(ifWritable(stopPdo(index)));
   // What else it may send by default would not be in the bus's calculated load.
   for (int pdo = 1; pdo < drive.transmit_pdos; ++pdo)
     steps.push_back(ifThere(stopPdo(static_cast<std::uint16_t>(0x1800 + pdo))));

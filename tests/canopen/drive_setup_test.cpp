@@ -248,6 +248,20 @@ TEST(DriveSetup, SwitchesOffAllTransmitPdosThatItIsToldOf) {
   EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1807, 1})], 0x3C5u);
 }
 
+/// Else any frame of such an id would command the drive.
+TEST(DriveSetup, SwitchesOffTheReceivePdosThatItDoesNotUse) {
+  DriveRig rig;
+  rig.slave.objects[{0x1401, 1}] = 0x305;
+  rig.slave.objects[{0x1402, 1}] = 0x80000405;
+  rig.slave.objects[{0x1403, 1}] = 0x505;
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+  EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1400, 1})], 0x205u);
+  EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1401, 1})], 0x80000305u);
+  EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1403, 1})], 0x80000505u);
+  EXPECT_EQ(rig.slave.writes.size(), 27u) << "one is off already";
+}
+
 TEST(DriveSetup, LeavesOutAQuickStopOptionThatThereIsNot) {
   DriveConfig config = test::driveConfig();
   config.has_quick_stop_option = false;
