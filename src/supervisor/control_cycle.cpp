@@ -88,7 +88,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   robot_.expect(isCommanding(mode_.mode) ? state_.q_desired : output_.q_desired);
   const auto samples_before = input_.tactile;
   robot_.read(input_);
-  withholdSamples(samples_before);
+  withholdSamples(input.missed_cycles, samples_before);
   startTares();
   const Mode before = mode_.mode;
   const Fault fault_before = mode_.fault;

@@ -7,6 +7,12 @@
 
 /// What the cycle finds amiss in its own input, of whom that speaks, and by which value.
 namespace tactus {
+namespace {
+
+/// A socket keeps no more frames than two cycles read; then one sample has to be new.
+constexpr int kWithheldAfterPause = 3;
+
+}  // namespace
 
 void ControlCycle::noteCulprit() noexcept {
   report_ = {};
@@ -128,11 +134,17 @@ bool ControlCycle::isLeftOut(int module, Fault fault) const noexcept {
 }
 
 /// A cable that breaks now and then is broken, until it has been good for a while: the controller,
-/// and a replay of it, know the module by its samples alone.
+/// and a replay of it, know the module by its samples alone. After a pause longer than a sample may
+/// be old, those that waited to be read are none of now: a full socket drops the newest.
 void ControlCycle::withholdSamples(
+    int missed_cycles,
     const std::array<TactileSample, kMaxTactileModules>& samples_before) noexcept {
+  const bool may_move = isCommanding(mode_.mode) || mode_.mode == Mode::kEnabling;
   for (int module = 0; module < modules(); ++module) {
     Withheld& withheld = withheld_[module];
+    const double pause_s = missed_cycles * period_s_;
+    if (may_move && pause_s > controller_.config().tactile_modules[module].max_sample_age_s)
+      withheld.cycles = std::max(withheld.cycles, kWithheldAfterPause);
     const Fault fault = robot_.tactileModules()[module].fault();
     if (fault == Fault::kTactileCableBreak && isLeftOut(module, fault))
       withheld.cycles = cyclesLasting(kModuleProof_s, period_s_);

@@ -63,5 +63,48 @@ TEST(ControlCycleTactileSilence, IsSeenInTimeAlsoWhereItBeganBeforeTheMotion) {
   EXPECT_GT(seen_running, 100);
 }
 
+/// The loop does not run for so many cycles, and the world goes on.
+void pause(VirtualRobotCell& cell, int cycles) {
+  cell.plant.advance(cell.t_ns += cycles * 1'000'000LL);
+  cell.input.missed_cycles = cycles;
+  cell.step();
+  cell.input.missed_cycles = 0;
+}
+
+/// What waited to be read while the loop paused is not of now, whenever it is read.
+TEST(ControlCycleTactileSilence, OfTheLoopItselfIsNotEndedByWhatHasWaitedMeanwhile) {
+  Scene scene = test::shippedScene("scenario1_null_space");
+  for (int bus = 0; bus < 3; ++bus) {  // drives that a pause as short as this does not stop
+    Trouble& trouble = scene.troubles.emplace_back();
+    trouble.kind = Trouble::Kind::kHeartbeatOnly;
+    trouble.until_s = 1e3;
+    trouble.bus = bus;
+  }
+  VirtualRobotCell running(scene);
+  ASSERT_TRUE(running.runUntil(Mode::kRunning, 5000));
+  for (int i = 0; i < 1000; ++i) running.step();
+  const auto sequence = running.record().tactile_sequence[0];
+
+  VirtualRobotCell shortly = running;
+  pause(shortly, 20);  // as old as a sample may be
+  EXPECT_GT(shortly.record().tactile_sequence[0], sequence);
+  EXPECT_EQ(shortly.cycle.report().mode, Mode::kRunning);
+
+  VirtualRobotCell paused = running;
+  pause(paused, 21);
+  EXPECT_EQ(paused.cycle.report().fault, Fault::kTactileStale);
+  EXPECT_EQ(paused.record().tactile_sequence[0], sequence);
+  paused.step();
+  EXPECT_EQ(paused.record().tactile_sequence[0], sequence) << "the rest of what waited";
+  paused.on_frame = [](int bus, CanFrame& frame) {
+    if (bus == 3) frame.id = 0x7FF;
+  };
+  for (int i = 0; i < 5; ++i) paused.step();
+  EXPECT_EQ(paused.record().tactile_sequence[0], sequence) << "nothing new has come";
+  paused.on_frame = nullptr;
+  for (int i = 0; i < 5; ++i) paused.step();
+  EXPECT_GT(paused.record().tactile_sequence[0], sequence);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -80,6 +80,7 @@ class ControlCycle {
   Fault judgeModule(int module) noexcept;
   bool isLeftOut(int module, Fault fault) const noexcept;
   void withholdSamples(
+      int missed_cycles,
       const std::array<TactileSample, kMaxTactileModules>& samples_before) noexcept;
   Fault judgeController() noexcept;
   ModeInput modeInput(const CycleInput& input, Fault fault) noexcept;
@@ -147,7 +148,7 @@ class ControlCycle {
   };
   std::array<SampleAtStart, kMaxTactileModules> samples_at_start_;
   /// Samples of a module that said of late that its cable is broken, and that the arm goes on
-  /// without.
+  /// without; or that came while the loop paused.
   struct Withheld {
     int cycles = 0;              ///< to go; the last one lasts until a new sample
     std::uint32_t sequence = 0;  ///< of the newest one
