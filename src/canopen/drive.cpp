@@ -75,6 +75,7 @@ void Drive::receiveHeartbeat(const CanFrame& frame) noexcept {
   }
   cycles_without_heartbeat_ = 0;
   is_operational_ = state == NmtState::kOperational;
+  has_to_start_ = phase_ == Phase::kStarting && state == NmtState::kPreOperational;
   if (state == NmtState::kBootUp) return onBootUp();
   if (phase_ == Phase::kConfigured && !is_operational_) fail(Fault::kDriveStateLost);
 }
@@ -146,10 +147,12 @@ void Drive::startSetup() noexcept {
 void Drive::continueSetup(FrameBatch& out) noexcept {
   const bool is_new = phase_ == Phase::kUnconfigured && report_.fault == Fault::kNone;
   if (is_new) startSetup();
+  if (phase_ == Phase::kStarting) startAgain(out);
   if (phase_ != Phase::kSetup) return;
   setup_.update(out);
   if (setup_.status() == DriveSetup::Status::kDone) {
     phase_ = Phase::kStarting;
+    has_to_start_ = false;
     is_operational_ = false;  // whatever was seen before, as in a start cut short by a boot-up
     report_.has_position = false;
     starting_cycles_ = 0;
@@ -158,6 +161,12 @@ void Drive::continueSetup(FrameBatch& out) noexcept {
     report_.setup_failure = setup_.failure();
     fail(Fault::kDriveSetupRefused);
   }
+}
+
+/// Whenever its heartbeat says that it has not heard NMT start, which one lost frame suffices for.
+void Drive::startAgain(FrameBatch& out) noexcept {
+  if (has_to_start_) out.push(nmtFrame({NmtCommand::kStart, config_.node_id}));
+  has_to_start_ = false;
 }
 
 void Drive::awaitOperation() noexcept {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 #include <string>
 
@@ -329,6 +330,25 @@ TEST(DriveSetup, IsSilentWhenTheDriveDoesNotRunAfterwards) {
     EXPECT_STREQ(rig.report().detail.unit,
                  without_feedback ? "cycles without feedback" : "cycles without heartbeat");
     EXPECT_FALSE(rig.report().is_configured);
+  }
+}
+
+/// One that does not hear it says so by its heartbeat, and is told again as often as that.
+TEST(DriveSetup, RepeatsAStartThatTheDriveHasNotHeard) {
+  const CanFrame start = test::rawFrame(0, {0x01, kNode});
+  for (const int lost : {0, 1, 3, 1000}) {
+    SCOPED_TRACE(lost);
+    DriveRig rig;
+    rig.cycle(DriveGoal::kConfigure, 0.0, true);
+    int starts = 0;
+    for (int i = 0; i < 500 && !rig.report().is_configured && !isFailed(rig); ++i) {
+      rig.slave.ignores_nmt = starts < lost;  // the one that is sent in this cycle, if it is
+      for (const CanFrame& frame : rig.cycle(DriveGoal::kConfigure)) starts += frame == start;
+    }
+    EXPECT_EQ(rig.report().is_configured, lost <= 3);
+    EXPECT_GE(starts, std::min(lost, 3) + 1);
+    EXPECT_LE(starts, std::min(lost, 8) + 2) << "one that came just as it was told";
+    EXPECT_EQ(rig.report().fault, lost <= 3 ? Fault::kNone : Fault::kDriveSilent);
   }
 }
 

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <set>
+#include <utility>
+
 #include "support/shipped_scene.h"
 #include "support/virtual_robot_cell.h"
 
@@ -39,6 +42,18 @@ TEST(SwitchingOn, ADriveThatLetsGoAtTheFirstMomentStopsTheArm) {
     EXPECT_EQ(cell.cycle.report().fault, Fault::kDriveStateLost);
     EXPECT_EQ(cell.cycle.report().joint, 0);
   }
+}
+
+/// A lost frame costs a drive no more than its next heartbeat.
+TEST(SwitchingOn, EachDriveIsToldAgainToStartIfTheFirstTimeIsLost) {
+  VirtualRobotCell cell(test::shippedScene("scenario1_null_space"));
+  std::set<std::pair<int, int>> lost;
+  cell.on_send = [&](int bus, CanFrame& frame) {
+    const bool is_start = frame.id == 0 && frame.data[0] == 1;
+    return !is_start || !lost.emplace(bus, frame.data[1]).second;
+  };
+  EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000)) << faultName(cell.cycle.report().fault);
+  EXPECT_EQ(lost.size(), 9u);
 }
 
 /// What the daemon sends to joint 4 has this control word instead, where it is another one.

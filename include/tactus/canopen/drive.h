@@ -85,6 +85,7 @@ class Drive {
 
   void startSetup() noexcept;
   void continueSetup(FrameBatch& out) noexcept;
+  void startAgain(FrameBatch& out) noexcept;
   void awaitOperation() noexcept;
   void onConfigured() noexcept;
   void watchRestart() noexcept;
@@ -118,7 +119,8 @@ class Drive {
   int periods_heard_ = 0;                  ///< since then: each SYNC is answered once
   std::optional<DriveState> state_;        ///< none: a status word that the standard does not know
   bool is_operational_ = false;            ///< by its last heartbeat
-  int starting_cycles_ = 0;                ///< since NMT start
+  int starting_cycles_ = 0;                ///< since the first NMT start
+  bool has_to_start_ = false;              ///< it has said so since the last one
   int cycles_without_feedback_ = 0;
   int cycles_without_heartbeat_ = 0;
   bool has_old_fault_ = false;  ///< in fault without a break since it was configured
