@@ -23,6 +23,9 @@ namespace {
 
 using Phase = CommissionCycle::Phase;
 
+/// A key that is hit twice; nobody sees a motion coming and answers it as fast.
+constexpr double kSecondEnter_s = 0.3;
+
 /// One engineer, one robot.
 class Commissioning {
  public:
@@ -121,9 +124,11 @@ class Commissioning {
   void serve() {
     const Question* asked = nullptr;
     bool has_waited = false;
+    int cycles_since_answer = 0;
     CommissionCycle& cycle = desk_.cycle();
     while (cycle.phase() != Phase::kIdle) {
       desk_.runCycle();
+      ++cycles_since_answer;
       const Question* const question = cycle.question();
       if (question && !asked) {
         desk_.forgetTyped();
@@ -136,11 +141,16 @@ class Commissioning {
       const auto line = desk_.takeLine();
       if (!line) continue;
       if (!question) {
-        desk_.stopMotion();
+        const bool is_second_enter = cycle.phase() == Phase::kReading &&
+                                     trimmedLine(*line).empty() &&
+                                     cycles_since_answer * config_.period_s < kSecondEnter_s;
+        if (!is_second_enter) desk_.stopMotion();
         continue;
       }
       const auto answer = parseAnswer(scene_, *question, *line);
-      if (!answer || !cycle.answer(*answer))
+      if (answer && cycle.answer(*answer))
+        cycles_since_answer = 0;
+      else
         desk_.say(fmt::format("expected {}\n> ", expectedText(scene_, *question)));
     }
   }

@@ -70,6 +70,9 @@ class VirtualDesk final : public CommissionDesk {
   std::optional<std::pair<int, Fault>> bus_fault;
   bool stops_after_writing = false;
   int cycles_to_stop = 0;  ///< of motion, until a line is typed
+  /// In this cycle after each answer, while drives are asked whether they are off.
+  int reading_cycle_typed = 0;
+  std::string typed_while_reading;
 
   /// As another program that is started at the same arm.
   void restart(const Scene& scene) {
@@ -85,6 +88,7 @@ class VirtualDesk final : public CommissionDesk {
   void runCycle() override {
     rig.step();
     rig.input.stop_requested = false;
+    reading_cycles_ = cycle().phase() == CommissionCycle::Phase::kReading ? reading_cycles_ + 1 : 0;
     if (++cycles_ > 3'000'000) is_stopped_ = true;
   }
   CommissionCycle& cycle() override { return *rig.cycle; }
@@ -104,6 +108,7 @@ class VirtualDesk final : public CommissionDesk {
       rig.noteQuestion();
       return typed(*question);
     }
+    if (reading_cycles_ > 0 && reading_cycles_ == reading_cycle_typed) return typed_while_reading;
     if (cycle().phase() == CommissionCycle::Phase::kMoving && --cycles_to_stop == 0) return "";
     if (cycle().phase() != CommissionCycle::Phase::kIdle) return std::nullopt;
     const bool asks_on = said.ends_with("end > ");
@@ -144,6 +149,7 @@ class VirtualDesk final : public CommissionDesk {
   Scene scene_;
   bool is_stopped_ = false;
   long cycles_ = 0;
+  int reading_cycles_ = 0;  ///< of the phase that goes on
 };
 
 void expectFileIsRight(const CommissionFolder& folder) {
@@ -232,6 +238,40 @@ TEST(Commission, LineThatIsTypedStopsAMotion) {
     EXPECT_LT(desk.cycles_to_stop, 0);
     EXPECT_EQ(desk.said.find("is not finished"), std::string::npos);
     expectFileIsRight(folder);
+  }
+}
+
+/// The key that ends an answer, hit twice, is no wish to stop what has not begun.
+TEST(Commission, SecondEnterAfterAnAnswerStopsNothing) {
+  const CommissionFolder folder;
+  VirtualDesk desk(folder.scene());
+  desk.reading_cycle_typed = 1;
+  desk.typed_while_reading = "\r";
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
+  expectFileIsRight(folder);
+}
+
+TEST(Commission, AnyOtherLineAfterAnAnswerKeepsTheJointFromMoving) {
+  struct Typed {
+    int cycle;
+    const char* line;
+  };
+  for (const Typed typed : {Typed{1, "no"}, Typed{299, ""}, Typed{300, ""}}) {
+    SCOPED_TRACE(typed.cycle);
+    const CommissionFolder folder;
+    VirtualDesk desk(folder.scene());
+    bool is_asking = false;
+    desk.rig.on_question = [&](const Question&) {
+      is_asking = true;  // from here on one drive lets the others wait
+      return std::nullopt;
+    };
+    desk.rig.on_frame = [&](int, CanFrame& frame) { return !is_asking || frame.id != 0x589; };
+    desk.reading_cycle_typed = typed.cycle;
+    desk.typed_while_reading = typed.line;
+    EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitFault);
+    EXPECT_EQ(desk.said.find("is not finished: stopped") != std::string::npos, typed.cycle != 299)
+        << desk.said;
+    EXPECT_EQ(desk.rig.most_powered, 0);
   }
 }
 
