@@ -58,6 +58,7 @@ std::string nodesText(const Scene& scene, const std::vector<FoundNode>& nodes) {
         "{:<22} vendor {} product {}  {}, {}\n", placeText(scene, node.bus, node.node_id),
         hexOf(node.vendor), hexOf(node.product), node.isDrive() ? "drive (402)" : "no 402 device",
         drive ? "in the file of " + jointText(scene, drive->joint) : "not in the file");
+    if (node.has_twin) text += "    two devices answer to this id: one of them needs another\n";
     if (node.node_id == scene.hardware->canopen.master_node_id)
       text += "    has the id of can.master_node_id: one of the two needs another\n";
   }
@@ -82,6 +83,7 @@ Json nodesJson(const Scene& scene, const std::vector<FoundNode>& nodes) {
          {"product", orNull(node.product)},
          {"is_drive", node.isDrive()},
          {"counts_per_turn", orNull(node.counts_per_turn)},
+         {"has_twin", node.has_twin},
          {"joint",
           drive ? Json(scene.joint_names[static_cast<std::size_t>(drive->joint)]) : Json()}});
   }
@@ -168,6 +170,9 @@ std::string troubleText(const Scene& scene, int joint, const JointTrouble& troub
         return "no drive that answers moves it, beside those of other joints";
       case JointTroubleKind::kNodeSilent:
         return who + " no longer answers";
+      case JointTroubleKind::kTwoDevices:
+        return fmt::format(
+            "two devices answer as {}, and would move together: one needs another id", who);
       case JointTroubleKind::kOtherHasPower:
         return fmt::format("{} has power (status word {:#06x}): who commands it?", who,
                            static_cast<unsigned>(trouble.value));

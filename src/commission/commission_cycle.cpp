@@ -10,6 +10,7 @@
 namespace tactus {
 namespace {
 
+/// And one more, until whose answer second ones to these have come.
 enum ReadEntry : std::size_t { kStatusWordNow, kPositionNow };
 
 /// A drive that starts anew after it was released needs as long as one that boots.
@@ -104,7 +105,7 @@ void CommissionCycle::startReading() {
     for (const FoundNode& node : nodes())
       if (node.isDrive() && node.bus == static_cast<int>(bus)) ids.push_back(node.node_id);
     readers_.emplace_back(
-        ids, std::vector<ObjectEntry>{{0x6041, 0, 2}, {0x6064, 0, 4}}, timeout,
+        ids, std::vector<ObjectEntry>{{0x6041, 0, 2}, {0x6064, 0, 4}, {0x1000, 0, 4}}, timeout,
         readingTries(canopen),
         readingPace(config_.hardware.buses[bus].bit_rate_per_s, config_.period_s));
   }
@@ -137,6 +138,9 @@ bool CommissionCycle::judgeReading(JointTrouble& trouble, double& counts) const 
       const auto word = node.value(kStatusWordNow), position = node.value(kPositionNow);
       trouble.bus = static_cast<int>(bus);
       trouble.node_id = node.nodeId();
+      const FoundNode* const found = uses_->find(static_cast<int>(bus), node.nodeId());
+      trouble.kind = JointTroubleKind::kTwoDevices;
+      if (found->has_twin || node.isAnsweredTwice()) return false;
       if (!word || (is_own && !position)) {
         trouble.kind = is_own ? JointTroubleKind::kNodeSilent : JointTroubleKind::kOtherSilent;
         return false;

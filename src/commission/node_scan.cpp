@@ -43,7 +43,8 @@ FoundNode foundNode(int bus, const ObjectReader& node) {
                   node.value(kVendor),
                   node.value(kProduct),
                   std::nullopt,
-                  std::nullopt};
+                  std::nullopt,
+                  node.isAnsweredTwice()};
   if (const auto word = node.value(kStatusWord))
     found.status_word = static_cast<std::uint16_t>(*word);
   const auto encoder = ratio(node, kIncrements, kMotorTurns);

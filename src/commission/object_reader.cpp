@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "tactus/canopen/canopen.h"
+
 namespace tactus {
 
 ObjectReader::ObjectReader(int node_id, std::vector<ObjectEntry> entries, int timeout_cycles,
@@ -15,11 +17,24 @@ ObjectReader::ObjectReader(int node_id, std::vector<ObjectEntry> entries, int ti
   values_.reserve(entries_.size());
 }
 
+/// Of what other masters ask there is nothing to be counted.
+void ObjectReader::receive(const CanFrame& frame) noexcept {
+  sdo_.receive(frame);
+  if (!isDataFrame(frame, cob_id::kSdoAnswer + static_cast<std::uint32_t>(node_id_), 8)) return;
+  const bool is_ours = std::ranges::any_of(entries_, [&frame](const ObjectEntry& entry) {
+    return readLittleEndian(frame, 1, 2) == entry.index && frame.data[3] == entry.subindex;
+  });
+  if (is_ours) ++answers_;
+}
+
 void ObjectReader::update(FrameBatch& out) noexcept {
   if (isDone()) return;
   judge();
   const bool may_ask = sdo_.status() != SdoStatus::kBusy && !isDone();
-  if (may_ask) sdo_.upload(entries_[values_.size()]);
+  if (may_ask) {
+    sdo_.upload(entries_[values_.size()]);
+    ++requests_;
+  }
   sdo_.update(out);
 }
 

@@ -52,6 +52,49 @@ TEST(CommissionTrouble, CountsThatRunAgainstTheCommand) {
   EXPECT_LT(rig.worst_travel, 0.1);
 }
 
+/// Two drives with one node id obey the same frames.
+TEST(CommissionTrouble, DrivesThatWouldMoveTogether) {
+  for (const int joint : {0, 1, 2}) {
+    SCOPED_TRACE(joint);
+    std::vector<HiddenJoint> arm = test::turnedArm();
+    arm[2].node_id = arm[1].node_id;
+    CommissionRig rig(arm, test::configWithLines(), 1);
+    ASSERT_TRUE(rig.scan());
+    ASSERT_EQ(rig.cycle->nodes().size(), 2u);
+    EXPECT_FALSE(rig.cycle->nodes()[0].has_twin);
+    EXPECT_TRUE(rig.cycle->nodes()[1].has_twin);
+    EXPECT_TRUE(rig.commission(joint));
+    const JointTrouble& trouble = rig.cycle->joint()->trouble();
+    EXPECT_EQ(trouble.kind, JointTroubleKind::kTwoDevices);
+    EXPECT_EQ(trouble.node_id, 2);
+    EXPECT_EQ(rig.most_powered, 0);
+  }
+}
+
+/// One that was switched on after the scan; its answers come a cycle after the other's.
+TEST(CommissionTrouble, DriveThatGetsATwinLater) {
+  TroubledRig rig;
+  rig.on_frame = [&rig](int bus, CanFrame& frame) {
+    if (frame.id == 0x582) rig.own_answers.emplace_back(bus, frame);
+    return true;
+  };
+  const JointTrouble trouble = rig.trouble();
+  EXPECT_EQ(trouble.kind, JointTroubleKind::kTwoDevices);
+  EXPECT_EQ(trouble.node_id, 2);
+  EXPECT_EQ(rig.most_powered, 0);
+}
+
+/// A sender repeats a frame of whose end it is not sure.
+TEST(CommissionTrouble, NoneWhereOneAnswerCameTwice) {
+  TroubledRig rig;
+  int repeated = 0;
+  rig.on_frame = [&](int bus, CanFrame& frame) {
+    if (frame.id == 0x582 && ++repeated == 1) rig.own_answers.emplace_back(bus, frame);
+    return true;
+  };
+  EXPECT_EQ(rig.trouble().kind, JointTroubleKind::kNone);
+}
+
 TEST(CommissionTrouble, AnotherDriveThatHasPower) {
   TroubledRig rig;
   rig.on_frame = [](int, CanFrame& frame) {

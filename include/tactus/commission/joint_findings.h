@@ -35,6 +35,7 @@ enum class JointTroubleKind : std::uint8_t {
   kStopped,        ///< by the engineer
   kNoNode,         ///< no drive is left that could be this joint's
   kNodeSilent,     ///< its drive no longer answers
+  kTwoDevices,     ///< two answer to one node id: they would move together
   kOtherHasPower,  ///< another drive has power
   kOtherSilent,    ///< another drive no longer answers, so that nobody knows that it is off
   kStroke,         ///< a motion ended otherwise than it should: see the stroke's report

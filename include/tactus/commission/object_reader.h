@@ -9,25 +9,30 @@
 
 namespace tactus {
 
-/// Reads entries of one node's object dictionary, one after the other.
+/// Reads entries of one node's object dictionary, one after the other. Two devices with one node id
+/// both answer each request.
 class ObjectReader {
  public:
   /// tries: of each entry, until the node answers.
   ObjectReader(int node_id, std::vector<ObjectEntry> entries, int timeout_cycles, int tries);
 
-  void receive(const CanFrame& frame) noexcept { sdo_.receive(frame); }
+  void receive(const CanFrame& frame) noexcept;
   void update(FrameBatch& out) noexcept;  ///< once a cycle, after all frames
 
   bool isDone() const noexcept { return values_.size() == entries_.size() || is_silent_; }
   /// It was asked for the first entry and said nothing at all.
   bool isSilent() const noexcept { return is_silent_; }
   int nodeId() const noexcept { return node_id_; }
+  /// More answers came than requests went; a single one may be a frame that its sender repeated.
+  bool isAnsweredTwice() const noexcept { return answers_ >= requests_ + kMostRepeated + 1; }
   /// Nothing where the node refused, said nothing, or was not asked any more.
   std::optional<std::uint32_t> value(std::size_t entry) const noexcept {
     return entry < values_.size() ? values_[entry] : std::nullopt;
   }
 
  private:
+  static constexpr int kMostRepeated = 1;
+
   void judge() noexcept;
 
   int node_id_;
@@ -35,7 +40,8 @@ class ObjectReader {
   std::vector<std::optional<std::uint32_t>> values_;
   SdoClient sdo_;
   int tries_;
-  int tried_ = 0;  ///< of this entry
+  int tried_ = 0;                   ///< of this entry
+  int requests_ = 0, answers_ = 0;  ///< of all entries
   bool is_silent_ = false;
 };
 
