@@ -57,24 +57,46 @@ Scene loadLoggedScene(const ReplayRequest& request, const LogDescription& descri
   return scene;
 }
 
+/// Logs of the run that are not given, the first ones of such.
+struct MissingParts {
+  std::string path;  ///< of the log behind them
+  int first = 0, count = 0;
+};
+
+[[noreturn]] void failFor(const MissingParts& missing) {
+  const int last = missing.first + missing.count - 1;
+  failAt(beginOf(missing.path), kPartKey,
+         missing.count == 1 ? fmt::format("part {} of the run, just before it, is missing", last)
+                            : fmt::format("parts {} to {} of the run, just before it, are missing",
+                                          missing.first, last),
+         "expected all logs of the run, the oldest first; behind missing ones replay begins where "
+         "the drives have stopped the arm by themselves, which none of these logs holds");
+}
+
 /// A replay without a single cycle of an arm under command would say nothing, and must not look as
 /// if all were well.
 void refuseUnknown(const std::vector<std::string>& logs, LogContinuity continuity) {
   CycleRecord record;
+  MissingParts missing;
+  int next = 0;
   for (const std::string& path : logs) {
     std::ifstream in = openLog(path);
     UlogReader reader(in, path);
-    continuity.beginPart(logPart(reader.description(), path).part);
+    const int part = logPart(reader.description(), path).part;
+    if (missing.count == 0 && part > next) missing = {path, next, part - next};
+    next = part + 1;
+    continuity.beginPart(part);
     while (reader.next(record)) {
       if (continuity.add(record) && isCommanding(static_cast<Mode>(record.mode))) return;
     }
   }
   if (continuity.stretches().empty()) return;
+  if (missing.count > 0) failFor(missing);
   const UnknownStretch& first = continuity.stretches().front();
   failAt(beginOf(logs.front()), "cycle",
          fmt::format("none with a command can be replayed: from {:.9g} s on {}", first.from_s,
                      first.reason),
-         "expected all logs of the run, the oldest first");
+         "expected a log that goes on to where the drives have stopped the arm by themselves");
 }
 
 /// Where in Gains those lie that --set gives, as such or with their section.

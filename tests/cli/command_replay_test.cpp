@@ -254,16 +254,33 @@ TEST_F(CommandReplayOfParts, ALaterOneAloneIsReplayedFromTheFirstReset) {
 TEST_F(CommandReplayOfParts, NothingComparedIsRefusedAndWritesNothing) {
   writeLogOf({});
   writePart(third_, "a", 2, 200, 400);
-  EXPECT_EQ(refusal({third_.path(), "-o", csv_.path()}),
-            third_.path() +
-                ":1:1: cycle: none with a command can be replayed: from 0.2 s on the part before "
-                "is missing, "
-                "expected all logs of the run, the oldest first");
+  const std::string remedy =
+      ", just before it, %s missing, expected all logs of the run, the oldest first; behind "
+      "missing "
+      "ones replay begins where the drives have stopped the arm by themselves, which none of these "
+      "logs holds";
+  const auto lacks = [&](const std::string& parts, const char* verb) {
+    std::string text = third_.path() + ":1:1: part: " + parts + remedy;
+    return text.replace(text.find("%s"), 2, verb);
+  };
+  EXPECT_EQ(refusal({third_.path(), "-o", csv_.path()}), lacks("parts 0 to 1 of the run", "are"));
   EXPECT_FALSE(std::filesystem::exists(csv_.path()));
   records_.back().mode = static_cast<std::uint64_t>(Mode::kOff);  // a reset, with which it ends
   writePart(third_, "a", 2, 200, 400);
-  EXPECT_NE(refusal({third_.path()}).find(": none with a command can be replayed: "),
-            std::string::npos);
+  EXPECT_EQ(refusal({third_.path()}), lacks("parts 0 to 1 of the run", "are"));
+  writePart(first_, "a", 0, 0, 0);
+  EXPECT_EQ(refusal({first_.path(), third_.path()}), lacks("part 1 of the run", "is"));
+}
+
+TEST_F(CommandReplayOfParts, OneThatLostItsFirstRecordsIsRefusedForThat) {
+  writeLogOf({});
+  records_.erase(records_.begin(), records_.begin() + 10);
+  rewriteLog();
+  EXPECT_EQ(refusal({log_.path()}),
+            log_.path() +
+                ":1:1: cycle: none with a command can be replayed: from 0 s on records "
+                "are missing, expected a log that goes on to where the drives have "
+                "stopped the arm by themselves");
 }
 
 TEST_F(CommandReplayOfParts, DroppedRecordsAreSaidAndNoDifference) {
