@@ -54,6 +54,29 @@ bool isNothing(const YamlNode& node) {
   return node.kind == YamlNode::Kind::kEmpty || node.kind == YamlNode::Kind::kNull;
 }
 
+/// `name` is what the node is called in the setting.
+[[noreturn]] void failForIndex(const SourcePosition& at, const std::string& key,
+                               const std::string& name, const YamlNode& node, std::size_t index) {
+  if (node.kind == YamlNode::Kind::kList && !node.items.empty()) {
+    failAt(at, key, fmt::format("there is no entry {}", index),
+           fmt::format("expected an index below {}", node.items.size()));
+  }
+  std::string is = describe(node);
+  std::string expected = "no index";
+  if (isNothing(node)) {
+    is = "not given";
+    expected = "a key that is given as a list; `tactus keys` names those that can be";
+  } else if (node.kind == YamlNode::Kind::kList) {
+    is = "an empty list";
+    expected = "the whole list";
+  } else if (node.kind == YamlNode::Kind::kMap) {
+    expected =
+        node.entries.empty() ? "a key in it" : "a key in it, as " + inQuotes(node.entries[0].key);
+  }
+  failAt(at, key, fmt::format("there is no entry {}: {} is {}", index, inQuotes(name), is),
+         "expected " + expected);
+}
+
 }  // namespace
 
 YamlNode::YamlNode(Kind kind_, SourcePosition at_, std::string text_)
@@ -120,12 +143,11 @@ void applyOverride(YamlNode& root, const Override& setting, std::string_view pat
       node->entries.push_back({path_step.key, at, YamlNode{YamlNode::Kind::kEmpty, at}});
     }
     node = node->find(path_step.key);
+    std::string name = path_step.key;
     for (const std::size_t index : path_step.indices) {
-      if (index >= node->items.size()) {
-        failAt(at, setting.key, fmt::format("there is no entry {}", index),
-               fmt::format("expected an index below {}", node->items.size()));
-      }
+      if (index >= node->items.size()) failForIndex(at, setting.key, name, *node, index);
       node = &node->items[index];
+      name += fmt::format("[{}]", index);
     }
   }
   mergeYaml(*node, parseYaml(source));
