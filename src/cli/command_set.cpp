@@ -10,6 +10,7 @@
 
 #include "tactus/cli/commands.h"
 #include "tactus/daemon/control_client.h"
+#include "tactus/daemon/control_requests.h"
 #include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/gain_save.h"
 #include "tactus/daemon/number_within.h"
@@ -118,7 +119,7 @@ void addSetCommand(CLI::App& app, int& exit_code) {
   CLI::App* command = addChange(app, "set", "Change gains of the running daemon", *options);
   command->add_option("KEY=VALUE", options->settings, "All of these, or none")->required();
   command->add_option("--for", options->for_s, "Go back after so many seconds")
-      ->check(numberWithin(1e-3, 86400.0));
+      ->check(numberWithin(kMinFor_s, kMaxFor_s));
   command->callback([options, &exit_code] { exit_code = change(setRequest(*options), *options); });
 }
 

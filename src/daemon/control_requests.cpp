@@ -20,7 +20,6 @@ namespace {
 
 constexpr std::size_t kKeptForUndo = 16;
 constexpr std::size_t kMaxTrials = 16;  ///< that the loop has not told of
-constexpr double kMaxFor_s = 86400.0;
 
 std::string valueText(const std::string& key, const Json& value) {
   if (value.is_null()) return "~";
@@ -43,8 +42,10 @@ double duration_s(const Json& request) {
   if (found == request.end()) return kNoLimit;
   if (!found->is_number()) refuseRequest("for_s is no number", "seconds");
   const double value_s = found->get<double>();
-  if (!(value_s > 0.0 && value_s <= kMaxFor_s))
-    refuseRequest("for_s is out of range", "0 to 86400 s");
+  if (!(value_s >= kMinFor_s && value_s <= kMaxFor_s)) {
+    refuseRequest("for_s is out of range",
+                  fmt::format("a number from {} to {} s", kMinFor_s, kMaxFor_s));
+  }
   return value_s;
 }
 

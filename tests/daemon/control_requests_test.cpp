@@ -162,6 +162,18 @@ TEST_F(ControlRequestsTest, RefusesWhatIsNoRequest) {
   EXPECT_FALSE(link_->gain_orders.take(order));
 }
 
+TEST_F(ControlRequestsTest, TakesATimeWithinWhatItSays) {
+  const auto refusal = [&](double for_s) {
+    const Json answer = ask({{"do", "set"}, {"values", {{kDamping, 0.8}}}, {"for_s", for_s}});
+    return answer.at("done").get<bool>() ? "" : answer.at("error").get<std::string>();
+  };
+  const std::string range = "expected a number from 0.001 to 86400 s";
+  for (const double for_s : {-1.0, 0.0, 0.9e-3, 86400.1})
+    EXPECT_NE(refusal(for_s).find(range), std::string::npos) << for_s << ": " << refusal(for_s);
+  EXPECT_EQ(refusal(0.001), "");
+  EXPECT_EQ(refusal(86400.0), "");
+}
+
 /// Of a good request, some bytes are others.
 TEST_F(ControlRequestsTest, SurvivesDamage) {
   test::Random random(1921);

@@ -14,6 +14,10 @@
 
 namespace tactus {
 
+/// The time after which a change goes back by itself.
+inline constexpr double kMinFor_s = 1e-3;
+inline constexpr double kMaxFor_s = 86400.0;
+
 /// Answers what is asked of a running daemon, as docs/control.md has it: one JSON object a request
 /// and an answer, whatever the bytes are. Not for the loop; one thread.
 class ControlRequests {

@@ -169,7 +169,8 @@ async function set(event) {
   const request = { do: "set", values: typedValues() };
   const back = at("for").value.trim();
   if (back) request.for_s = Number(back);
-  if (back && !(Number.isFinite(request.for_s) && request.for_s > 0)) return show("message", "go back after: expected seconds", "bad");
+  if (back && !(Number.isFinite(request.for_s) && request.for_s >= 0.001 && request.for_s <= 86400))
+    return show("message", "go back after: expected 0.001 to 86400 seconds", "bad");
   if (!await act(request, "message", (answer) => `Change ${answer.number} sent.`)) return;
   for (const input of document.querySelectorAll("#gains input")) input.value = "";
   typed();

@@ -114,7 +114,7 @@ class Daemon:
 
     def set(self, values: Mapping[str, float | str | None], for_s: float | None = None,
             wait: bool = False) -> dict[str, Any]:
-        """Changes gains, all of these or none. for_s: they go back after so long.
+        """Changes gains, all of these or none. for_s: they go back after so long, 0.001 to 86400 s.
 
         Returns the last answer, with `changes`: when the gains are there, or wait for a moment without
         contact; with `wait` when they are kept, for which the arm has to have been in contact for a while,
