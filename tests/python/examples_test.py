@@ -58,6 +58,10 @@ class Tuning(Scratch):
         done = example("tune_stiff_profile.py", SCENES / "scenario1_none.yaml")
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"^\S+scenario1_none.yaml: without force control [^\n]*\n$")
+        hasty = self.file("hasty.yaml", f"extends: {SCENES}/scenario3_estimated.yaml\nperiod_s: 0.0005\n")
+        done = example("tune_stiff_profile.py", hasty, "--T", "0.1", "--d", "0.5")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertRegex(done.stderr, r"^\S+: can.buses\[0\]: can0 is overloaded: [^\n]*\n$")
 
 
 class Plotting(Scratch):
