@@ -4,6 +4,7 @@
 
 #include "tactus/python/bindings.h"
 #include "tactus/python/columns.h"
+#include "tactus/record/log_parts.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/run/log_replay.h"
 #include "tactus/run/logged_contacts.h"
@@ -69,16 +70,18 @@ py::dict dictOf(const std::vector<Pair>& pairs) {
   return dict;
 }
 
-/// (columns, whether it was cut off, infos, parameters, sources, overrides)
+/// (columns, whether it was cut off, which part of its run, infos, parameters, sources, overrides)
 py::tuple readLog(const std::string& path) {
   std::unique_ptr<Columns> columns;
   LogDescription description;
   bool is_cut_off = false;
+  int part = 0;
   {
     const py::gil_scoped_release release;
     std::ifstream in = openLog(path);
     UlogReader reader(in, path);
     description = reader.description();
+    part = logPart(description, path).part;
     columns = std::make_unique<Columns>(description.shape,
                                         [&](std::string_view field) { return reader.has(field); });
     Collector collect(*columns);
@@ -86,7 +89,7 @@ py::tuple readLog(const std::string& path) {
     while (reader.next(record)) collect(record);
     is_cut_off = reader.cutOff();
   }
-  return py::make_tuple(std::move(columns), is_cut_off, dictOf(description.infos),
+  return py::make_tuple(std::move(columns), is_cut_off, part, dictOf(description.infos),
                         dictOf(description.parameters), dictOf(description.sources),
                         dictOf(description.overrides));
 }

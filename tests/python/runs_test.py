@@ -11,6 +11,7 @@ import struct
 import sys
 import unittest
 import unittest.mock
+import warnings
 
 import numpy as np
 from common import SCENES, Scratch, program, tactus
@@ -53,6 +54,32 @@ class Simulations(Scratch):
             del figures["step_time_ns"], figures["real_time_factor"]
         self.assertEqual(run.summary, summary)
         self.assertEqual(log.contacts, json.loads(program("contacts", log.path, "--json").stdout))
+
+    def test_say_where_a_log_does_not_begin_with_its_run(self):
+        program("simulate", scene_file("scenario2_estimated"), "-o", self.folder, "--set", "simulation.duration_s=4")
+        path = self.folder / "scenario2_estimated/run.ulg"
+        whole = path.read_bytes()
+        first = 16 + 3 + int.from_bytes(whole[16:18], "little")  # behind the header and the flags
+        for part, begin in ((b"0", None), (b"2", "begins at 0.000 s of the run: "), (b"x", None)):
+            key = b"char[1] part"
+            info = struct.pack("<HcB", 1 + len(key) + len(part), b"I", len(key)) + key + part
+            path.write_bytes(whole[:first] + info + whole[first:])
+            if part == b"x":
+                with self.assertRaisesRegex(tactus.ConfigError, ": part: 'x' is not a part's number"):
+                    tactus.read_log(path)
+                continue
+            log = tactus.read_log(path)
+            self.assertEqual(log.part, int(part))
+            with warnings.catch_warnings(record=True) as seen:
+                warnings.simplefilter("always")
+                contacts = log.contacts
+            done = program("contacts", path, "--json")
+            self.assertEqual(contacts, json.loads(done.stdout))
+            self.assertEqual([f"{one.message}\n" for one in seen], [done.stderr] if begin else [])
+            self.assertEqual([one.filename for one in seen], [__file__] if begin else [])
+            self.assertIn(begin or "", done.stderr)
+        path.write_bytes(whole)
+        self.assertEqual(tactus.read_log(path).part, 0)
 
     def test_have_the_columns_of_the_csv(self):
         for name in ("scenario2_estimated", "whole_arm/crops9_skin_two_links"):

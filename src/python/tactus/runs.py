@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import os
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -109,12 +110,13 @@ class LogFile(Log):
     """What read_log() returns."""
 
     def __init__(self, path: Path) -> None:
-        (columns, self.is_cut_off, self.infos, self.parameters, self.sources,
+        (columns, self.is_cut_off, self.part, self.infos, self.parameters, self.sources,
          self.overrides) = _core.read_log(path_bytes(path))
         super().__init__(columns)
         self.path = path
 
     is_cut_off: bool  #: it ends within a cycle: the run was interrupted
+    part: int  #: of its run, from 0; above that the run did not begin with this log
     infos: dict[str, str]  #: what the log says of the run
     parameters: dict[str, float]  #: numbers of scene and robot, as plots show them: rounded to float32
     sources: dict[str, str]  #: the text of each file that the run was made of, the scene first, by its path
@@ -137,8 +139,13 @@ class LogFile(Log):
     def contacts(self) -> list[dict[str, Any]]:
         """Figures of each contact, in the order of their start: `tactus contacts --json`.
 
-        Read from the file when they are first asked for."""
-        return json.loads(_core.contacts(path_bytes(self.path)))  # type: ignore[no-any-return]
+        Read from the file when they are first asked for. UserWarning if the log does not begin with
+        its run: a contact at its begin may be older, and counts from there on only."""
+        contacts: list[dict[str, Any]] = json.loads(_core.contacts(path_bytes(self.path)))
+        if self.part > 0:
+            warnings.warn(f"{os.fsdecode(self.path)}: begins at {self['t_s'][0]:.3f} s of the run: what was "
+                          "before is not in it, nor counts for a contact of then", stacklevel=3)
+        return contacts
 
     def __repr__(self) -> str:
         return f"<tactus.LogFile {str(self.path)!r}, {self.cycles} cycles>"
