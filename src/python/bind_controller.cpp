@@ -49,19 +49,17 @@ class ExternalLoop {
       : shape_(describeLog(scene).shape),
         modules_(static_cast<int>(scene.controller.tactile_modules.size())),
         cycle_(scene, q ? positions("q", *q) : scene.controller.q_start),
-        rotation_error_(scene.controller) {
+        rotation_error_(scene.controller),
+        joint_names_(scene.joint_names) {
     const JointLimits& limits = scene.controller.limits;
-    for (py::ssize_t i = 0; q && i < shape_.joints; ++i)
-      if (q->data()[i] < limits.lower[i] || q->data()[i] > limits.upper[i])
-        throw py::value_error(fmt::format("q: joint {} at {}, expected {} to {}",
-                                          scene.joint_names[i], q->data()[i], limits.lower[i],
-                                          limits.upper[i]));
+    if (q) checkWithin("q", *q, limits.lower, limits.upper);
   }
 
   Array<double> update(const Array<double>& q_measured, const std::optional<Array<double>>& tactile,
                        const std::optional<Array<std::int64_t>>& sequence) {
     RobotInput input = input_;
     input.q_measured = positions("q_measured", q_measured);
+    checkCredible(q_measured);
     if (tactile) take(*tactile, input);
     if (sequence) count(*sequence, input);
     input_ = input;  // nothing of an input that was refused stays
@@ -107,6 +105,22 @@ class ExternalLoop {
     return Eigen::Map<const Eigen::VectorXd>(q.data(), shape_.joints);
   }
 
+  void checkWithin(const char* name, const Array<double>& q, const JointVector& lower,
+                   const JointVector& upper) const {
+    for (int i = 0; i < shape_.joints; ++i)
+      if (q.data()[i] < lower[i] || q.data()[i] > upper[i])
+        throw py::value_error(fmt::format("{}: joint {} at {}, expected {} to {}", name,
+                                          joint_names_[i], q.data()[i], lower[i], upper[i]));
+  }
+
+  /// An engine's arm may be pushed past its limits, but not far. The daemon's drives stop long
+  /// before, by their following error, which the controller's own is without.
+  void checkCredible(const Array<double>& q_measured) const {
+    const JointLimits& limits = cycle_.config().limits;
+    const JointVector range = limits.upper - limits.lower;
+    checkWithin("q_measured", q_measured, limits.lower - range, limits.upper + range);
+  }
+
   void take(const Array<double>& tactile, RobotInput& input) const {
     const int width = shape_.has_moment_x ? 5 : 4;
     checkShape("tactile", tactile, {modules_, width},
@@ -135,6 +149,7 @@ class ExternalLoop {
   int modules_;
   VirtualCycle cycle_;
   ToolRotationError rotation_error_;
+  std::vector<std::string> joint_names_;
   RobotInput input_;
 };
 

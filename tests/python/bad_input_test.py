@@ -144,6 +144,8 @@ class Objects(unittest.TestCase):
         for arguments, text in (
                 ((q[:2],), r"q_measured: shape \(2,\), expected \(9,\): a position of each joint"),
                 ((q * np.nan,), "q_measured: entry 0 is nan, expected finite numbers"),
+                ((q + 1e300,), r"q_measured: joint j1 at 1e\+300, expected -1.2\d* to 1.2\d*"),
+                ((q - np.eye(len(q))[1] * 100,), r"q_measured: joint j2 at -\d+\S*, expected "),
                 ((q, np.zeros((2, 4))), r"tactile: shape \(2, 4\), expected \(1, 4\): F_y, F_z \(N\)"),
                 ((q, np.zeros((1, 4)), [-1]), "sequence: entry 0 is -1, expected 0 to 4294967295")):
             with self.assertRaisesRegex(ValueError, text):
@@ -152,6 +154,8 @@ class Objects(unittest.TestCase):
             tactus.Controller(self.scene, q + 9 - q[0])
         with self.assertRaisesRegex(RuntimeError, "expected update"):
             controller.record()
+        slightly_past = np.r_[0.5, q[1:]]  # j1 goes to 0.4
+        self.assertTrue(np.isfinite(tactus.Controller(self.scene).update(slightly_past)).all())
         with self.assertRaisesRegex(KeyError, "expected one of t_s, force_sensor_N"):
             self.run_["force"]
         with self.assertRaisesRegex(TypeError, "a str, expected a tactus.Scene"):

@@ -40,7 +40,7 @@ class Controller:
                sequence: ArrayLike | None = None) -> NDArray[np.float64]:
         """One cycle: what the sensors say in, joint velocities out. To be called each scene.period_s.
 
-        q_measured: (joints,), m or rad.
+        q_measured: (joints,), m or rad, no farther outside a joint's limits than they are apart.
         tactile: (modules, 4), of each tactile module F_y, F_z (N), M_y, M_z (Nm): what pushes on its
         cover, in its frame and about its origin, see module_poses(). (modules, 5) with M_x last where
         a module of the robot tells that. None: nothing new has come; a sample that gets older than
