@@ -152,6 +152,13 @@ void replaceFile(const std::string& path, const std::string& text,
   next.takePlace();
 }
 
+void putFileBack(const std::string& path, const std::string& text) {
+  const std::string target = std::filesystem::canonical(path).string();
+  Successor next(target);
+  next.write(text);
+  next.takePlace();
+}
+
 void refuseOverwriting(const std::string& input, const std::string& output) {
   std::error_code ignored;  // of an output that does not exist yet
   if (std::filesystem::equivalent(input, output, ignored)) {

@@ -4,7 +4,9 @@
 #include <poll.h>
 
 #include <array>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -64,6 +66,11 @@ class SavedGainsTest : public testing::Test {
     return saveGains(ControlClient(socket));
   }
 
+  std::string keptText() const {
+    std::ifstream in(file_.path() + "~");
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
   test::WrittenScene file_{0.7};
   const std::unique_ptr<LoopLink> link_ = std::make_unique<LoopLink>();
   ControlRequests requests_;
@@ -89,6 +96,7 @@ TEST_F(SavedGainsTest, ThatWentBackMeanwhileNeitherReturnNorStayInTheFile) {
   };
   EXPECT_THROW(save(fail), RunError);
   EXPECT_EQ(file_.text(), before);
+  EXPECT_EQ(keptText(), before) << "and no refused gains beside it";
   const Json shown = Json::parse(requests_.answer(R"({"do": "show"})"));
   EXPECT_EQ(shown.at("scene_hash"), file_.hash());
   EXPECT_EQ(shown.at("ordered").at("controller.damping"), 0.7);

@@ -56,6 +56,16 @@ TEST_F(ReplacedFile, KeepsItsRightsAndWhatItWas) {
   EXPECT_EQ(namesIn(folder_), (std::set<std::string>{"scene.yaml", "scene.yaml~"}));
 }
 
+TEST_F(ReplacedFile, ComesBackAndLeavesNothingOfWhatTookItsPlace) {
+  ASSERT_EQ(::chmod(path_.c_str(), 0640), 0);
+  replaceFile(path_.string(), "new");
+  putFileBack(path_.string(), "old");
+  EXPECT_EQ(contentOf(path_), "old");
+  EXPECT_EQ(contentOf(path_.string() + "~"), "old");
+  EXPECT_EQ(fs::status(path_).permissions(), fs::perms(0640));
+  EXPECT_EQ(namesIn(folder_), (std::set<std::string>{"scene.yaml", "scene.yaml~"}));
+}
+
 TEST_F(ReplacedFile, LinkStaysALink) {
   const fs::path link = folder_ / "link.yaml";
   fs::create_symlink("scene.yaml", link);
