@@ -44,11 +44,9 @@ bool allows(const std::string& limit, long long wanted) {
 /// Lines that the unit should have; "CPUQuota=" takes a value back.
 std::vector<std::string> problemsOf(const UnitFile& unit, int priority, bool has_groups) {
   std::vector<std::string> problems;
-  const std::string capabilities = unit.value("AmbientCapabilities");
-  const bool is_root =
-      !unit.isSet("User") && !unit.isOn("DynamicUser") && !unit.isSet("CapabilityBoundingSet");
+  const bool is_root = !unit.isSet("User") && !unit.isOn("DynamicUser");
   const auto may = [&](const char* capability) {
-    return is_root || capabilities.find(capability) != std::string::npos;
+    return unit.mayHave(capability) && (is_root || unit.givesAmbient(capability));
   };
   if (!may("CAP_SYS_NICE") && !allows(unit.value("LimitRTPRIO"), priority))
     problems.push_back(fmt::format("LimitRTPRIO={}", priority));

@@ -77,6 +77,46 @@ TEST(ServiceRights, CapabilitiesOfSeveralLinesAddUp) {
   EXPECT_EQ(service(machine, both + "AmbientCapabilities=\n").level, Level::kNotFit);
 }
 
+TEST(ServiceRights, LinesGoOnBehindABackslash) {
+  const MachineTree machine;
+  const auto levelOf = [&](const char* keys) { return service(machine, keys).level; };
+  EXPECT_EQ(levelOf("AmbientCapabilities=CAP_SYS_NICE \\\n  CAP_IPC_LOCK\n"), Level::kOk);
+  EXPECT_EQ(levelOf("AmbientCapabilities=CAP_SYS_NICE\\\r\nCAP_IPC_LOCK\r\n"), Level::kOk);
+  EXPECT_EQ(levelOf("AmbientCapabilities=CAP_SYS_NICE \\\n# why\n ; or\nCAP_IPC_LOCK"), Level::kOk)
+      << "comments are no part of it";
+  EXPECT_EQ(levelOf("LimitMEMLOCK=infinity\nEnvironment=A=1 \\\nLimitRTPRIO=80\n"), Level::kNotFit)
+      << "a part of the environment";
+  EXPECT_EQ(levelOf("LimitMEMLOCK=infinity\nEnvironment=A=1 \\\n\nLimitRTPRIO=80\n"), Level::kOk)
+      << "an empty line ends it";
+  EXPECT_EQ(levelOf("LimitMEMLOCK=infinity\nEnvironment=A=\\\\\nLimitRTPRIO=80\n"), Level::kOk)
+      << "two are one that is meant";
+  EXPECT_EQ(levelOf("LimitMEMLOCK=infinity\nLimitRTPRIO=80\\"), Level::kOk) << "the last line";
+}
+
+TEST(ServiceRights, AreTakenByTheBoundingSet) {
+  const MachineTree machine;
+  const auto levelOf = [&](const std::string& keys, bool is_root) {
+    machine.write(kUnit, "[Service]\n" + std::string(is_root ? "" : "User=tactus\n") + keys);
+    return checkServiceRights(machine.root(), 80, false).level;
+  };
+  const std::string set = "CapabilityBoundingSet=";
+  const std::string both = "CAP_SYS_NICE CAP_IPC_LOCK\n";
+  EXPECT_EQ(levelOf(set + "\n", true), Level::kNotFit) << "empty: none, also root";
+  EXPECT_EQ(levelOf(set + "\nLimitRTPRIO=80\nLimitMEMLOCK=infinity\n", true), Level::kOk);
+  EXPECT_EQ(levelOf(set + both, true), Level::kOk);
+  EXPECT_EQ(levelOf(set + "CAP_CHOWN\n", true), Level::kNotFit);
+  EXPECT_EQ(levelOf(set + "CAP_CHOWN\n" + set + both, true), Level::kOk);
+  EXPECT_EQ(levelOf(set + both + set + "\n", true), Level::kNotFit);
+  EXPECT_EQ(levelOf(set + "~CAP_CHOWN\n", true), Level::kOk) << "all but that";
+  EXPECT_EQ(levelOf(set + "~CAP_SYS_NICE\n", true), Level::kNotFit);
+  EXPECT_EQ(levelOf(set + "\n" + set + "~\n", true), Level::kOk) << "all again";
+  EXPECT_EQ(levelOf("AmbientCapabilities=" + both, false), Level::kOk);
+  EXPECT_EQ(levelOf("AmbientCapabilities=" + both + set + "\n", false), Level::kNotFit);
+  EXPECT_EQ(levelOf("AmbientCapabilities=~CAP_CHOWN\n", false), Level::kOk);
+  EXPECT_EQ(levelOf("AmbientCapabilities=" + both + "AmbientCapabilities=~CAP_SYS_NICE\n", false),
+            Level::kNotFit);
+}
+
 TEST(ServiceRights, WithoutAUserAreThoseOfRoot) {
   const MachineTree machine;
   machine.write(kUnit, "[Service]\nExecStart=x\n");
