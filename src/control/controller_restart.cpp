@@ -15,6 +15,7 @@ void Controller::restart(const Gains& gains, ControllerState& state) const noexc
   state.return_share = 0.0;
   for (TactileReading& reading : state.modules) reading.cover.has_started = false;
   if (contact_controller_) state.contact = contact_controller_->initialState();
+  state.contact.is_resting = true;  // so that it goes on by what it feels then
   if (several_contacts_) state.several = several_contacts_->initialState();
 }
 

@@ -225,6 +225,27 @@ TEST(ContactIntegral, OfAHeldArmFadesWhereNothingIsFelt) {
   }
 }
 
+/// It holds where it still feels something, or nothing, whether it got there by a retreat or not.
+TEST(ContactThatIsHeld, IsOneWhenTheArmGoesOnAfterARetreatToo) {
+  for (const Variant variant : {Variant::kNullSpace, Variant::kJointSpace, Variant::kNullLimit}) {
+    for (const bool has_retreated : {false, true}) {
+      for (const double force_N : {0.2, 0.8}) {  // of 0.3 N, and below the threshold
+        ControllerConfig config = oneContactRail(0.1);
+        config.force_control->variant = variant;
+        OneContactRun run(config);
+        run.state.is_stopping = true;
+        run.pressFor(100, force_N);
+        run.state.retreat.has_moved = has_retreated;
+        run.controller.goOn(config.gains, run.state);
+        run.state.is_stopping = false;
+        run.press(force_N);
+        EXPECT_NEAR(run.output.contact.gamma, force_N > 0.3 ? 1.0 : 0.0, 0.01)
+            << static_cast<int>(variant) << " " << has_retreated << " " << force_N;
+      }
+    }
+  }
+}
+
 /// By which a return speed knows how fast the law moves the tool itself.
 TEST(ContactPush, IsWhatTheSecondSpaceDoesToTheTool) {
   for (const Variant variant : {Variant::kNullTask, Variant::kNullJoint}) {
