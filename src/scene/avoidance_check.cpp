@@ -7,6 +7,7 @@
 
 #include "tactus/control/clearance_cost.h"
 #include "tactus/scene/drawn_configurations.h"
+#include "tactus/scene/number_text.h"
 
 namespace tactus {
 namespace {
@@ -52,13 +53,13 @@ void checkAvoidance(const YamlNode& root, const ControllerConfig& controller, do
     fastest = std::max(fastest, fastestOfPairs(controller, distances, q));
   }
   if (gain_per_s * fastest * period_s <= 1.0) return;
-  constexpr double kInside = 0.999;  // what is printed shall be accepted
   const std::string key = "clearance.avoid.gain_per_s";
   failAt(locate(root, key), key,
          fmt::format("{} is too steep: with this arm's levers the null space would overshoot in a "
                      "cycle",
                      gain_per_s),
-         fmt::format("expected at most {:.4g} with this period_s", kInside / (fastest * period_s)));
+         fmt::format("expected at most {:.4g} with this period_s",
+                     kInsideLimit / (fastest * period_s)));
 }
 
 }  // namespace tactus

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 
+#include "tactus/scene/number_text.h"
 #include "tactus/scene/scene_config.h"
 
 namespace tactus {
@@ -52,13 +53,12 @@ std::optional<GainProblem> findSteepLimits(const JointLimitAvoidanceGains& gains
   const double share_per_gain =
       period_s * gains.gradient_at_limit / gains.active_fraction * use.narrowest_range;
   if (gains.gain * share_per_gain <= 1.0) return std::nullopt;
-  constexpr double kInside = 0.999;  // what is printed shall be accepted
   return GainProblem{
       "redundancy.joint_limit_avoidance.gain",
       fmt::format("{} is too steep: joints would overshoot in a cycle on the way off their limits",
                   gains.gain),
       fmt::format("at most {:.4g} with this gradient_at_limit, active_fraction and period_s",
-                  kInside / share_per_gain)};
+                  kInsideLimit / share_per_gain)};
 }
 
 }  // namespace

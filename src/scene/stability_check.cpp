@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tactus/analysis/variant_loops.h"
+#include "tactus/scene/number_text.h"
 #include "tactus/scene/yaml_tree.h"
 #include "tactus/sim/obstacle.h"
 
@@ -47,7 +48,6 @@ double stiffnessOfLaw(const ControllerConfig& config, double stiffest_N_per_m) {
          "expected " + expectation);
 }
 
-constexpr double kInside = 0.999;  ///< of a limit: what is printed shall be accepted
 constexpr double kMinPhaseMargin_rad = kMinPhaseMargin_deg * std::numbers::pi / 180.0;
 
 /// The c_e/c up to which all loops have this phase margin; 0: with none.
@@ -94,7 +94,7 @@ std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, doubl
   }
   const std::string rule = fmt::format("c_e/c at most {:.3f} for a phase margin of {:g} degrees",
                                        ratio, kMinPhaseMargin_deg);
-  const double least_N_per_m = report.stiffest_N_per_m / (kInside * ratio);
+  const double least_N_per_m = report.stiffest_N_per_m / (kInsideLimit * ratio);
   if (scene.controller.force_control->has_estimator) {
     fail(scene, "stiffness.estimate.max_N_per_m",
          fmt::format("{:g} N/m is {}", report.stiffness_N_per_m, contact),
@@ -102,7 +102,7 @@ std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, doubl
   }
   fail(scene, stiffest_key, contact + ", obstacle and arm in series",
        fmt::format("at most {:g} N/m, or stiffness.assumed_N_per_m of at least {:g} N/m ({})",
-                   kInside * ratio * report.stiffness_N_per_m, least_N_per_m, rule));
+                   kInsideLimit * ratio * report.stiffness_N_per_m, least_N_per_m, rule));
 }
 
 const LoopReport& nearestOf(const StabilityReport& report) {

@@ -7,6 +7,9 @@
 
 namespace tactus {
 
+/// Of a limit, where the text of an error names it: what is printed, rounded, shall be accepted.
+inline constexpr double kInsideLimit = 0.999;
+
 /// A number as std::from_chars wants it: without the plus sign that YAML and URDF allow before it.
 inline std::string_view withoutPlus(std::string_view number) noexcept {
   const bool has_one_sign =
