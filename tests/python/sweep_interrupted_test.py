@@ -4,10 +4,12 @@ was not; no run is lost, none is there twice.
 
 usage: sweep_interrupted_test.py FOLDER TACTUS"""
 
+import json
 import os
 import pathlib
 import random
 import resource
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -112,6 +114,31 @@ class Interrupted(Sweeps):
         _, said = sweep.communicate(timeout=60)
         self.assertEqual((sweep.returncode, said.count("\n")), (3, 1), said)
         self.assertIn("SIGINT: stopped", said)
+
+    def test_while_python_starts(self):
+        """What comes before Python looks for it waits, and is no traceback then."""
+        def interrupt():
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            os.kill(os.getpid(), signal.SIGINT)
+
+        for arguments in ((), ("--json",)):
+            done = subprocess.run(self.command(self.folder / "study.yaml", self.out, *arguments), text=True,
+                                  capture_output=True, preexec_fn=interrupt, timeout=60)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (3, 1), done.stderr)
+            self.assertRegex(done.stderr, r"\ASIGINT: stopped; ")
+            self.assertEqual(bool(done.stdout), bool(arguments))
+            if arguments:
+                self.assertEqual(json.loads(done.stdout), {"done": False, "error": done.stderr.strip()})
+        self.assertFalse(self.file_.exists())
+
+    def test_waits_from_the_begin_on(self):
+        """Of a tactus beside a program that says what it was started with."""
+        tactus, sweep = self.folder / "tactus", self.folder / "tactus-sweep"
+        shutil.copy(TACTUS, tactus)
+        sweep.write_text("#!/bin/sh\nexec grep SigBlk /proc/self/status\n")
+        sweep.chmod(0o755)
+        said = subprocess.run([tactus, "sweep", "x"], check=True, capture_output=True, text=True).stdout
+        self.assertEqual(int(said.split()[1], 16), 1 << (signal.SIGINT - 1))
 
     def test_where_nobody_takes_its_answer(self):
         self.file_.write_bytes(self.content)
