@@ -8,7 +8,7 @@ import sys
 
 from tactus._sweep import identity
 
-from . import judge, results, scenes, table
+from . import judge, results, scenes, stopped_text, table
 from .pool import Pool, PoolError
 from .progress import Progress
 from .study import make_plan, read_study
@@ -41,8 +41,7 @@ def run_program(arguments):
     except OSError as error:
         return refuse(f"{error.filename or arguments.output}: {error.strerror or error}", FAULT, arguments)
     except Stopped as stopped:
-        return refuse(f"{stopped}: stopped; the runs so far are kept, and the same command goes on", FAULT,
-                      arguments)
+        return refuse(stopped_text(stopped), FAULT, arguments)
     code = DONE if answer["completed"] else FAULT
     return code if say(json.dumps(answer) if arguments.json else text_of(answer)) else FAULT
 
