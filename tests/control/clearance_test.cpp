@@ -138,5 +138,37 @@ TEST(Clearance, LetsAnArmGoWhereItIsClear) {
   EXPECT_GT(clear, 9 * all / 10);
 }
 
+/// A joint that stands on a limit keeps within it: the others go on.
+TEST(Clearance, LetsAnArmGoThatRestsOnItsLimits) {
+  test::Random random(413);
+  for (int i = 0; i < 300; ++i) {
+    GuardedArm arm(random);
+    ClearanceConfig& bodies = *arm.config.clearance;
+    bodies.pairs.clear();
+    bodies.wall_pairs.clear();
+    JointVector wanted = random.vector(arm.n, -0.05, 0.05);
+    arm.config.limits = test::noLimits(arm.n);
+    for (int joint = 0; joint < arm.n; ++joint) {
+      if (random.chance(0.5)) continue;
+      const bool is_lower = random.chance(0.5);
+      (is_lower ? arm.config.limits.lower : arm.config.limits.upper)[joint] = arm.q[joint];
+      wanted[joint] = random.chance(0.5) ? 0.0 : (is_lower ? 1.0 : -1.0) * std::abs(wanted[joint]);
+    }
+    arm.config.limits.max_acceleration.setConstant(10.0);
+    arm.clearance.emplace(arm.config);
+    arm.config.chain.computePose(arm.q, arm.kinematics.pose);
+    JointVector passed = wanted;
+    arm.clearance->holdBack(arm.kinematics.pose, arm.near, arm.q, arm.v, arm.period_s, passed);
+    ASSERT_EQ(passed, wanted) << i;
+    for (int joint = 0; joint < arm.n; ++joint) {
+      if (arm.config.limits.lower[joint] != arm.q[joint]) continue;
+      JointVector beyond = wanted;
+      beyond[joint] = -1e-3;
+      ASSERT_FALSE(
+          arm.clearance->canStopAfter(arm.kinematics.pose, arm.near, arm.q, beyond, arm.period_s));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tactus
