@@ -86,6 +86,19 @@ TEST(StoppingWay, BoundsByTheStretchedWayFromEachJointOn) {
   EXPECT_NEAR(way({turned}).speed_m_per_s, 0.7 * (0.5 + 0.7) + 0.2 * 0.7, 1e-15);
 }
 
+/// Of any number of joints: a capsule that stands in the base moves with none of them.
+TEST(StoppingWay, LeavesOutWhatStandsInTheBase) {
+  for (int n = 2; n <= kMaxJoints; ++n) {
+    const ControllerConfig config = stretchedArm(std::vector<JointType>(n, kTurns), 1e6);
+    const JointVector v = JointVector::Ones(n);
+    const auto speed = [&](const std::vector<LinkCapsule>& capsules) {
+      return StoppingWays(config, capsules).of(JointVector::Zero(n), v, kWay_s).speed_m_per_s;
+    };
+    const LinkCapsule of_last = capsuleOf(n - 1, 0.3);
+    EXPECT_EQ(speed({of_last, capsuleOf(-1, 9.0)}), speed({of_last})) << n;
+  }
+}
+
 /// A slide behind a joint that turns makes that joint's lever longer, by where it is and by what
 /// its stop still adds.
 TEST(StoppingWay, LengthensWithASlide) {
