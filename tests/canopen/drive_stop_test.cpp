@@ -101,6 +101,22 @@ TEST(DriveStop, OneThatWasNotHeardOfWhileItSlowedDownDoesNotMoveOn) {
   EXPECT_TRUE(rig.report().is_off);
 }
 
+/// Its way while nobody heard of it is none of the windows in which it was heard.
+TEST(DriveStop, OneThatIsHeardAgainAfterAWhileDoesNotMoveOn) {
+  DriveRig rig;
+  rig.slave.quick_stop_cycles = 1000;
+  rig.enable();
+  rig.cycles(30, DriveGoal::kEnabled, 0.3);
+  const double from = rig.slave.position;
+  for (int i = 0; i < 490; ++i) {
+    const double t_s = 0.001 * i;
+    rig.slave.position = static_cast<int>(from - 2e5 * (0.3 * t_s - 0.25 * t_s * t_s));
+    rig.slave.sends_feedback = i < 115 || i > 190;
+    rig.cycle(DriveGoal::kQuickStop);
+    ASSERT_FALSE(rig.report().is_moving_on) << i;
+  }
+}
+
 TEST(DriveStop, OneThatIsNotSeenOffIsCutOffAtTheDeadline) {
   DriveRig rig;
   rig.enable();
