@@ -172,6 +172,18 @@ TEST(ControlCycleSafety, AnArmThatIsPushedAwayWhileItWaitsDoesNotStart) {
   EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart);
 }
 
+/// Nor does it once its drives are being switched on.
+TEST(ControlCycleSafety, AnArmThatIsPushedAwayWhileItIsEnabledDoesNotStart) {
+  VirtualRobotCell cell(withBrakeAndEnable());
+  ASSERT_TRUE(cell.runUntil(Mode::kEnabling, 5000));
+  pushAway(cell, -1'000'000);
+  for (int i = 0; i < 3000; ++i) {
+    cell.step();
+    ASSERT_NE(cell.cycle.report().mode, Mode::kRunning) << i;
+  }
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart) << faultName(cell.cycle.report().fault);
+}
+
 /// A limp joint is pushed slowly while the enable line flickers. Each attempt finds it hardly
 /// farther than the one before, but none of them ever held it.
 TEST(ControlCycleSafety, AnArmThatCreepsThroughStartsThatAreBrokenOffDoesNotStart) {

@@ -75,7 +75,10 @@ TEST(ControlCycleBoot, RefusesAnArmThatIsNotAtTheStart) {
   scene.controller.q_start[2] += 1.2 * scene.hardware->start_tolerance;  // not as far away
   scene.controller.q_start[4] += 1.5 * scene.hardware->start_tolerance;
   cell.cycle = ControlCycle(scene.controller, *scene.hardware, scene.period_s);
-  for (int i = 0; i < 8000 && !cell.cycle.isFinished(); ++i) cell.step();
+  for (int i = 0; i < 8000 && !cell.cycle.isFinished(); ++i) {
+    cell.step();
+    ASSERT_NE(cell.cycle.report().mode, Mode::kReady) << i;
+  }
   EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart);
   // Where it is: at the plant's start, which is home.
   EXPECT_NE(describeMode(cell.cycle.report(), scene)
