@@ -264,6 +264,21 @@ TEST(SeveralContacts, AreGivenWayAsFastAsTheyCome) {
   }
 }
 
+/// An arm that its drives had stopped by themselves may stand elsewhere: what held it is gone.
+TEST(SeveralContacts, AreForgottenByARestart) {
+  for (const RowsOf& rows : kRowsOf) {
+    RowsRun run(rowsRail(rows, 0.1), 0.0);
+    run.run(2000);
+    ASSERT_LT(run.output.velocity[0], 0.01);
+    run.controller.restart(run.config.gains, run.state);
+    run.controller.place(run.state.q_desired.array() - 0.1, run.config.gains, run.state);
+    run.world.surface_m = 1.0;
+    run.step();
+    EXPECT_EQ(run.memory(), 0.0);
+    EXPECT_NEAR(run.output.velocity[0], 0.05, 1e-9) << "half of the tool's speed, as if alone";
+  }
+}
+
 /// It tells of the module that is pressed most, and each has its own.
 TEST(SeveralContacts, TellOfTheModuleThatIsPressedMost) {
   for (const int most : {0, 1}) {

@@ -118,6 +118,23 @@ TEST(PlacedArm, LeansOnNothingThatZonesWouldHaveHeldOff) {
   EXPECT_TRUE(state.way_out_added.isZero(0.0));
 }
 
+/// Without a law nothing answers a push: a module alone changes no motion.
+TEST(PlacedArm, LeansOnNothingThatNoLawAnswers) {
+  test::Random random(2408);
+  ControllerConfig config = test::fullController(random, 6, Variant::kNullSpace);
+  config.force_control.reset();
+  const Controller controller(config);
+  ControllerState state = controller.initialState();
+  state.way_out_before.setConstant(0.01);
+  state.modules[0].contact.force_N = 5.0;
+  ControllerState untouched = state;
+  untouched.modules[0].contact.force_N = 0.0;
+  controller.place(config.q_start, config.gains, state);
+  controller.place(config.q_start, config.gains, untouched);
+  EXPECT_FALSE(state.is_leaning);
+  EXPECT_EQ(state.way_out_added, untouched.way_out_added);
+}
+
 /// The drives kept the last command, the reference its progress, and samples grew older.
 TEST(MissedCycles, AreOfTheWayAndOfTheSamples) {
   test::Random random(2404);
