@@ -126,6 +126,7 @@ Json draftJson(const RobotDraft& draft, const std::vector<SourceFile>& files) {
           {"tool_home_m", {tool.x(), tool.y(), tool.z()}},
           {"smallest_singular_value_at_home", draft.home.smallest_singular_value},
           {"assumed_limits", assumed},
+          {"warnings", draft.warnings},
           {"unknown", unknown}};
 }
 
@@ -142,6 +143,8 @@ std::string draftSummary(const RobotDraft& draft, const std::vector<SourceFile>&
   for (const AssumedLimit& limit : draft.completed.assumed)
     text += fmt::format("assumed   {} of joint {}: the URDF has none; measure\n", limit.what,
                         escaped(limit.joint));
+  for (const std::string& warning : draft.warnings)
+    text += fmt::format("warning   {}\n", escaped(warning));
   for (const UnknownPart& part : unknownParts())
     text += fmt::format("unknown   {}: {}\n", part.what, part.how);
   const std::string scene = escaped(files.back().path);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tactus/run/arm_check.h"
 #include "tactus/run/clearance_check.h"
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/path_check.h"
@@ -136,7 +137,7 @@ RobotDraft draftRobot(const std::string& urdf_path, const std::string& folder,
   draft.scene_text = draftSceneText(draft);
   shortenMotion(folder, draft);
   addCapsules(folder, draft);
-  loadDraft(draft, folder);
+  draft.warnings = checkArm(loadDraft(draft, folder));
   return draft;
 }
 

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace tactus {
 namespace {
 
@@ -10,7 +13,8 @@ using Warnings = std::vector<std::string>;
 
 constexpr double kLongestLink_m = 20.0;  ///< longer ones are a URDF in mm, or in cm
 constexpr double kShortestArm_m = 0.02;  ///< a URDF in km, or one that was scaled twice
-constexpr double kMostOffLink = 0.75;    ///< of a cover; one leg of a bent link stays below 0.71
+constexpr double kWidestLimit_rad = 8.0 * std::numbers::pi;  ///< four turns; wrists have two
+constexpr double kMostOffLink = 0.75;  ///< of a cover; one leg of a bent link stays below 0.71
 
 ChainPose poseAtStart(const Scene& scene) {
   ChainPose pose;
@@ -31,6 +35,26 @@ void checkSizes(const Scene& scene, Warnings& warnings) {
         fmt::format("the whole arm is {:.3g} mm long, which no robot's is: a URDF has to be in m",
                     1e3 * lengths.all_m));
   }
+}
+
+/// A joint without an end has none to be told in.
+void checkJointLimits(const Scene& scene, Warnings& warnings) {
+  const ControllerConfig& config = scene.controller;
+  Warnings joints;
+  for (int i = 0; i < config.chain.size(); ++i) {
+    if (config.chain.type(i) != JointType::kRevolute) continue;
+    const double lower = config.limits.lower[i], upper = config.limits.upper[i];
+    const auto is_too_wide = [](double end) {
+      return std::isfinite(end) && std::abs(end) > kWidestLimit_rad;
+    };
+    if (!is_too_wide(lower) && !is_too_wide(upper)) continue;
+    joints.push_back(fmt::format("{} from {:g} to {:g}", scene.joint_names[i], lower, upper));
+  }
+  if (joints.empty()) return;
+  warnings.push_back(fmt::format(
+      "limits of joints more than four turns from zero: are they in degrees? a URDF has them in "
+      "rad, and speeds in rad/s: {}",
+      fmt::join(joints, ", ")));
 }
 
 void checkCovers(const Scene& scene, Warnings& warnings) {
@@ -100,6 +124,7 @@ std::vector<CoverReport> coversAtStart(const Scene& scene) {
 std::vector<std::string> checkArm(const Scene& scene) {
   Warnings warnings;
   checkSizes(scene, warnings);
+  checkJointLimits(scene, warnings);
   checkCovers(scene, warnings);
   checkEfforts(scene, warnings);
   checkDrives(scene, warnings);

@@ -138,6 +138,23 @@ TEST_F(InitTest, SaysWhatItAssumedWhereItStands) {
       std::string::npos);
 }
 
+TEST_F(InitTest, WarnsAsACheckDoes) {
+  const std::string urdf = put("degrees.urdf", R"(<robot name="r"><link name="a"/><link name="b"/>
+  <link name="c"/><joint name="up" type="revolute"><parent link="a"/><child link="b"/>
+    <axis xyz="0 0 1"/><limit lower="-170" upper="170" velocity="1"/></joint>
+  <joint name="turn" type="revolute"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/>
+    <origin xyz="0.3 0 0"/><limit lower="-1" upper="1" velocity="1"/></joint></robot>)");
+  const Json said = init(urdf);
+  ASSERT_EQ(said["warnings"].size(), 1u);
+  EXPECT_NE(said["warnings"][0].get<std::string>().find("are they in degrees?"), std::string::npos);
+  EXPECT_EQ(said["warnings"], Json(checkArm(written())));
+  clear();
+  std::string output;
+  test::runCommand(addInitCommand, {"init", urdf, "-o", folder_.path() + "/arm"}, output);
+  EXPECT_NE(output.find("\nwarning   limits of joints more than four turns"), std::string::npos)
+      << output;
+}
+
 /// A file that says one end has said it, also where that is zero.
 TEST_F(InitTest, AnEndThatTheUrdfHasIsNeverMoved) {
   const auto limitsBy = [&](const std::string& written) {

@@ -102,6 +102,25 @@ TEST(ArmCheck, WarnsOfSizesThatNoRobotHas) {
   EXPECT_TRUE(has(checkArm(files.load()), "the whole arm is 1.12 mm long"));
 }
 
+/// Also of one end alone; a joint that slides has its limits in m, one without an end has none.
+TEST(ArmCheck, WarnsOfLimitsThatLookLikeDegrees) {
+  const auto warningsWith = [](const std::string& shoulder, const std::string& lift) {
+    SceneFiles files;
+    files.urdf = test::replaced(files.urdf, R"(lower="-2" upper="2")", shoulder);
+    files.urdf = test::replaced(files.urdf, R"(lower="-1" upper="0.5")", lift);
+    return checkArm(files.load());
+  };
+  const std::string metres = R"(lower="-1" upper="0.5")";
+  const Warnings warnings = warningsWith(R"(lower="-170" upper="170")", metres);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(has(warnings, "are they in degrees?")) << warnings[0];
+  EXPECT_TRUE(has(warnings, ": shoulder from -170 to 170")) << warnings[0];
+  EXPECT_TRUE(has(warningsWith(R"(lower="-170" upper="3")", metres), "from -170 to 3"));
+  EXPECT_TRUE(has(warningsWith(R"(lower="-3" upper="170")", metres), "from -3 to 170"));
+  EXPECT_EQ(warningsWith(R"(lower="-12.57" upper="25")", metres), Warnings{});
+  EXPECT_EQ(warningsWith(R"(lower="-2" upper="2")", R"(lower="-30" upper="30")"), Warnings{});
+}
+
 /// M is known by hand for the carriage j1: all that the arm weighs, and its rotor.
 TEST(ArmCheck, WarnsOfAccelerationsWithoutTorque) {
   const Scene scene = test::shippedScene("scenario1_null_space");

@@ -33,6 +33,7 @@ struct RobotDraft {
   Pose X_BaseTool;  ///< there
   Waypoint motion;
   std::string robot_text, scene_text;
+  std::vector<std::string> warnings;  ///< what `tactus check` will doubt about the arm
 };
 
 /// robot.yaml and scene.yaml of a folder, for a URDF. tip: empty means the only end. They are

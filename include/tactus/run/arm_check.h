@@ -17,8 +17,8 @@ struct CoverReport {
 std::vector<CoverReport> coversAtStart(const Scene& scene);
 
 /// What is doubtful about an arm: links and covers of a size or in a place that no robot has,
-/// accelerations that its drives have no torque for, drives that lag behind for good. For people,
-/// to be printed as warnings.
+/// joint limits that look like degrees, accelerations that its drives have no torque for, drives
+/// that lag behind for good. For people, to be printed as warnings.
 std::vector<std::string> checkArm(const Scene& scene);
 
 }  // namespace tactus
