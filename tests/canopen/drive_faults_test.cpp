@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "support/drive_rig.h"
+#include "tactus/canopen/joint_tracking.h"
 
 /// A drive that fails while it moves: the fault has its name, no velocity is sent from that very
 /// cycle on, and only a restart leads back.
@@ -255,6 +256,22 @@ TEST(DriveFaults, FollowingErrorIsWatchedOnlyWhileEnabled) {
   rig.position = rig.report().position + 0.0499;
   rig.cycles(20, DriveGoal::kEnabled);
   EXPECT_EQ(rig.report().fault, Fault::kNone);
+}
+
+TEST(DriveFaults, AFollowingErrorIsMoreThanItsLimit) {
+  DriveConfig config;
+  config.max_following_error = 0.0625;
+  for (const double side : {-1.0, 1.0}) {
+    DriveReport report;
+    report.position = 0.25;
+    judgePosition(config, 0.25 + side * 0.0625, true, report);
+    EXPECT_EQ(report.fault, Fault::kNone);
+    judgePosition(config, 0.25 + side * 0.0626, false, report);
+    EXPECT_EQ(report.fault, Fault::kNone) << "of an old position";
+    judgePosition(config, 0.25 + side * 0.0626, true, report);
+    EXPECT_EQ(report.fault, Fault::kFollowingError);
+    EXPECT_NEAR(report.detail.value, 0.0626, 1e-12);
+  }
 }
 
 /// The bus dies for five seconds and comes back: nothing of before reaches the drive.
