@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/controller_run.h"
 #include "support/crops9.h"
 #include "support/period.h"
 #include "support/rail_robot.h"
@@ -276,6 +277,21 @@ TEST(SeveralContacts, AreForgottenByARestart) {
     run.step();
     EXPECT_EQ(run.memory(), 0.0);
     EXPECT_NEAR(run.output.velocity[0], 0.05, 1e-9) << "half of the tool's speed, as if alone";
+  }
+}
+
+TEST(SeveralContacts, TellNothingOfCyclesBefore) {
+  for (const RowsOf& rows : kRowsOf) {
+    ControllerConfig config = rowsRail(rows, 0.1);
+    config.gains.force.max_null_speed_m_per_s = 1e-12;  // so that the tool has to wait
+    RowsRun run(config, 0.0);
+    run.run(2000);
+    RowsRun other = run;
+    other.output = {};
+    run.step();
+    other.step();
+    EXPECT_LT(run.output.contact.u_t, -1e-3) << "this test is blind";
+    test::expectSameContact(run.output.contact, other.output.contact);
   }
 }
 
