@@ -213,6 +213,10 @@ TEST(ClearController, TellsTheLawWhatIsTakenFromItsRetreat) {
     const double cut = a.head(9).dot(free_output.velocity - kept_output.velocity);
     EXPECT_NEAR(kept_state.contact.cut_by_rows_m_per_s, std::max(0.0, cut), 1e-9);
     taken += cut > 1e-3;
+    ControllerState stopped = kept.initialState();
+    stopped.is_stopping = true;
+    kept.update(input, config.gains, 0.0, 1e-3, stopped, kept_output);
+    EXPECT_EQ(stopped.contact.cut_by_rows_m_per_s, 0.0) << "nothing is asked of an arm that stops";
   }
   EXPECT_GT(taken, 20);
 }

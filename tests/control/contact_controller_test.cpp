@@ -86,6 +86,20 @@ TEST(ContactRows, LimitTheToolByWhatTheyTell) {
   }
 }
 
+/// By which estimators know what the arm was kept from: only as long as it is.
+TEST(ContactRows, LimitNoLongerThanTheyHaveTo) {
+  for (const RowsFor rows : {RowsFor::kFriction, RowsFor::kWall}) {
+    ControllerConfig config = oneContactRail(0.0, rows == RowsFor::kFriction ? 0.5 : 0.0);
+    if (rows == RowsFor::kWall) addFarWall(config);
+    config.gains.force.max_null_speed_m_per_s = 1e-12;  // so that the tool has to go back
+    OneContactRun run(config);
+    run.pressFor(5, 4.0 * kOneAct_N);
+    EXPECT_TRUE(run.state.contact.approach.is_limiting);
+    run.pressFor(5, 0.5 * kOneAct_N);
+    EXPECT_FALSE(run.state.contact.approach.is_limiting) << static_cast<int>(rows);
+  }
+}
+
 /// By so much the law's integral must not grow.
 TEST(ContactRows, TellWhatJointsTookOfTheRetreat) {
   const auto pressed = [](double left_m, int joint) {
