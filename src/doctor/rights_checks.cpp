@@ -44,7 +44,8 @@ bool allows(const std::string& limit, long long wanted) {
 /// Lines that the unit should have; "CPUQuota=" takes a value back.
 std::vector<std::string> problemsOf(const UnitFile& unit, int priority, bool has_groups) {
   std::vector<std::string> problems;
-  const bool is_root = !unit.isSet("User") && !unit.isOn("DynamicUser");
+  const std::string user = unit.value("User");
+  const bool is_root = user.empty() ? !unit.isOn("DynamicUser") : user == "root" || user == "0";
   const auto may = [&](const char* capability) {
     return unit.mayHave(capability) && (is_root || unit.givesAmbient(capability));
   };

@@ -125,6 +125,19 @@ TEST(ServiceRights, WithoutAUserAreThoseOfRoot) {
   EXPECT_EQ(checkServiceRights(machine.root(), 80, false).level, Level::kNotFit);
 }
 
+TEST(ServiceRights, AreThoseOfRootAlsoWhereItIsNamed) {
+  const MachineTree machine;
+  const auto levelOf = [&](const char* keys) {
+    machine.write(kUnit, std::string("[Service]\n") + keys);
+    return checkServiceRights(machine.root(), 80, false).level;
+  };
+  EXPECT_EQ(levelOf("User=root\n"), Level::kOk);
+  EXPECT_EQ(levelOf("User=0\n"), Level::kOk);
+  EXPECT_EQ(levelOf("User=rooted\n"), Level::kNotFit);
+  EXPECT_EQ(levelOf("User=tactus\nUser=root\n"), Level::kOk) << "the last one";
+  EXPECT_EQ(levelOf("User=root\nCapabilityBoundingSet=CAP_CHOWN\n"), Level::kNotFit);
+}
+
 TEST(ServiceRights, CpuQuotaTakesThemWhereTheKernelHasRealTimeGroups) {
   const MachineTree machine;
   const std::string keys = "LimitRTPRIO=80\nLimitMEMLOCK=infinity\nCPUQuota=50%\n";
