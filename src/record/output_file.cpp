@@ -80,6 +80,16 @@ void keepBeside(const std::string& path) {
     throw RunError(fmt::format("{}~: cannot be written: {}", escaped(path), error.message()));
 }
 
+/// before(target, next): while both are there.
+template <typename Step>
+void replace(const std::string& path, const std::string& text, const Step& before) {
+  const std::string target = std::filesystem::canonical(path).string();  // a link stays one
+  Successor next(target);
+  next.write(text);
+  before(target, next.path());
+  next.takePlace();
+}
+
 }  // namespace
 
 OutputFile::OutputFile(const std::string& path)
@@ -144,19 +154,14 @@ void OutputFile::close() {
 
 void replaceFile(const std::string& path, const std::string& text,
                  const std::function<void(const std::string& next)>& check) {
-  const std::string target = std::filesystem::canonical(path).string();  // a link stays one
-  Successor next(target);
-  next.write(text);
-  if (check) check(next.path());
-  keepBeside(target);
-  next.takePlace();
+  replace(path, text, [&check](const std::string& target, const std::string& next) {
+    if (check) check(next);
+    keepBeside(target);
+  });
 }
 
 void putFileBack(const std::string& path, const std::string& text) {
-  const std::string target = std::filesystem::canonical(path).string();
-  Successor next(target);
-  next.write(text);
-  next.takePlace();
+  replace(path, text, [](const std::string&, const std::string&) {});
 }
 
 void refuseOverwriting(const std::string& input, const std::string& output) {
