@@ -140,9 +140,9 @@ void ControlCycle::withholdSamples(
     int missed_cycles,
     const std::array<TactileSample, kMaxTactileModules>& samples_before) noexcept {
   const bool may_move = isCommanding(mode_.mode) || mode_.mode == Mode::kEnabling;
+  const double pause_s = missed_cycles * period_s_;
   for (int module = 0; module < modules(); ++module) {
     Withheld& withheld = withheld_[module];
-    const double pause_s = missed_cycles * period_s_;
     if (may_move && pause_s > controller_.config().tactile_modules[module].max_sample_age_s)
       withheld.cycles = std::max(withheld.cycles, kWithheldAfterPause);
     const Fault fault = robot_.tactileModules()[module].fault();
