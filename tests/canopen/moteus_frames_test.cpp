@@ -76,6 +76,24 @@ TEST(MoteusFrames, AReplyIsReadInAnyType) {
   EXPECT_NEAR(unknown->velocity, 21474.83647, 1e-9);
 }
 
+TEST(MoteusFrames, NegativeNumbersHaveTheirSignInAnyType) {
+  struct Negative {
+    const char* reply;
+    double position, velocity;
+  };
+  constexpr Negative kNegatives[] = {
+      {"20040003b0f000210f00", -0.8, -1.6},                               // int8
+      {"2404000300e0fcb0fc0000210f00", -0.08, -0.212},                    // int16
+      {"280400030000000083ffff9061ffff00000000210f00", -0.32, -0.4056}};  // int32
+  for (const Negative& negative : kNegatives) {
+    const auto read = decodeMoteusReply(replyOf(1, negative.reply), 1);
+    ASSERT_TRUE(read) << negative.reply;
+    EXPECT_EQ(read->mode, 3) << negative.reply;
+    EXPECT_NEAR(read->position, negative.position, 1e-9) << negative.reply;
+    EXPECT_NEAR(read->velocity, negative.velocity, 1e-9) << negative.reply;
+  }
+}
+
 /// A float where a register holds whole numbers: far beyond them it is no mode.
 TEST(MoteusFrames, ModesThatAreNoNumberAreNone) {
   for (const char* const mode : {"000020d0", "00002050", "0000c07f"}) {  // -1e10, 1e10, NaN

@@ -280,6 +280,21 @@ TEST(SeveralContacts, AreForgottenByARestart) {
   }
 }
 
+/// Else the next one, of one post alone, would have rows elsewhere.
+TEST(SeveralContacts, ForgetWhereStiffnessWasWithTheContact) {
+  RowsRun run(rowsRail(kRowsOf[0], 0.1), 0.0);
+  run.run(500);
+  StiffnessCentreState& centre = run.state.several.modules[0].centre;
+  centre.weight = 1.0;
+  run.world.surface_m = 1.0;
+  run.step();
+  ASSERT_GT(run.memory(), 0.0);
+  EXPECT_EQ(centre.weight, 1.0) << "the contact may come back";
+  for (int i = 0; i < 20000 && run.memory() > 0.0; ++i) run.step();
+  EXPECT_EQ(run.memory(), 0.0);
+  EXPECT_EQ(centre.weight, 0.0);
+}
+
 TEST(SeveralContacts, TellNothingOfCyclesBefore) {
   for (const RowsOf& rows : kRowsOf) {
     ControllerConfig config = rowsRail(rows, 0.1);
