@@ -27,7 +27,9 @@ def attempt(path, time_constant_s, damping):
     scene = tactus.Scene(path, set={"controller.time_constant_s": time_constant_s,
                                     "controller.damping": damping})
     try:
-        margin_deg = min(loop["phase_margin_deg"] for loop in scene.check()["stability"]["loops"])
+        # NaN, and so never the best, where check computes none
+        margin_deg = min((loop["phase_margin_deg"] for loop in scene.check()["stability"]["loops"]),
+                         default=float("nan"))
     except tactus.ConfigError as error:
         if not re.search(r"unstable \(.*\) in a contact of ", str(error)):
             raise
