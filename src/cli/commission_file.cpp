@@ -152,10 +152,7 @@ void refuseUnwritable(const SourceFile& robot) {
 
 void writeRobot(const SourceFile& robot, bool keeps_copy) {
   if (keeps_copy) return replaceFile(robot.path, robot.text);
-  const std::string target = fs::canonical(robot.path).string();  // a link stays one
-  const std::string next = writtenBeside(target, robot.text);
-  fs::permissions(next, fs::status(target).permissions());
-  fs::rename(next, target);
+  replaceWithoutCopy(robot.path, robot.text);
 }
 
 std::string statePath(const SourceFile& robot) { return robot.path + ".commission.json"; }

@@ -40,7 +40,7 @@ void takeNote(const ControlClient& daemon, const std::string& path, const std::s
   try {
     daemon.ask({{"do", "reload"}, {"only_read", true}});
   } catch (const InputError& refused) {
-    putFileBack(path, before);
+    replaceWithoutCopy(path, before);
     throw RunError(fmt::format("{}: is as it was, for what runs was changed meanwhile: {}",
                                escaped(path), refused.what()));
   }

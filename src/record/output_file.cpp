@@ -160,7 +160,7 @@ void replaceFile(const std::string& path, const std::string& text,
   });
 }
 
-void putFileBack(const std::string& path, const std::string& text) {
+void replaceWithoutCopy(const std::string& path, const std::string& text) {
   replace(path, text, [](const std::string&, const std::string&) {});
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -59,11 +60,26 @@ TEST_F(ReplacedFile, KeepsItsRightsAndWhatItWas) {
 TEST_F(ReplacedFile, ComesBackAndLeavesNothingOfWhatTookItsPlace) {
   ASSERT_EQ(::chmod(path_.c_str(), 0640), 0);
   replaceFile(path_.string(), "new");
-  putFileBack(path_.string(), "old");
+  replaceWithoutCopy(path_.string(), "old");
   EXPECT_EQ(contentOf(path_), "old");
   EXPECT_EQ(contentOf(path_.string() + "~"), "old");
   EXPECT_EQ(fs::status(path_).permissions(), fs::perms(0640));
   EXPECT_EQ(namesIn(folder_), (std::set<std::string>{"scene.yaml", "scene.yaml~"}));
+}
+
+TEST_F(ReplacedFile, StaysItsOwners) {
+  const bool is_root = ::geteuid() == 0;  // who alone may give a file away
+  const uid_t owner = is_root ? 1 : ::geteuid();
+  ASSERT_EQ(::chown(path_.c_str(), owner, static_cast<gid_t>(-1)), 0);
+  const auto ownerNow = [&] {
+    struct stat now {};
+    EXPECT_EQ(::stat(path_.c_str(), &now), 0);
+    return now.st_uid;
+  };
+  replaceFile(path_.string(), "new");
+  EXPECT_EQ(ownerNow(), owner);
+  replaceWithoutCopy(path_.string(), "newer");
+  EXPECT_EQ(ownerNow(), owner);
 }
 
 TEST_F(ReplacedFile, LinkStaysALink) {

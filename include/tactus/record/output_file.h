@@ -60,9 +60,8 @@ class OutputFile {
 void replaceFile(const std::string& path, const std::string& text,
                  const std::function<void(const std::string& next)>& check = {});
 
-/// What replaceFile() replaced comes back, and stays beside, too: what it takes the place of is
-/// kept nowhere.
-void putFileBack(const std::string& path, const std::string& text);
+/// The same, but what it was is kept nowhere, and a copy beside stays as it is.
+void replaceWithoutCopy(const std::string& path, const std::string& text);
 
 /// Throws InputError if writing to `output` would destroy the file `input`.
 void refuseOverwriting(const std::string& input, const std::string& output);
