@@ -20,16 +20,16 @@
 namespace tactus {
 namespace {
 
-/// A file of a name of its own beside `target`, which is gone at the end unless it took its place.
+/// A file of a name of its own beside another, which is gone at the end unless it took its place.
 class Successor {
  public:
-  explicit Successor(std::string target)
-      : target_(std::move(target)),
-        path_(target_ + ".XXXXXX"),
-        descriptor_(::mkostemp(path_.data(), O_CLOEXEC)) {
-    if (descriptor_ < 0)
-      failAt(beginOf(target_), "-", fmt::format("cannot be replaced: {}", std::strerror(errno)),
-             "expected a file in a folder that can be written");
+  /// With this text, for the file at path; a link stays one. It is gone as well if it cannot be
+  /// written: the other constructor has made it by then.
+  Successor(const std::string& path, const std::string& text)
+      : Successor(std::filesystem::canonical(path).string()) {
+    OutputFile file(path_);
+    file.append(text);
+    file.close();
   }
 
   ~Successor() {
@@ -40,12 +40,7 @@ class Successor {
   Successor& operator=(const Successor&) = delete;
 
   const std::string& path() const noexcept { return path_; }
-
-  void write(const std::string& text) const {
-    OutputFile file(path_);
-    file.append(text);
-    file.close();
-  }
+  const std::string& target() const noexcept { return target_; }
 
   /// With owner and rights of who was there. On the disk before it has the name: a loss of power
   /// leaves the one or the other.
@@ -61,6 +56,15 @@ class Successor {
   }
 
  private:
+  explicit Successor(std::string target)
+      : target_(std::move(target)),
+        path_(target_ + ".XXXXXX"),
+        descriptor_(::mkostemp(path_.data(), O_CLOEXEC)) {
+    if (descriptor_ < 0)
+      failAt(beginOf(target_), "-", fmt::format("cannot be replaced: {}", std::strerror(errno)),
+             "expected a file in a folder that can be written");
+  }
+
   void expect(bool is_done) const {
     if (!is_done)
       throw RunError(
@@ -78,16 +82,6 @@ void keepBeside(const std::string& path) {
   if (!error) std::filesystem::copy_file(path, path + "~", error);
   if (error)
     throw RunError(fmt::format("{}~: cannot be written: {}", escaped(path), error.message()));
-}
-
-/// before(target, next): while both are there.
-template <typename Step>
-void replace(const std::string& path, const std::string& text, const Step& before) {
-  const std::string target = std::filesystem::canonical(path).string();  // a link stays one
-  Successor next(target);
-  next.write(text);
-  before(target, next.path());
-  next.takePlace();
 }
 
 }  // namespace
@@ -154,14 +148,14 @@ void OutputFile::close() {
 
 void replaceFile(const std::string& path, const std::string& text,
                  const std::function<void(const std::string& next)>& check) {
-  replace(path, text, [&check](const std::string& target, const std::string& next) {
-    if (check) check(next);
-    keepBeside(target);
-  });
+  Successor next(path, text);
+  if (check) check(next.path());
+  keepBeside(next.target());
+  next.takePlace();
 }
 
 void replaceWithoutCopy(const std::string& path, const std::string& text) {
-  replace(path, text, [](const std::string&, const std::string&) {});
+  Successor(path, text).takePlace();
 }
 
 void refuseOverwriting(const std::string& input, const std::string& output) {
