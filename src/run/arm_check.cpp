@@ -37,7 +37,7 @@ void checkSizes(const Scene& scene, Warnings& warnings) {
   }
 }
 
-/// A joint without an end has none to be told in.
+/// Infinite limits are those of joints without an end: no unit was taken for another there.
 void checkJointLimits(const Scene& scene, Warnings& warnings) {
   const ControllerConfig& config = scene.controller;
   Warnings joints;
