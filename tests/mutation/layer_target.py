@@ -1,55 +1,45 @@
 """The layers of the tree as targets of mutation: objects, programs and the tests that judge them."""
 
 import concurrent.futures
+import functools
 import hashlib
-import json
 import re
-import shutil
 import subprocess
 
 import places
-from mutate import Stage, Target
 from programs import LAYERS, SOURCE, compile_flags, link, link_command, sources
+from trials import Stage, Target
 
 BUILD = SOURCE / "build" / "release"
-# Runs of minutes over code that the rest reaches, too: what they judge is forces.
-LONG = "*Chance*:RetreatForce*:SceneOnBuses*:GainsInContact*:*Oracle*:*Moteus*"
 # After a layer's own tests: whole runs in virtual time, none of more than some seconds.
-OTHERS = {
-    "control": (Stage("sim", "tactus_sim_tests", ("--gtest_fail_fast",)),
-                Stage("supervisor", "tactus_supervisor_tests", ("--gtest_fail_fast", f"--gtest_filter=-{LONG}"))),
-    "canopen": (Stage("supervisor", "tactus_supervisor_tests", ("--gtest_fail_fast", f"--gtest_filter=-{LONG}")),
-                Stage("plant", "tactus_plant_tests", ("--gtest_fail_fast",))),
-    "supervisor": (),
-}
+OTHERS = {"control": ("sim", "supervisor"), "canopen": ("supervisor", "plant"), "supervisor": ()}
 CAMPAIGN = Stage("campaign", "tactus_campaign", ("--runs", "40"))
+
+
+def tests_of(layer):
+    return Stage(layer, f"tactus_{layer}_tests", has_tests=True)
+
+
 PROGRAMS = sorted({f"tactus_{layer}_tests" for layer in LAYERS} | {CAMPAIGN.program}
-                  | {stage.program for stages in OTHERS.values() for stage in stages})
+                  | {tests_of(name).program for names in OTHERS.values() for name in names})
 
 
-def suites(layer, stem):
-    """Suites of the test files whose names share most words with the source's, so the likeliest to kill."""
-    words = set(stem.split("_"))
-    found = []
+@functools.cache
+def suites(file):
+    """Of the test files whose names share most words with the source's, so the likeliest to kill."""
+    _, layer, name = file.split("/")
+    words = set(name.removesuffix(".cpp").split("_"))
+    found = set()
     for path in sorted((SOURCE / "tests" / layer).glob("*_test.cpp")):
         own = path.stem.removesuffix("_test").split("_")
         near = len(words & set(own)) / len(words | set(own))
         if near >= 0.34:
-            names = re.findall(r"^(?:TEST|TEST_F|TEST_P)\((\w+),", path.read_text(), re.M)
-            found.append((-near, sorted(set(names))))
-    return [name for _, names in sorted(found) for name in names]
+            found |= set(re.findall(r"^(?:TEST|TEST_F|TEST_P)\((\w+),", path.read_text(), re.M))
+    return found
 
 
-def stages(file, own):
-    _, layer, name = file.split("/")
-    program = f"tactus_{layer}_tests"
-    near = suites(layer, name.removesuffix(".cpp"))
-    first = []
-    if near:
-        patterns = ":".join(f"{suite}.*:*/{suite}.*" for suite in near)
-        first.append(Stage(f"near {patterns}", program, ("--gtest_fail_fast", f"--gtest_filter={patterns}")))
-    whole = Stage(layer, program, ("--gtest_fail_fast", f"--gtest_filter=-{LONG}"))
-    return [*first, whole] if own else [*first, whole, *OTHERS[layer], CAMPAIGN]
+def stages(layer, own):
+    return [tests_of(layer)] if own else [*map(tests_of, (layer, *OTHERS[layer])), CAMPAIGN]
 
 
 def precompiled(folder, flags):
@@ -85,17 +75,6 @@ def compiled(folder, files, flags, jobs):
     return objects
 
 
-def forget_old(folder):
-    """What the unchanged programs took is of other programs, if they were built since."""
-    state = json.dumps([(BUILD / "tests" / program).stat().st_mtime_ns for program in PROGRAMS])
-    mark = folder / "state"
-    key = hashlib.sha256(state.encode()).hexdigest()
-    if not mark.exists() or mark.read_text() != key:
-        (folder / "baseline.json").unlink(missing_ok=True)
-        shutil.rmtree(folder / "unchanged", ignore_errors=True)
-        mark.write_text(key)
-
-
 def layer_target(folder, layers, jobs, own):
     every = [str(path.relative_to(SOURCE)) for layer in layers for path in sources(layer)]
     base = {layer: [*compile_flags(BUILD, layer), "-O1", "-w"] for layer in layers}
@@ -108,7 +87,6 @@ def layer_target(folder, layers, jobs, own):
     clang_flags = {file: [*base[file.split("/")[1]][1:], "-include-pch", str(read)] for file in every}
     objects = compiled(folder, every, flags, jobs)
     lines = {program: link_command(BUILD, program) for program in PROGRAMS}
-    forget_old(folder)
 
     def linked(program, replaced, output):
         changed = {file.split("/")[1] for file in replaced}
@@ -117,4 +95,4 @@ def layer_target(folder, layers, jobs, own):
         return link(BUILD, lines[program], words, output)
 
     return Target(SOURCE, every, flags, clang_flags, linked,
-                  lambda file: stages(file, own))
+                  lambda file: stages(file.split("/")[1], own), suites)

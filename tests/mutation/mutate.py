@@ -1,7 +1,4 @@
-"""What tools/mutate does; see there.
-
-A mutant is one changed source, compiled alone and linked in the place of its own object; all else of the
-programs is as the build folder has it. Each has a sandbox folder of its own."""
+"""What tools/mutate does; see there. How a mutant is judged is in trials.py."""
 
 import collections
 import concurrent.futures
@@ -9,138 +6,14 @@ import dataclasses
 import hashlib
 import json
 import math
-import pathlib
 import random
-import re
-import resource
 import shutil
-import signal
-import subprocess
 import threading
 
 import yaml
 
 import places
-
-MEMORY_BYTES = 6 << 30  # of a test program: a mutant may ask for all
-LEAST_CPU_S = 5.0
-MOST_TIMES = 5.0  # of what the program takes unchanged
-
-
-@dataclasses.dataclass(frozen=True)
-class Stage:
-    """A program that judges, with its arguments; the first that fails has killed the mutant."""
-
-    name: str
-    program: str
-    arguments: tuple = ()
-
-
-@dataclasses.dataclass
-class Target:
-    """What is mutated and how it is judged: layers of the tree, or a toy of a test."""
-
-    root: pathlib.Path
-    files: list
-    flags: dict  # file -> compiler and flags
-    clang_flags: dict  # file -> those of clang's reading
-    link: object  # of (program, {file: its changed object}, output): a finished process
-    stages: object  # of a file: those that judge its mutants, the likeliest first
-
-
-def limits(cpu_s):
-    def apply():
-        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(cpu_s), math.ceil(cpu_s) + 1))
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
-    return apply
-
-
-def cpu_s(done):
-    return float(done.stderr.rsplit("cpu_s ", 1)[1].split()[0]) if "cpu_s " in done.stderr else 0.0
-
-
-# The time of a child's processor alone, which no other load of the machine changes.
-MEASURED = """import resource, subprocess, sys
-code = subprocess.call(sys.argv[1:])
-used = resource.getrusage(resource.RUSAGE_CHILDREN)
-print("cpu_s", used.ru_utime + used.ru_stime, file=sys.stderr)
-sys.exit(code if code >= 0 else 128 - code)"""
-
-
-def run_stage(stage, program, folder, most_s):
-    command = [str(program), *stage.arguments]
-    return subprocess.run(["/usr/bin/python3", "-c", MEASURED, *command], cwd=folder, text=True, errors="replace",
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limits(most_s))
-
-
-def killer(stage, done):
-    """The test that failed, or what ended the program."""
-    if done.returncode in (128 + signal.SIGXCPU, 128 + signal.SIGKILL):
-        return f"{stage.name}: time"
-    failed = re.search(r"\[  FAILED  \] ([\w./]+)", done.stdout)
-    if failed:
-        return failed[1]
-    running = re.findall(r"\[ RUN      \] ([\w./]+)", done.stdout)
-    what = f"ends with {signal.Signals(done.returncode - 128).name}" if done.returncode > 128 else \
-        f"exit code {done.returncode}"
-    return f"{running[-1] if running else stage.name}: {what}"
-
-
-def baseline(target, folder, stages):
-    """CPU time of each stage unchanged, from the last run where the programs are the same."""
-    path = folder / "baseline.json"
-    known = json.loads(path.read_text()) if path.exists() else {}
-    for stage in stages:
-        if stage.name in known:
-            continue
-        sandbox = folder / "unchanged"
-        sandbox.mkdir(exist_ok=True)
-        program = sandbox / stage.program
-        done = target.link(stage.program, {}, program)
-        if done.returncode:
-            raise SystemExit(f"{stage.program} does not link unchanged:\n{done.stderr[-2000:]}")
-        done = run_stage(stage, program, sandbox, 3600)
-        if done.returncode:
-            raise SystemExit(f"{stage.name} fails unchanged:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
-        known[stage.name] = cpu_s(done)
-        path.write_text(json.dumps(known, indent=1))
-    return known
-
-
-def compile_source(target, file, source, output):
-    words = [*target.flags[file], "-iquote", str((target.root / file).parent), "-c", str(source), "-o", str(output)]
-    return subprocess.run(words, capture_output=True, text=True)
-
-
-def trial(target, mutant, folder, base):
-    """(state, by): killed by a test, survived, or 'does not compile'."""
-    sandbox = folder / f"sandbox-{hashlib.sha256(mutant.name.encode()).hexdigest()[:12]}"
-    shutil.rmtree(sandbox, ignore_errors=True)
-    sandbox.mkdir(parents=True)
-    try:
-        source = (target.root / mutant.file).read_bytes()
-        changed = sandbox / pathlib.Path(mutant.file).name
-        changed.write_bytes(source[:mutant.start] + mutant.text.encode() + source[mutant.end:])
-        output = sandbox / "mutant.o"
-        if compile_source(target, mutant.file, changed, output).returncode:
-            return "does not compile", ""
-        linked = {}
-        for stage in target.stages(mutant.file):
-            program = sandbox / stage.program
-            if stage.program not in linked:
-                done = target.link(stage.program, {mutant.file: output}, program)
-                if done.returncode:
-                    return "does not compile", "does not link"
-                linked[stage.program] = program
-            done = run_stage(stage, program, sandbox, max(LEAST_CPU_S, MOST_TIMES * base[stage.name]))
-            if done.returncode:
-                return "killed", killer(stage, done)
-        return "survived", ""
-    finally:
-        shutil.rmtree(sandbox, ignore_errors=True)
-
+from trials import Trials
 
 def code_at(target, mutant):
     return (target.root / mutant.file).read_text().splitlines()[mutant.line - 1].strip()
@@ -228,11 +101,15 @@ def run(target, folder, options, listed):
     open_ones = [mutant for mutant in mutants
                  if (known(mutant) is None or (options.again and known(mutant)[0] == "survived"))
                  and not reason_for(target, mutant, listed)]
-    stages = {stage.name: stage for mutant in open_ones for stage in target.stages(mutant.file)}
-    base = baseline(target, folder, stages.values())
+    made = folder / "trials"
+    shutil.rmtree(made, ignore_errors=True)
+    made.mkdir()
+    trials = Trials(target, open_ones, made, options.jobs)
+    print(f"{len(open_ones)} to try, of which {len(open_ones) - len(trials.with_copy) - len(trials.refused)} are "
+          "compiled alone", flush=True)
 
     def judge(mutant):
-        state, by = trial(target, mutant, folder, base)
+        state, by = trials.trial(mutant)
         results.add(versions[mutant.file], mutant, state, by)
         print(f"{mutant.name}: {state}{' by ' if by else ''}{by}", flush=True)
 

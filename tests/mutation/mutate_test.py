@@ -11,6 +11,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import mutate  # noqa: E402
 import places  # noqa: E402
+import trials  # noqa: E402
 
 SOURCE = """#include <algorithm>
 #define LIMIT 7  // + is no place, 8 neither
@@ -44,7 +45,7 @@ int main() {
 """
 FILE = "src/toy/clip.cpp"
 COMPILER = ["c++", "-O0"]
-mutate.LEAST_CPU_S = 1.0  # so that what never ends takes no longer
+trials.LEAST_CPU_S = 1.0  # so that what never ends takes no longer
 
 
 class Toy(unittest.TestCase):
@@ -71,7 +72,7 @@ class Toy(unittest.TestCase):
                                    str(replaced.get(FILE, self.object(FILE))), "-o", str(output)],
                                   capture_output=True, text=True)
 
-        return mutate.Target(self.root, [FILE], {FILE: COMPILER}, {FILE: []}, link, lambda file: [mutate.Stage("toy", "toy")])
+        return trials.Target(self.root, [FILE], {FILE: COMPILER}, {FILE: []}, link, lambda file: [trials.Stage("toy", "toy")])
 
     def run_all(self, sample=0, seed=1, listed=()):
         options = argparse.Namespace(sample=sample, seed=seed, jobs=2, again=False)
