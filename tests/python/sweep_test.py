@@ -123,6 +123,37 @@ if "-m" in sys.orig_argv and "tactus._sweep" in sys.orig_argv:
                          ["completed", "failed", "completed", "completed"])
         self.assertEqual(rows_of(folder)[1]["reason"], "its worker ended with 7, 2 times")
 
+    def test_of_workers_that_cannot_start_are_left_to_the_others(self):
+        """All but the first, which is at work then, find no memory, say: they are not started for ever."""
+        started = self.folder / "started"
+        trap = self.file("sitecustomize.py", f"""
+import os, sys, time
+if "-m" in sys.orig_argv and "tactus._sweep" in sys.orig_argv:
+    started = os.open({str(started)!r}, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    worked = os.open({str(started)!r} + ".worked", os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    os.write(started, b".")
+    try:
+        os.close(os.open({str(started)!r} + ".first", os.O_WRONLY | os.O_CREAT | os.O_EXCL))
+    except FileExistsError:
+        while os.fstat(worked).st_size < 50:
+            time.sleep(0.01)
+        os._exit(7)
+    import tactus._core
+    figures = tactus._core.figures
+    def counted(scene):
+        os.write(worked, b".")
+        return figures(scene)
+    tactus._core.figures = counted
+""")
+        study = self.study(f"scenes: [{SCENE}]\nset: {{simulation.duration_s: 2}}\n"
+                           "grid: {controller.damping: {from: 0.5, to: 1, count: 32}}\n"
+                           "sobol: {points: 64, keys: {controller.time_constant_s: {from: 0.1, to: 0.2}}}\n")
+        folder = self.folder / "stillborn"
+        done = self.sweep(study, folder, "-j", 2, env={"PYTHONPATH": str(trap.parent), "PATH": "/usr/bin"})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([row["outcome"] for row in rows_of(folder)], 2048 * ["completed"])
+        self.assertEqual(started.stat().st_size, 3)
+
     def test_as_json(self):
         study = self.study(f"scenes: [{SCENE}]\nset: {{simulation.duration_s: 0.1}}\n"
                            "sobol: {points: 4, keys: {controller.damping: {from: 0.5, to: 1}}}\n")

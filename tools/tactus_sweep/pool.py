@@ -82,6 +82,7 @@ class Pool:
         self.count = count
         self.selector = selectors.DefaultSelector()
         self.deaths = {}
+        self.stillborn = 0
         self.workers = []
         self.rate = 0.0  # runs a second of one worker
 
@@ -133,7 +134,9 @@ class Pool:
                 reason = f"its worker ended with {worker.process.returncode}, {DEATHS} times"
                 failed.append({"run": left.pop(0), "outcome": "failed", "reason": reason})
         waiting.extend(reversed(left))
-        self.start()
+        self.stillborn += worker.identity is None
+        if worker.identity is not None or self.stillborn < DEATHS:  # else the others go on alone
+            self.start()
         return failed
 
     def start(self):
