@@ -150,6 +150,25 @@ TEST(SlowToolRequests, ReachWhatIsReachedFaster) {
   }
 }
 
+/// The tool is still on its way when the reference has ended.
+TEST(SlowJointRequests, ReachWhatFastOnesReach) {
+  Scene scene = test::shippedScene("commands");
+  Pose target = tipPose(scene.controller.chain, scene.controller.q_start);
+  target.p_AB.y() += 0.3;
+  const ToolMotionLimits& limits = scene.controller.task.commands->limits;
+  const auto reach = [&] {
+    return followTo(scene.controller, scene.controller.q_start, target, limits, scene.period_s);
+  };
+  const JointVector q_fast = reach().q_end;
+  for (const double velocity : {0.1, 0.05}) {
+    scene.controller.limits.max_velocity.setConstant(velocity);
+    EXPECT_EQ(reach().problem, "") << velocity;
+    EXPECT_LT((reach().q_end - q_fast).norm(), 0.1) << velocity;
+  }
+  target.p_AB.y() += 5.0;
+  EXPECT_NE(reach().problem.find("out of reach"), std::string::npos);
+}
+
 TEST_F(ToolRequestsTest, RefusesInOneLineAndDoesNothing) {
   const Json out = {{"do", "move"}, {"to_m", {3.0, 0.0, 0.0}}};
   EXPECT_NE(refusal(out).find("out of reach"), std::string::npos) << refusal(out);
