@@ -11,17 +11,23 @@ from programs import LAYERS, SOURCE, compile_flags, link, link_command, sources
 from trials import Stage, Target
 
 BUILD = SOURCE / "build" / "release"
-# After a layer's own tests: whole runs in virtual time, none of more than some seconds.
+# After a layer's own tests: whole runs in virtual time.
 OTHERS = {"control": ("sim", "supervisor"), "canopen": ("supervisor", "plant"), "supervisor": ()}
 CAMPAIGN = Stage("campaign", "tactus_campaign", ("--runs", "40"))
+
+
+LONG_S = 1.0
 
 
 def tests_of(layer):
     return Stage(layer, f"tactus_{layer}_tests", has_tests=True)
 
 
-PROGRAMS = sorted({f"tactus_{layer}_tests" for layer in LAYERS} | {CAMPAIGN.program}
-                  | {tests_of(name).program for names in OTHERS.values() for name in names})
+def shorter_tests_of(layer):
+    return Stage(f"{layer}'s shorter ones", f"tactus_{layer}_tests", has_tests=True, most_s=LONG_S)
+
+
+PROGRAMS = sorted({tests_of(layer).program for layer in (*LAYERS, *sum(OTHERS.values(), ()))} | {CAMPAIGN.program})
 
 
 @functools.cache
@@ -39,7 +45,7 @@ def suites(file):
 
 
 def stages(layer, own):
-    return [tests_of(layer)] if own else [*map(tests_of, (layer, *OTHERS[layer])), CAMPAIGN]
+    return [tests_of(layer)] if own else [tests_of(layer), *map(shorter_tests_of, OTHERS[layer]), CAMPAIGN]
 
 
 def precompiled(folder, flags):

@@ -31,14 +31,28 @@ double unused(double x) {
   return x - 0.0;
 }
 int limit() { return LIMIT; }
+constexpr int kRows = 3;
+struct Table {
+  int rows[kRows], more;
+  explicit Table(int first) : more(first + 1) {
+    for (int& row : rows) row = first;
+  }
+  template <typename T>
+  T twice(T x) const { return x + x; }
+  auto sum() const -> int { return rows[0] + more; }
+};
+int ask(int first) {
+  const Table table(first);
+  return table.twice(table.sum());
+}
 }
 """
-TEST = """namespace toy { double clip(double, double, double); int forever(int); int limit(); }
+TEST = """namespace toy { double clip(double, double, double); int forever(int); int limit(); int ask(int); }
 #include <cstdio>
 int main() {
   using namespace toy;
   const bool is_right = clip(0.5, 1.0, 2.0) == 1.0 && clip(1.5, 1.0, 2.0) == 1.5 && clip(3.0, 1.0, 2.0) == 2.0 &&
-                        forever(3) == 3 && limit() == 7;
+                        forever(3) == 3 && limit() == 7 && ask(2) == 10;
   if (!is_right) std::printf("[  FAILED  ] Toy.Clips\\n");
   return is_right ? 0 : 1;
 }
@@ -72,7 +86,8 @@ class Toy(unittest.TestCase):
                                    str(replaced.get(FILE, self.object(FILE))), "-o", str(output)],
                                   capture_output=True, text=True)
 
-        return trials.Target(self.root, [FILE], {FILE: COMPILER}, {FILE: []}, link, lambda file: [trials.Stage("toy", "toy")])
+        return trials.Target(self.root, [FILE], {FILE: COMPILER}, {FILE: []}, link,
+                             lambda file: [trials.Stage("toy", "toy")])
 
     def run_all(self, sample=0, seed=1, listed=()):
         options = argparse.Namespace(sample=sample, seed=seed, jobs=2, again=False)
@@ -106,6 +121,15 @@ class Toy(unittest.TestCase):
         self.assertEqual(self.state(":16:12: - becomes +")[0], "survived")
         self.assertGreater(counts["killed"], 5)
         self.assertGreater(counts["survived"], 0)
+
+    def test_changes_what_is_no_function_alone(self):
+        self.run_all()
+        for what in (":22:42: + becomes -", ":26:33: + becomes -", ":27:44: + becomes -", ":31:10: returns one more"):
+            self.assertEqual(self.state(what), ["killed", "Toy.Clips"], what)
+        self.assertEqual(self.state(":19:23: 3 becomes (2 * 3)")[0], "survived")
+        made = (self.root / "out" / "trials").iterdir()
+        copied = next(path for path in made if path.name == "src_toy_clip.cpp.cpp").read_text()
+        self.assertIn("constexpr int kRows = 3;", copied, "which the array needs")
 
     def test_goes_on_and_knows_equivalents(self):
         self.run_all(sample=4)

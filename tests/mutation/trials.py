@@ -32,6 +32,7 @@ class Stage:
     program: str
     arguments: tuple = ()
     has_tests: bool = False  # of GoogleTest, each of which can run by itself
+    most_s: float = math.inf  # tests that take longer are left out
 
 
 @dataclasses.dataclass
@@ -182,7 +183,8 @@ class Trials:
                 self.whole_s[stage.name] = run_unchanged(stage.name, program, stage.arguments, sandbox)
             return
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-            self.tests[stage.name] = list(pool.map(test, list_tests(program, stage.arguments)))
+            tests = pool.map(test, list_tests(program, stage.arguments))
+            self.tests[stage.name] = [test for test in tests if test.cpu_s <= stage.most_s]
 
     def functions(self, mutant):
         """That have to be reached: its own, or any of its file where it is in none."""
@@ -194,7 +196,8 @@ class Trials:
         reaching = [test for test in self.tests[stage.name] if not self.functions(mutant).isdisjoint(test.reached)]
         first = [test for test in reaching if test.is_of(self.target.near(mutant.file)) and test.cpu_s < NEAR_S]
         rest = [test for test in reaching if test not in first]
-        return [first, [test for test in rest if test.cpu_s < CHEAP_S], [test for test in rest if test.cpu_s >= CHEAP_S]]
+        cheap = [test for test in rest if test.cpu_s < CHEAP_S]
+        return [first, cheap, [test for test in rest if test not in cheap]]
 
     def runs(self, mutant):
         """(stage, arguments, CPU time unchanged)"""
