@@ -412,5 +412,82 @@ TEST(DriveSetup, BeginsAnewAtOnceWhenTheDriveBoots) {
   rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
 }
 
+/// Its boot-up may be lost.
+TEST(DriveSetup, AsksADriveAgainThatIsThereLateWithoutSayingSo) {
+  DriveRig rig;
+  rig.slave.unanswered.insert({0x1000, 0});
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.cycles(250, DriveGoal::kConfigure);
+  rig.slave.unanswered.clear();
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure, 200);
+}
+
+/// One that was refused, or did not run, is not commanded by what it says later.
+TEST(DriveSetup, LeavesADriveAloneThatItHasGivenUp) {
+  for (const bool is_refused : {false, true}) {
+    DriveRig rig;
+    if (is_refused) rig.slave.refused[{0x6060, 0}] = 0x08000022;
+    rig.slave.sends_feedback = is_refused;
+    rig.configure();
+    const Fault fault = rig.report().fault;
+    EXPECT_EQ(fault, is_refused ? Fault::kDriveSetupRefused : Fault::kDriveSilent);
+    rig.slave.refused.clear();
+    rig.slave.sends_feedback = true;
+    if (is_refused) rig.slave.powerUp();
+    for (int cycle = 0; cycle < 300; ++cycle) {
+      EXPECT_TRUE(rig.cycle(DriveGoal::kConfigure).empty()) << cycle;
+      ASSERT_FALSE(rig.report().is_configured) << cycle;
+    }
+    EXPECT_EQ(rig.report().fault, fault);
+  }
+}
+
+/// Whoever needs no second start gets none: not one that runs, nor one that says nothing.
+TEST(DriveSetup, StartsADriveOnceThatDoesNotAskForIt) {
+  for (const bool is_heard : {false, true}) {
+    DriveRig rig;
+    rig.slave.sends_feedback = false;
+    rig.slave.sends_heartbeat = is_heard;
+    int starts = 0;
+    const auto cycle = [&](bool restart) {
+      for (const CanFrame& frame : rig.cycle(DriveGoal::kConfigure, 0.0, restart))
+        starts += frame == test::rawFrame(0, {0x01, kNode});
+    };
+    cycle(true);
+    for (int i = 0; i < 500 && starts == 0; ++i) cycle(false);
+    if (!is_heard) {  // the question is of a start before
+      rig.slave.say(0x700, {127});
+      starts = 0;
+      cycle(true);
+    }
+    for (int i = 0; i < 500; ++i) cycle(false);
+    EXPECT_EQ(rig.report().fault, Fault::kDriveSilent);
+    EXPECT_EQ(starts, 1) << is_heard;
+  }
+}
+
+TEST(DriveSetup, SaysNothingBeforeItsStartNorAfterItsEnd) {
+  CanopenConfig canopen;
+  canopen.boot_timeout_s = 0.02;
+  DriveSetup setup(test::driveConfig(), canopen, 0.001);
+  const auto framesOf = [&setup](int cycles) {
+    std::size_t frames = 0;
+    for (int i = 0; i < cycles; ++i) {
+      FrameBatch out;
+      setup.update(out);
+      frames += out.size();
+    }
+    return frames;
+  };
+  EXPECT_EQ(framesOf(10), 0u);
+  setup.start();
+  EXPECT_GT(framesOf(200), 0u);
+  EXPECT_EQ(setup.status(), DriveSetup::Status::kFailed);
+  EXPECT_EQ(setup.failure().index, 0x1000);
+  EXPECT_EQ(framesOf(200), 0u);
+  setup.start();
+  EXPECT_EQ(setup.failure().index, 0) << "of the set-up that is under way";
+}
+
 }  // namespace
 }  // namespace tactus

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "support/drive_rig.h"
 #include "tactus/canopen/drive_setup.h"
@@ -65,8 +67,105 @@ TEST(DriveTimes, SilenceIsToldInTheFirstCycleBeyondItsLimit) {
     test::DriveRig running;
     running.enable();
     (lacks_feedback ? running.slave.sends_feedback : running.slave.sends_heartbeat) = false;
+    EXPECT_FALSE(running.report().is_silent);
     running.until([&] { return running.report().fault != Fault::kNone; }, DriveGoal::kEnabled);
     expectTold(running, lacks_feedback ? Drive::kMaxSilentCycles : heartbeat_cycles);
+    EXPECT_TRUE(running.report().is_silent);
+    running.slave.sends_feedback = running.slave.sends_heartbeat = true;
+    running.cycles(30, DriveGoal::kQuickStop);
+    EXPECT_FALSE(running.report().is_silent) << "it is heard again, whatever its fault";
+  }
+}
+
+bool isStarted(const std::vector<CanFrame>& frames) {
+  return std::find(frames.begin(), frames.end(), test::rawFrame(0, {1, test::kNode})) !=
+         frames.end();
+}
+
+/// From NMT start on, it has the time of a heartbeat and of an answer to run.
+TEST(DriveTimes, AStartHasItsTimeAndNoMore) {
+  test::DriveRig rig;
+  rig.slave.sends_feedback = rig.slave.sends_heartbeat = false;
+  bool is_started = isStarted(rig.cycle(DriveGoal::kConfigure, 0.0, true));
+  for (int i = 0; i < 200 && !is_started; ++i)
+    is_started = isStarted(rig.cycle(DriveGoal::kConfigure));
+  ASSERT_TRUE(is_started);
+  const int cycles =
+      rig.until([&] { return rig.report().fault != Fault::kNone; }, DriveGoal::kConfigure);
+  const CanopenConfig canopen;
+  EXPECT_EQ(
+      cycles,
+      std::round((canopen.heartbeat_timeout_s + canopen.sdo_timeout_s) / test::kPeriod_s) + 1);
+}
+
+/// That it was silent before its set-up is no part of a gap after it.
+TEST(DriveTimes, SilenceOfBeforeItsSetUpDoesNotCount) {
+  test::DriveRig rig;
+  rig.enable();
+  rig.slave.sends_feedback = false;
+  rig.cycles(200, DriveGoal::kQuickStop);
+  ASSERT_EQ(rig.report().fault, Fault::kDriveSilent);
+  rig.slave.sends_feedback = true;
+  rig.configure();
+  rig.slave.take();
+  rig.slave.sends_feedback = false;
+  rig.cycles(Drive::kMaxSilentCycles, DriveGoal::kDisabled);
+  EXPECT_EQ(rig.report().fault, Fault::kNone);
+  rig.cycle(DriveGoal::kDisabled);
+  EXPECT_EQ(rig.report().fault, Fault::kDriveSilent);
+}
+
+/// Once it is heard again, that it moves on in a quick stop is seen before it is known to run.
+TEST(DriveTimes, SilenceOfBeforeItsSetUpHidesNoMotion) {
+  test::DriveRig rig;
+  rig.enable();
+  rig.slave.sends_feedback = false;
+  rig.cycles(200, DriveGoal::kQuickStop);
+  rig.slave.sends_feedback = true;
+  rig.slave.sends_heartbeat = false;
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.until([&] { return rig.report().has_position; }, DriveGoal::kConfigure);
+  for (int i = 0; i < 110; ++i) {
+    rig.slave.position += 100;  // 0.5 rad/s
+    rig.cycle(DriveGoal::kQuickStop);
+  }
+  EXPECT_FALSE(rig.report().is_configured);
+  EXPECT_TRUE(rig.report().is_moving_on);
+}
+
+/// An answer is waited for, in which its value may change; the time of each is its own.
+TEST(DriveTimes, AValueIsWaitedForAsLongAsAnAnswer) {
+  test::DriveRig rig;
+  rig.slave.shows_mode = false;
+  const auto isAsked = [](const std::vector<CanFrame>& frames) {
+    return std::any_of(frames.begin(), frames.end(), [](const CanFrame& frame) {
+      return frame.id == 0x600u + test::kNode && frame.data[0] == 0x40 && frame.data[1] == 0x61;
+    });
+  };
+  bool is_asked = isAsked(rig.cycle(DriveGoal::kConfigure, 0.0, true));
+  for (int i = 0; i < 200 && !is_asked; ++i) is_asked = isAsked(rig.cycle(DriveGoal::kConfigure));
+  ASSERT_TRUE(is_asked);
+  const int cycles =
+      rig.until([&] { return rig.report().fault != Fault::kNone; }, DriveGoal::kConfigure);
+  EXPECT_EQ(cycles, std::round(CanopenConfig{}.sdo_timeout_s / test::kPeriod_s));
+  EXPECT_EQ(rig.report().setup_failure.index, 0x6061);
+}
+
+/// One that boots so late is refused: nothing more is asked of it.
+TEST(DriveTimes, NothingIsAskedBehindTheTimeOfABoot) {
+  for (int most = 90; most < 220; ++most) {
+    CanopenConfig canopen;
+    canopen.boot_timeout_s = most * test::kPeriod_s;
+    DriveSetup setup(test::driveConfig(), canopen, test::kPeriod_s);
+    setup.start();
+    int last_asked = 0;
+    for (int cycle = 1; cycle < 500; ++cycle) {
+      FrameBatch out;
+      setup.update(out);
+      if (!out.empty() && out.begin()->id == 0) last_asked = cycle;
+    }
+    EXPECT_EQ(setup.status(), DriveSetup::Status::kFailed);
+    EXPECT_LE(last_asked, most);
   }
 }
 
