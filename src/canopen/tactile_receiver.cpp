@@ -67,11 +67,10 @@ bool TactileReceiver::isNew(std::uint8_t sequence) const noexcept {
 
 void TactileReceiver::add(int index, const CanFrame& frame) noexcept {
   if (assembly_.arrived == 0 || assembly_.sequence != frame.data[0]) begin(frame.data[0]);
-  if ((assembly_.arrived >> index & 1U) != 0) {
-    ++counters_.repeated;
-    if (assembly_.frames[index] != frame) assembly_.is_spoilt = true;
-    return;
-  }
+  const bool is_repeated = (assembly_.arrived >> index & 1U) != 0;
+  if (is_repeated) ++counters_.repeated;
+  if (is_repeated && assembly_.frames[index] != frame) assembly_.is_spoilt = true;
+  if (is_repeated) return;
   assembly_.arrived |= 1U << index;
   assembly_.status |= frame.data[1];
   assembly_.frames[index] = frame;
@@ -118,7 +117,7 @@ void TactileReceiver::publish(const Wrench5& raw) noexcept {
   for (int i = 0; i < kReadings; ++i) {
     if (filters_[i] && is_read) wrench[i] = filters_[i]->update(wrench[i]);
   }
-  if (++counters_.samples == 0) counters_.samples = 1;  // 0 says that there is none
+  counters_.samples = sampleAfter(counters_.samples);
   sample_ = {wrench[0], wrench[1], wrench[2], wrench[3], counters_.samples, wrench[4]};
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tactus/canopen/moteus_frames.h"
+
 namespace tactus {
 namespace {
 
@@ -32,6 +34,14 @@ TEST(BusLoad, CountsTheBitsOfTheLongestFrame) {
   for (int n = 0; n <= 8; ++n) {
     const int stuffed = 34 + 8 * n;
     EXPECT_EQ(worstCaseBits(n), stuffed + (stuffed - 1) / 4 + 13) << n;
+  }
+}
+
+TEST(BusLoad, IsToldOfEachBus) {
+  for (const std::size_t buses : {0u, 1u, 2u, 5u}) {
+    HardwareConfig hardware;
+    hardware.buses.resize(buses);
+    EXPECT_EQ(busLoads(hardware, 0.001).size(), buses);
   }
 }
 
@@ -91,7 +101,10 @@ TEST(BusLoad, OfMoteusIsACommandAndAReplyEach) {
     const BusLoad load = busLoads(hardware, 0.001)[1];
     ASSERT_EQ(load.terms.size(), 2u);
     double bits = 0.0;
-    for (const BusLoadTerm& term : load.terms) bits += term.bitsAFrame();
+    for (const int bytes : {kMoteusCommandBytes, kMoteusReplyBytes}) {
+      const FdBits worst = worstCaseFdBits(bytes, true);
+      bits += worst.arbitration + worst.data / 5.0;
+    }
     EXPECT_DOUBLE_EQ(load.bitsPerSecond(), drives * bits / 0.001);
   }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "canopen/tactile_frames.h"
 #include "support/period.h"
 #include "support/scripted_drive.h"
 #include "tactus/canopen/canopen.h"
@@ -15,7 +16,7 @@ namespace {
 using test::ScriptedDrive;
 
 struct RobotRig {
-  RobotRig() : robot(hardware(), test::kPeriod_s) {}
+  explicit RobotRig(const HardwareConfig& config = hardware()) : robot(config, test::kPeriod_s) {}
 
   static HardwareConfig hardware() {
     HardwareConfig config;
@@ -166,6 +167,154 @@ TEST(CanRobot, ReleasesEachOfItsDrives) {
   ASSERT_EQ(std::ranges::size(frames), 2u);
   for (const int node : {1, 2})
     EXPECT_EQ(std::ranges::count(frames, nmtFrame({NmtCommand::kResetNode, node})), 1) << node;
+}
+
+TEST(CanRobot, TellsWhereItsJointsAreOnceAllSaySo) {
+  RobotRig rig;
+  RobotInput input;
+  rig.slaves[0].position = 250000;  // of 1e6 a unit
+  rig.slaves[1].position = -500000;
+  rig.slaves[1].sends_feedback = false;
+  rig.cycle(DriveGoal::kConfigure, true);
+  EXPECT_FALSE(rig.robot.hasPositions());
+  for (int i = 0; i < 100; ++i) rig.cycle(DriveGoal::kConfigure);
+  ASSERT_TRUE(rig.robot.drive(0).has_position);
+  EXPECT_FALSE(rig.robot.hasPositions()) << "one has yet to be heard";
+  rig.slaves[1].sends_feedback = true;
+  rig.enable();
+  EXPECT_TRUE(rig.robot.hasPositions());
+  rig.robot.read(input);
+  ASSERT_EQ(input.q_measured.size(), 2);
+  EXPECT_EQ(input.q_measured, (JointVector(2) << 0.25, -0.5).finished());
+}
+
+/// What nobody hears of is not counted among what has power: its own watch stops it.
+TEST(CanRobot, CountsThePowerOfDrivesInReachAlone) {
+  RobotRig rig;
+  EXPECT_FALSE(rig.robot.hasPower(0)) << "not set up";
+  EXPECT_FALSE(rig.robot.drives().is_any_holding);
+  EXPECT_TRUE(rig.robot.drives().are_disabled);
+  rig.enable();
+  EXPECT_TRUE(rig.robot.hasPower(0));
+  EXPECT_TRUE(rig.robot.hasPower(1));
+  rig.slaves[0].sends_feedback = false;
+  rig.slaves[0].ignores_commands = true;
+  rig.cycles(20, DriveGoal::kDisabled);
+  ASSERT_TRUE(rig.robot.drive(0).is_silent);
+  EXPECT_EQ(rig.robot.drive(0).state, DriveState::kOperationEnabled) << "an old one";
+  for (const int joint : {0, 1}) {
+    EXPECT_FALSE(rig.robot.hasPower(joint)) << joint;
+    EXPECT_FALSE(rig.robot.isHolding(joint)) << joint;
+  }
+  EXPECT_FALSE(rig.robot.drives().is_any_holding);
+  EXPECT_TRUE(rig.robot.drives().are_disabled);
+}
+
+TEST(CanRobot, IsHeldByADriveThatSlowsDown) {
+  RobotRig rig;
+  rig.enable();
+  rig.slaves[0].quick_stop_cycles = 100;
+  rig.slaves[1].fault(0x7500);
+  rig.cycles(3, DriveGoal::kQuickStop);
+  ASSERT_EQ(rig.robot.drive(0).state, DriveState::kQuickStopActive);
+  ASSERT_EQ(rig.robot.drive(1).state, DriveState::kFaultReactionActive);
+  EXPECT_TRUE(rig.robot.isHolding(0));
+  EXPECT_TRUE(rig.robot.isHolding(1));
+  rig.cycles(10, DriveGoal::kQuickStop);
+  EXPECT_TRUE(rig.robot.isHolding(0));
+  EXPECT_FALSE(rig.robot.isHolding(1)) << "in fault it has no torque";
+}
+
+TEST(CanRobot, SeesEachOfItsDrivesThatMovesOn) {
+  for (const int moving : {0, 1}) {
+    RobotRig rig;
+    rig.enable();
+    for (int i = 0; i < 110; ++i) {
+      rig.slaves[moving].position += 1000;  // 1 rad/s
+      rig.cycle(DriveGoal::kQuickStop);
+    }
+    EXPECT_TRUE(rig.robot.drives().is_any_moving_on) << moving;
+    EXPECT_FALSE(rig.robot.drive(1 - moving).is_moving_on) << moving;
+  }
+}
+
+/// Its drive's deadline passes in missed cycles, too; then only silence stops it, the other's, too.
+TEST(CanRobot, FallsSilentForADriveThatDoesNotStop) {
+  RobotRig rig;
+  rig.enable();
+  rig.slaves[0].ignores_commands = rig.slaves[0].ignores_nmt = true;
+  rig.cycles(100, DriveGoal::kQuickStop);
+  rig.robot.coast(300);
+  rig.cycles(100, DriveGoal::kQuickStop);
+  EXPECT_FALSE(rig.robot.drive(0).is_cut_off);
+  rig.cycle(DriveGoal::kQuickStop);
+  EXPECT_TRUE(rig.robot.drive(0).is_cut_off);
+  EXPECT_FALSE(rig.robot.outbox(0).empty());
+  rig.cycles(Drive::kCuttingOffCycles, DriveGoal::kQuickStop);
+  for (int i = 0; i < 50; ++i) {
+    rig.cycle(DriveGoal::kQuickStop);
+    EXPECT_TRUE(rig.robot.outbox(0).empty()) << i;
+  }
+}
+
+TEST(CanRobot, ForgetsTheFaultsOfItsDrivesByARestartAlone) {
+  RobotRig rig;
+  rig.enable();
+  rig.slaves[0].fault(0x7500);
+  rig.cycles(20, DriveGoal::kQuickStop);
+  rig.cycles(200, DriveGoal::kConfigure);
+  EXPECT_EQ(rig.robot.drives().fault, Fault::kDriveFault);
+  rig.enable();
+  EXPECT_EQ(rig.robot.drives().fault, Fault::kNone);
+  EXPECT_TRUE(rig.robot.drives().are_enabled);
+}
+
+TEST(CanRobot, PullsItsDrivesToWhereTheyAreCommandedToBe) {
+  HardwareConfig hardware = RobotRig::hardware();
+  for (DriveConfig& drive : hardware.drives) drive.tracking_gain_per_s = 10.0;
+  RobotRig rig(hardware);
+  rig.enable();
+  RobotInput input;
+  rig.robot.read(input);
+  const JointVector apart = (JointVector(2) << 0.01, -0.02).finished();
+  rig.robot.command(DriveGoal::kEnabled, false, input.q_measured + apart);
+  rig.robot.write(JointVector::Zero(2));
+  for (const CanFrame& frame : rig.robot.outbox(0))
+    for (ScriptedDrive& slave : rig.slaves) slave.hear(frame);
+  for (const int joint : {0, 1})
+    EXPECT_NEAR(rig.slaves[joint].velocity, 10.0 * apart[joint] * 1e6, 1.0) << joint;
+}
+
+/// Of the same identifiers, each on its bus.
+TEST(CanRobot, HearsItsTactileModules) {
+  HardwareConfig hardware = RobotRig::hardware();
+  hardware.buses.resize(2);
+  for (const int bus : {0, 1}) {
+    hardware.tactile_modules.push_back(test::tactileConfig());
+    hardware.tactile_modules.back().bus = bus;
+  }
+  RobotRig rig(hardware);
+  ASSERT_EQ(rig.robot.tactileModules().size(), 2u);
+  RobotInput input;
+  const auto hear = [&](int bus, int sequence, int count, std::uint8_t status = 0) {
+    rig.robot.receive(bus, test::tactileFrames(sequence, {count}, status));
+    rig.robot.read(input);
+  };
+  hear(0, 7, 1000);
+  EXPECT_EQ(input.tactile[0].sequence, 1u);
+  EXPECT_NEAR(input.tactile[0].force_y_N, 1.0, 1e-12);
+  EXPECT_EQ(input.tactile[1].sequence, 0u);
+  hear(1, 7, 2000);
+  EXPECT_NEAR(input.tactile[0].force_y_N, 1.0, 1e-12);
+  EXPECT_NEAR(input.tactile[1].force_y_N, 2.0, 1e-12);
+  hear(0, 8, 5000, 0x02);  // its cable is broken
+  EXPECT_EQ(input.tactile[0].sequence, 1u) << "as if it said nothing";
+  EXPECT_NEAR(input.tactile[0].force_y_N, 1.0, 1e-12);
+  hear(1, 7, 3000);
+  EXPECT_NEAR(input.tactile[1].force_y_N, 2.0, 1e-12) << "its number was there";
+  for (int cycle = 0; cycle < 2000; ++cycle) rig.robot.read(input);
+  hear(1, 7, 3000);
+  EXPECT_NEAR(input.tactile[1].force_y_N, 3.0, 1e-12) << "after a long silence any number is new";
 }
 
 }  // namespace

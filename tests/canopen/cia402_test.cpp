@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/random.h"
@@ -197,6 +198,32 @@ TEST(ControlWord, NeverLeavesADriveEnabledLongerThanItsGoalAllows) {
                 DriveState::kOperationEnabled);
     }
   }
+}
+
+/// Step by step, whoever asks for the next one gets there.
+TEST(PowerTable, LeadsEveryStateButFaultsToItsGoal) {
+  using enum DriveState;
+  for (const auto& [goal, end] : {std::pair{PowerGoal::kEnabled, kOperationEnabled},
+                                  {PowerGoal::kDisabled, kSwitchOnDisabled}}) {
+    for (DriveState state : kAllStates) {
+      if (state == kFault || state == kFaultReactionActive) continue;
+      int steps = 0;
+      for (; steps < 10; ++steps) {
+        const PowerTransition* const next = nextTransition(state, goal);
+        if (next == nullptr) break;
+        EXPECT_EQ(next->from, state);
+        state = next->to;
+      }
+      EXPECT_EQ(state, end) << driveStateName(state);
+      EXPECT_LT(steps, 5);
+    }
+  }
+}
+
+TEST(ControlWord, AsksForNoOperationInAFault) {
+  for (PowerGoal goal : {PowerGoal::kDisabled, PowerGoal::kEnabled})
+    for (DriveState state : {DriveState::kFault, DriveState::kFaultReactionActive})
+      EXPECT_EQ(controlWordTowards(goal, state), control_word::kDisableVoltage);
 }
 
 }  // namespace

@@ -111,12 +111,18 @@ TEST(MoteusFrames, NothingElseIsAReply) {
   for (const char* const bad :
        {"", "2100", "2100002e0100000000000000", "21000021", "2100002e010000000000000000",
         "2e010000000000000000210f00", "2100002e010000000000000000210f0030", "11001e01110f", "20ff",
-        "20ffffffffffff", "2100002e010000000000000000210f00ff"})
+        "20ffffffffffff", "2100002e010000000000000000210f00ff",
+        // without position, without velocity, a subframe of another kind, numbers of 36 bits
+        "2100002d0200000000210f00", "2100002d0100000000210f00",
+        "2100002e010000000000000000210f00310000", "2100002e010000000000000000210f0020808080808000",
+        "2100002e010000000000000000210f002080808080800000"})
     EXPECT_FALSE(decodeMoteusReply(replyOf(2, bad), 2)) << bad;
   CanFrame frame = replyOf(2, good);
   frame.is_fd = false;
   EXPECT_FALSE(decodeMoteusReply(frame, 2));
   frame = replyOf(2, good);
+  while (frame.size < 64) frame.data[frame.size++] = 0x50;  // padding
+  EXPECT_TRUE(decodeMoteusReply(frame, 2)) << "the longest";
   frame.size = 65;
   EXPECT_FALSE(decodeMoteusReply(frame, 2)) << "longer than any";
   frame = replyOf(2, good);

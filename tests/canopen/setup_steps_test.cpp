@@ -3,6 +3,7 @@
 #include <cmath>
 #include <ios>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "tactus/canopen/drive_setup.h"
@@ -105,6 +106,32 @@ TEST(SetupSteps, StopTheOtherPdosThatADriveMayHave) {
     }
     EXPECT_EQ(stops, 1) << std::hex << index;
   }
+}
+
+/// Whole milliseconds of 16 bits, both ends among them.
+TEST(SetupSteps, TellHeartbeatsOfAnyLengthThatDrivesCanHold) {
+  for (const int ms : {1, 2, 65534, 65535}) {
+    CanopenConfig canopen;
+    canopen.heartbeat_period_s = canopen.heartbeat_timeout_s = 0.001 * ms;
+    int told = 0;
+    for (const SetupStep& step : setupSteps({}, canopen, 0.001)) {
+      const bool is_produced = step.entry.index == 0x1017;
+      const bool is_consumed = step.entry.index == 0x1016;
+      if (!is_produced && !is_consumed) continue;
+      EXPECT_EQ(step.value & 0xFFFF, static_cast<std::uint32_t>(ms));
+      ++told;
+    }
+    EXPECT_EQ(told, 2);
+  }
+}
+
+TEST(SetupSteps, StopEachPdoOnce) {
+  std::set<int> stopped;
+  for (const SetupStep& step : setupSteps({}, {}, 0.001)) {
+    if (step.kind != SetupStep::Kind::kStopPdo) continue;
+    EXPECT_TRUE(stopped.insert(step.entry.index).second) << std::hex << step.entry.index;
+  }
+  EXPECT_EQ(stopped.size(), 8u);
 }
 
 }  // namespace

@@ -572,5 +572,56 @@ TEST(TactileReceiver, KeepsItsPromisesUnderRandomFrames) {
   EXPECT_GT(counters.repeated, 1000u);
 }
 
+/// To the cycle, and from the last frame on.
+TEST(TactileReceiver, ForgetsNumbersAtTheEndOfALongSilence) {
+  for (const bool is_over : {false, true}) {
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
+    for (int again = 0; again < 2; ++again) {
+      receive(receiver, tactileFrames(77 + again, kTouch));
+      waitSilently(receiver, TactileReceiver::kMaxSilentSamples * kCyclesPerSample - 1);
+    }
+    if (is_over) waitSilently(receiver, 1);
+    receive(receiver, tactileFrames(77, kTouch));
+    EXPECT_EQ(receiver.sample().sequence, is_over ? 3u : 2u);
+  }
+}
+
+TEST(TactileReceiver, CountsAsIncompleteWhatHadBegunBeforeASilence) {
+  for (int begun = 0; begun < 4; ++begun) {
+    TactileReceiver receiver(tactileConfig(), kPeriod_s);
+    const TactileFrames frames = tactileFrames(77, kTouch);
+    for (int k = 0; k < begun; ++k) receiver.receive(frames[k]);
+    waitSilently(receiver, 2 * kLongSilence);
+    EXPECT_EQ(receiver.counters().incomplete, begun == 0 ? 0u : 1u) << begun;
+  }
+}
+
+TEST(TactileReceiver, TaresUpToItsLimitsAndNamesTheOneThatWasPassed) {
+  TactileReceiver receiver(tactileConfig(), kPeriod_s);
+  int sequence = 0;
+  std::vector<Counts> samples(50, forceY(2.0));  // at the limit of the offset
+  EXPECT_EQ(tare(receiver, sequence, samples), TareState::kDone);
+  samples.assign(50, forceY(0.2));
+  samples[0] = forceY(0.0);  // at the limit of the spread
+  EXPECT_EQ(tare(receiver, sequence, samples), TareState::kDone);
+  samples.assign(50, forceY(2.0));
+  samples[0] = forceY(1.5);
+  EXPECT_EQ(tare(receiver, sequence, samples), TareState::kRefused);
+  EXPECT_EQ(receiver.tareRefusal().value, 0.5) << "of the spread: the offset is within its limit";
+  receiver.startTare();
+  receive(receiver, tactileFrames(++sequence, forceY(0.0)));
+  receive(receiver, tactileFrames(++sequence, forceY(0.2), 0x01));
+  EXPECT_EQ(receiver.tareState(), TareState::kRefused);
+  EXPECT_STREQ(receiver.tareRefusal().unit, "") << "saturated: both are within their limits";
+}
+
+/// Half a year of samples, and on.
+TEST(TactileReceiver, NeverCountsASampleAsNone) {
+  EXPECT_EQ(sampleAfter(0), 1u);
+  EXPECT_EQ(sampleAfter(41), 42u);
+  EXPECT_EQ(sampleAfter(0xFFFFFFFE), 0xFFFFFFFF);
+  EXPECT_EQ(sampleAfter(0xFFFFFFFF), 1u);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -20,6 +21,11 @@ struct TactileCounters {
   std::uint32_t malformed = 0;   ///< frames of wrong size or kind
   std::uint32_t repeated = 0;    ///< frames that came twice, or of a sample not newer than the last
 };
+
+/// The number of the sample after this one: 0 says that there is none.
+constexpr std::uint32_t sampleAfter(std::uint32_t number) noexcept {
+  return std::max(number + 1, std::uint32_t{1});
+}
 
 /// Assembles samples of a tactile module from its four frames, calibrates, tares and, where the
 /// module does not, filters them. Knows no socket and no clock: time is counted in cycles.
