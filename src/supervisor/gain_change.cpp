@@ -81,7 +81,6 @@ void GainChange::advance(GainState next) noexcept {
   is_changing_ = true;
   gains_ = gainsBetween(from_, to_, passed_s_ / duration_s_);
   if (passed_s_ < duration_s_) return;
-  gains_ = to_;
   passed_s_ = 0.0;
   report_.state = next;
 }

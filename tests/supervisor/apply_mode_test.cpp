@@ -72,5 +72,21 @@ TEST(ApplyMode, BeginsAWayOutOnceAndGoesOnOnce) {
   EXPECT_EQ(after(Mode::kFault, Mode::kFault).return_share, 1.0);
 }
 
+/// Drives that are set up may say anything of where joints are: what covers feel of it is no
+/// motion. In every other mode what they have felt goes on.
+TEST(ApplyMode, ForgetsTheMotionOfCoversInABootAndInItsFirstCycleAfter) {
+  for (int to = 0; to < kModeCount; ++to) {
+    for (int from = 0; from < kModeCount; ++from) {
+      const Mode mode = static_cast<Mode>(to), before = static_cast<Mode>(from);
+      ControllerState state;
+      for (TactileReading& reading : state.modules) reading.cover.has_started = true;
+      forgetMotionWhileBooting(mode, before, state);
+      const bool is_booting = mode == Mode::kBoot || before == Mode::kBoot;
+      for (const TactileReading& reading : state.modules)
+        EXPECT_EQ(reading.cover.has_started, !is_booting) << from << " " << to;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tactus

@@ -28,16 +28,22 @@ Pose toolPose(const VirtualRobotCell& cell, const Scene& scene) {
                  Eigen::Map<const Eigen::VectorXd>(record.q, scene.controller.chain.size()));
 }
 
-void tell(VirtualRobotCell& cell, const Pose& to, std::uint32_t number,
-          ToolOrder::Kind kind = ToolOrder::Kind::kGo) {
+ToolOrder orderOf(const Pose& to, std::uint32_t number) {
   ToolOrder order;
   order.number = number;
+  order.kind = ToolOrder::Kind::kGo;
+  std::copy_n(to.p_AB.data(), 3, order.p_BaseTool_m);
+  std::copy_n(to.R_AB.data(), 9, order.R_BaseTool);
+  return order;
+}
+
+void tell(VirtualRobotCell& cell, const Pose& to, std::uint32_t number,
+          ToolOrder::Kind kind = ToolOrder::Kind::kGo) {
+  ToolOrder order = orderOf(to, number);
   order.kind = kind;
   ToolSight sight;
   cell.cycle.fill(sight);
   order.run = sight.run;
-  std::copy_n(to.p_AB.data(), 3, order.p_BaseTool_m);
-  std::copy_n(to.R_AB.data(), 9, order.R_BaseTool);
   cell.cycle.order(order);
 }
 
@@ -183,6 +189,8 @@ TEST(CommandedCycle, RestsWhereAStopHasLeftIt) {
     tell(cell, toolPose(cell, scene), 1, ToolOrder::Kind::kGoNext);
     for (int i = 0; i < 1000; ++i) stepPrepared(cell);
     const auto plan = cell.record().tool_motion.number;
+    ToolSight before, after;
+    cell.cycle.fill(before);
     (is_emergency ? cell.input.lines.emergency_stop : cell.input.lines.enable) = is_emergency;
     for (int i = 0; i < 1000; ++i) stepPrepared(cell);
     EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kStopped);
@@ -196,6 +204,18 @@ TEST(CommandedCycle, RestsWhereAStopHasLeftIt) {
     EXPECT_GT(cell.record().tool_motion.number, plan)
         << "a plan that is another has another number";
     EXPECT_LT((toolPose(cell, scene).p_AB - rest).norm(), 1e-3) << is_emergency;
+    cell.cycle.fill(after);
+    const Eigen::Map<const Matrix3> R(after.R_BaseTool);
+    EXPECT_LT((R - Eigen::Map<const Matrix3>(before.R_BaseTool)).norm(), 1e-9);
+    EXPECT_GT((R - toolPose(cell, scene).R_AB).norm(), 1e-3)
+        << "the task says nothing of how the tool is turned";
+    EXPECT_NE(after.run, before.run);
+    ToolOrder late = orderOf(target, 2);
+    late.run = before.run;
+    cell.cycle.order(late);
+    for (int i = 0; i < 100; ++i) stepPrepared(cell);
+    EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kStopped) << "it was told before the stop";
+    EXPECT_LT((toolPose(cell, scene).p_AB - rest).norm(), 1e-3);
     tell(cell, target, 2);
     for (int i = 0; i < 6000; ++i) stepPrepared(cell);
     EXPECT_EQ(cell.cycle.toolReport()->state, ToolState::kArrived);
@@ -236,6 +256,27 @@ TEST(CommandedCycle, TurnsTheTool) {
   ToolSight sight;
   cell.cycle.fill(sight);
   EXPECT_LT((Eigen::Map<const Matrix3>(sight.R_BaseTool) - target.R_AB).norm(), 1e-2);
+}
+
+/// A stop leaves it turned as it is, and not as it lagged behind.
+TEST(CommandedCycle, RestsTurnedAsAStopHasLeftIt) {
+  const Scene scene = toldScene({{"simulation.obstacles", "[]"},
+                                 {"task.components", "[x, y, z, rx, ry, rz]"},
+                                 {"task.max_return_speed_rad_per_s", "0.05"}});
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  Pose target = toolPose(cell, scene);
+  target.R_AB = Eigen::AngleAxisd(0.3, Vector3::UnitZ()).toRotationMatrix() * target.R_AB;
+  tell(cell, target, 1);
+  for (int i = 0; i < 300; ++i) stepPrepared(cell);
+  cell.input.lines.enable = false;
+  for (int i = 0; i < 100; ++i) stepPrepared(cell);
+  const Matrix3 rest = toolPose(cell, scene).R_AB;
+  EXPECT_GT((rest - target.R_AB).norm(), 0.05) << "it was stopped under way";
+  cell.input.lines.enable = true;
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 10));
+  for (int i = 0; i < 2000; ++i) stepPrepared(cell);
+  EXPECT_LT((toolPose(cell, scene).R_AB - rest).norm(), 1e-6);
 }
 
 }  // namespace

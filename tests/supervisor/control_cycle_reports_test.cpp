@@ -127,6 +127,59 @@ TEST(CycleReports, GainsAreTakenBackAtLimitsOfSpeed) {
   }
 }
 
+/// Each of its joints counts.
+TEST(CycleReports, GainsAreTakenBackAtTheLimitOfOneJoint) {
+  for (const int joint : {0, 8}) {
+    Scene scene = emptyScene("scenario1_null_space");
+    scene.controller.limits.max_velocity.setConstant(10.0);
+    scene.controller.limits.max_velocity[joint] = 1e-5;
+    scene.controller.task.trajectory.waypoints.clear();
+    VirtualRobotCell cell(scene);
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+    cell.on_frame = [](int bus, CanFrame& frame) {
+      if (bus == 3 && frame.id == 0x100) frame.data[4] = 5;  // 3.3 N
+    };
+    GainOrder order{.number = 1, .gains = scene.controller.gains};
+    order.gains.force.time_constant_s = 0.11;
+    cell.cycle.order(order);
+    for (int i = 0; i < 3000; ++i) cell.step();
+    EXPECT_EQ(cell.cycle.gainReport().trouble, GainTrouble::kAtLimits) << joint;
+  }
+}
+
+/// An arm that can feel tries new gains in contact alone; they are its own meanwhile.
+TEST(CycleReports, GainsAreOnTrialUntilThereWasContact) {
+  const Scene scene = emptyScene("scenario1_null_space");
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  GainOrder order{.number = 1, .gains = scene.controller.gains};
+  order.gains.force.time_constant_s = 0.11;
+  cell.cycle.order(order);
+  for (int i = 0; i < 6000; ++i) cell.step();
+  EXPECT_EQ(cell.cycle.gainReport().state, GainState::kOnTrial);
+  EXPECT_EQ(cell.record().gains.force.time_constant_s, 0.11);
+  cell.on_frame = [](int bus, CanFrame& frame) {
+    if (bus == 3 && frame.id == 0x100) frame.data[4] = 5;  // 3.3 N
+  };
+  for (int i = 0; i < 4500; ++i) cell.step();
+  EXPECT_EQ(cell.cycle.gainReport().state, GainState::kKept);
+  EXPECT_EQ(cell.cycle.gainReport().trouble, GainTrouble::kNone);
+}
+
+/// One that has no law for what it feels tries them by moving.
+TEST(CycleReports, GainsOfAnArmWithoutALawAreKeptAfterAWhile) {
+  const Scene scene = emptyScene("scenario1_none");
+  ASSERT_FALSE(scene.controller.force_control);
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  GainOrder order{.number = 1, .gains = scene.controller.gains};
+  order.gains.task.drift_gain_per_s *= 1.1;
+  cell.cycle.order(order);
+  for (int i = 0; i < 6000; ++i) cell.step();
+  EXPECT_EQ(cell.cycle.gainReport().state, GainState::kKept);
+  EXPECT_EQ(cell.cycle.gainReport().kept_number, 1U);
+}
+
 /// After the ramp drives keep the arm for 20 ms, for them to have followed it.
 TEST(CycleReports, DrivesHoldForAMomentAtTheEnd) {
   Scene scene = emptyScene("scenario1_null_space");

@@ -262,6 +262,10 @@ TEST(ControlCycleSafety, ARefusedTareIsRepeatedByTheEnableLine) {
   ASSERT_TRUE(cell.runUntil(Mode::kFault, 5000));
   EXPECT_EQ(cell.cycle.report().fault, Fault::kTareRefused);
   cell.on_frame = nullptr;
+  for (int i = 0; i < 1000; ++i) {
+    cell.step();
+    ASSERT_EQ(cell.cycle.robot().tactileModules()[0].tareState(), TareState::kRefused) << i;
+  }
   cell.switchEnable();
   EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000)) << faultName(cell.cycle.report().fault);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,23 @@ TEST(ControlCycleBoot, RefusesToTareInContact) {
   EXPECT_EQ(bootWith(shippedScene("scenario1_null_space"), press).fault, Fault::kTareRefused);
 }
 
+/// Whatever memory held before.
+TEST(ControlCycleBoot, CommandsNoSpeedBeforeItsFirstCycleOfMotion) {
+  struct alignas(VirtualRobotCell) Memory {
+    unsigned char bytes[sizeof(VirtualRobotCell)];
+  };
+  const auto memory = std::make_unique<Memory>();
+  volatile unsigned char* const bytes = memory->bytes;
+  for (std::size_t i = 0; i < sizeof(VirtualRobotCell); ++i) bytes[i] = 0x41;  // numbers of 2e6
+  auto* const cell = new (memory->bytes) VirtualRobotCell(shippedScene("scenario1_null_space"));
+  int largest = 0;
+  for (int i = 0; i < 5000 && !cell->runUntil(Mode::kRunning, 1); ++i)
+    largest = std::max(largest, cell->largestSetpoint());
+  EXPECT_EQ(cell->cycle.report().mode, Mode::kRunning);
+  EXPECT_EQ(largest, 0);
+  std::destroy_at(cell);
+}
+
 /// Drives that are being set up may shake what carries the sensor.
 TEST(ControlCycleBoot, TaresOnceTheDrivesAreSetUp) {
   VirtualRobotCell cell(shippedScene("scenario1_null_space"));
@@ -66,6 +84,24 @@ TEST(ControlCycleBoot, TaresNeitherBeforeDrivesAreSetUpNorBeforeTheirPlacesAreKn
   }
   EXPECT_NE(cell.cycle.report().mode, Mode::kFault) << faultName(cell.cycle.report().fault);
   EXPECT_GT(early, 0) << "this test is blind";
+}
+
+/// Nor in a fault, whatever drives and joints say meanwhile: the next boot does it.
+TEST(ControlCycleBoot, TaresNotInAFault) {
+  Scene scene = shippedScene("scenario1_null_space");
+  scene.hardware->gpio.emplace().enable.emplace();
+  VirtualRobotCell cell(scene);
+  const CanRobot& robot = cell.cycle.robot();
+  while (!robot.drives().are_configured && !robot.hasPositions() && cell.t_ns < 4'000'000'000)
+    cell.step();
+  ASSERT_NE(robot.drives().are_configured, robot.hasPositions());
+  cell.input.lines.emergency_stop = true;
+  for (int i = 0; i < 1000; ++i) {
+    cell.step();
+    ASSERT_EQ(cell.cycle.report().mode, Mode::kFault);
+    ASSERT_EQ(robot.tactileModules()[0].tareState(), TareState::kNone) << i;
+  }
+  EXPECT_TRUE(robot.drives().are_configured && robot.hasPositions()) << "this test is blind";
 }
 
 TEST(ControlCycleBoot, RefusesAnArmThatIsNotAtTheStart) {

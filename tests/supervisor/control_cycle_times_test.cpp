@@ -40,6 +40,123 @@ TEST(ControlCycleTimes, DrivesHaveTwoSecondsToSwitchOn) {
   }
 }
 
+/// Control words of this one joint are others, as long as the test says.
+void holdPower(VirtualRobotCell& cell) {
+  cell.on_send = [](int bus, CanFrame& frame) {
+    if (bus == 1 && frame.id == 0x202 && frame.data[0] == 0x02) frame.data[0] = 0x07;
+    return true;
+  };
+}
+
+/// As long as to switch on, beside the ramp and what drives have to switch off by themselves.
+/// Cycles that were missed are a part of that.
+TEST(ControlCycleTimes, DrivesHaveTwoSecondsMoreToSwitchOff) {
+  for (const double brakes_s : {0.0, 0.15}) {
+    for (const int missed : {0, 7}) {
+      Scene scene = bareScene();
+      scene.hardware->gpio.emplace().brake.emplace();
+      scene.hardware->gpio->brake_switching_s = brakes_s;
+      scene.controller.limits.max_acceleration.setConstant(10.0);
+      VirtualRobotCell cell(scene);
+      ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+      holdPower(cell);
+      cell.input.stop_requested = true;
+      ASSERT_TRUE(cell.runUntil(Mode::kStopping, 1));
+      cell.input.missed_cycles = missed;
+      cell.step();
+      cell.input.missed_cycles = 0;
+      const int cycles = cyclesUntilFault(cell, Mode::kStopping) + missed;
+      const double ramp_s = scene.controller.limits.max_velocity.maxCoeff() / 10.0;
+      EXPECT_NEAR(cycles * scene.period_s,
+                  2.0 + brakes_s + ramp_s + scene.hardware->canopen.stop_deadline_s, 0.004);
+      EXPECT_EQ(cell.cycle.report().fault, Fault::kDriveStateLost);
+      EXPECT_EQ(cell.cycle.report().joint, 4);
+    }
+  }
+}
+
+/// Whatever a scene says of its joints.
+TEST(ControlCycleTimes, ARampHasHalfAMinuteAtMost) {
+  Scene scene = bareScene();
+  scene.controller.limits.max_acceleration = scene.controller.limits.max_velocity / 40.0;
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  holdPower(cell);
+  cell.input.stop_requested = true;
+  ASSERT_TRUE(cell.runUntil(Mode::kStopping, 1));
+  cell.input.missed_cycles = 1;
+  const int cycles = cyclesUntilFault(cell, Mode::kStopping);
+  EXPECT_NEAR(2 * cycles * scene.period_s, 2.0 + 30.0 + scene.hardware->canopen.stop_deadline_s,
+              0.005);
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kDriveStateLost);
+}
+
+/// Of slow joints, and whatever the period.
+TEST(ControlCycleTimes, ARetreatHasASecondAndAHalf) {
+  for (const double period_s : {0.0005, 0.001}) {
+    Scene scene = test::shippedScene("scenario1_null_space");
+    scene.period_s = period_s;
+    for (BusConfig& bus : scene.hardware->buses) bus.bit_rate_per_s = 4e6;  // for so many frames
+    scene.controller.limits.max_velocity.setConstant(0.005);
+    VirtualRobotCell cell(scene);
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 10'000)) << faultName(cell.cycle.report().fault);
+    cell.on_frame = [](int bus, CanFrame& frame) {
+      if (bus == 3 && frame.id == 0x100) frame.data[4] = 5;  // 3.3 N
+    };
+    for (int i = 0; i < 500; ++i) cell.step();
+    cell.on_frame = [](int bus, CanFrame& frame) {
+      if (bus == 3) frame.id = 0x7FF;
+    };
+    ASSERT_TRUE(cell.runUntil(Mode::kRetreating, 100));
+    int cycles = 0;
+    for (; cycles < 10'000 && cell.cycle.report().mode == Mode::kRetreating; ++cycles) cell.step();
+    EXPECT_NEAR(cycles * period_s, 1.5, 0.005) << period_s;
+  }
+}
+
+/// All follow at last, but for less than the brakes need: none of them is to blame.
+TEST(ControlCycleTimes, NoDriveIsNamedWhereAllFollowAtTheEnd) {
+  Scene scene = bareScene();
+  scene.hardware->gpio.emplace().brake.emplace();
+  scene.hardware->gpio->brake_switching_s = 0.15;
+  VirtualRobotCell cell(scene);
+  bool is_deaf = true;
+  cell.on_send = [&](int, CanFrame& frame) {
+    return !is_deaf || frame.id < 0x200 || frame.id >= 0x280;
+  };
+  ASSERT_TRUE(cell.runUntil(Mode::kEnabling, 5000));
+  for (int i = 0; i < 2050; ++i) cell.step();
+  is_deaf = false;
+  cyclesUntilFault(cell, Mode::kEnabling);
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kDriveStateLost);
+  EXPECT_EQ(cell.cycle.report().joint, -1);
+}
+
+/// In the very cycle in which time is over.
+TEST(ControlCycleTimes, NoDriveIsNamedWhereAllAreOffAtTheEnd) {
+  VirtualRobotCell stopping(bareScene());
+  ASSERT_TRUE(stopping.runUntil(Mode::kRunning, 5000));
+  holdPower(stopping);
+  stopping.input.stop_requested = true;
+  ASSERT_TRUE(stopping.runUntil(Mode::kStopping, 1));
+  VirtualRobotCell last = stopping;
+  const int cycles = cyclesUntilFault(last, Mode::kStopping);
+  for (int i = 0; i < cycles - 12; ++i) stopping.step();
+  int named = 0, unnamed = 0;
+  for (int before = 12; before >= 0; --before, stopping.step()) {
+    VirtualRobotCell cell = stopping;
+    cell.on_send = nullptr;
+    while (cell.cycle.report().fault == Fault::kNone && !cell.cycle.isFinished()) cell.step();
+    if (cell.cycle.isFinished()) continue;
+    ASSERT_EQ(cell.cycle.report().fault, Fault::kDriveStateLost);
+    const bool has_power = cell.cycle.robot().hasPower(4);
+    EXPECT_EQ(cell.cycle.report().joint, has_power ? 4 : -1);
+    ++(has_power ? named : unnamed);
+  }
+  EXPECT_GT(named, 0);
+  EXPECT_EQ(unnamed, 1);
+}
+
 /// Two seconds more than the drives' set-up may take, and the longest tare of a module.
 TEST(ControlCycleTimes, ModulesHaveTwoSecondsForTheirFirstSamples) {
   Scene scene = test::shippedScene("whole_arm/crops9_skin_two_links");

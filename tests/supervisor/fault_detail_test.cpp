@@ -22,6 +22,7 @@ ModeReport firstFault(VirtualRobotCell& cell) {
   for (int i = 0; i < 100 && cell.cycle.report().fault == Fault::kNone; ++i) cell.step();
   const ModeReport report = cell.cycle.report();
   EXPECT_EQ(report.time_s, cell.record().t_s);
+  EXPECT_EQ(cell.record().fault, static_cast<std::uint64_t>(report.fault));
   for (int i = 0; i < 50; ++i) cell.step();
   EXPECT_EQ(cell.cycle.report().time_s, report.time_s) << "it stays that of the fault";
   EXPECT_EQ(cell.cycle.report().detail.value, report.detail.value);
@@ -79,6 +80,8 @@ TEST(FaultDetails, OfAForceAtRestNameItsModule) {
     for (int i = 0; i < 100 && cell.cycle.report().fault == Fault::kNone; ++i) cell.step();
     EXPECT_EQ(cell.cycle.report().fault, Fault::kTactileInvalid);
     EXPECT_EQ(cell.cycle.report().detail.module, module++);
+    EXPECT_GT(cell.cycle.report().detail.value, cell.cycle.report().detail.limit);
+    EXPECT_STREQ(cell.cycle.report().detail.unit, "N");
   }
 }
 
@@ -90,6 +93,24 @@ TEST(FaultDetails, OfASampleTooOld) {
   EXPECT_GT(report.detail.value, report.detail.limit);
   EXPECT_LT(report.detail.value, report.detail.limit + 0.0015) << "the first cycle too old";
   EXPECT_STREQ(report.detail.unit, "s");
+}
+
+/// Just as old as it may be, it is none too old.
+TEST(FaultDetails, OfASampleTooOldByACycle) {
+  Scene scene = test::shippedScene("scenario1_multi_space");
+  double& max_age_s = scene.controller.tactile_modules[0].max_sample_age_s;
+  double before_s = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0) max_age_s = before_s;  // the age that was the first too old
+    VirtualRobotCell cell(scene);
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+    spoilFrames(cell, 3, 0x100, 0, 0x80);
+    const ModeReport report = firstFault(cell);
+    EXPECT_EQ(report.fault, Fault::kTactileStale);
+    const double expected_s = i > 0 ? before_s + scene.period_s : report.detail.value;
+    EXPECT_NEAR(report.detail.value, expected_s, 1e-9);
+    before_s = report.detail.value;
+  }
 }
 
 TEST(FaultDetails, OfAJointThatDoesNotFollow) {

@@ -92,6 +92,18 @@ TEST(GainWatch, LimitsOfSpeedCountFromHalfOfTheTime) {
   EXPECT_NEAR(watch.figure(), 0.5, 0.01);
 }
 
+/// A share of 1 is seen as 1 - exp(-t / 1 s).
+TEST(GainWatch, JudgesByTheLastSecond) {
+  GainWatch watch;
+  watch.pass(2.0, pressed);
+  watch.order();
+  double seen_s = 0.0;
+  for (; seen_s < 3.0 && watch.trouble() == GainTrouble::kNone; seen_s += kWatchPeriod_s)
+    watch.pass(kWatchPeriod_s, atLimit(1.0));
+  EXPECT_EQ(watch.trouble(), GainTrouble::kAtLimits);
+  EXPECT_NEAR(seen_s, std::log(2.0), 0.005);
+}
+
 /// Of the larger of both forces, of the gains that are kept.
 TEST(GainWatch, SwingsCountFromATenthOfTheForce) {
   EXPECT_EQ(troubleAfter(pressed, toAndFro(0.59)), GainTrouble::kNone);
@@ -118,7 +130,7 @@ TEST(GainWatch, RemembersTenSeconds) {
     for (const bool is_long_ago : {false, true}) {
       GainWatch watch;
       watch.pass(8.0, seen);
-      watch.pass(is_long_ago ? 30.0 : 1.0, pressed);
+      watch.pass(is_long_ago ? 4.2 : 2.0, pressed);  // less than 10 ln 1.3 and a second of both
       watch.order();
       watch.pass(12.0, seen);
       EXPECT_EQ(watch.trouble() == GainTrouble::kNone, !is_long_ago);

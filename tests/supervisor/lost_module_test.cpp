@@ -278,6 +278,23 @@ TEST(LostModule, LeavesAllElseToEndTheRunAsEver) {
   EXPECT_EQ(pressed.mode(), Mode::kFault);
 }
 
+/// What ends a stop is the drives' time, of which the module that was left out says nothing.
+TEST(LostModule, IsNotNamedWhereDrivesDoNotSwitchOff) {
+  SkinRun run(skinScene("go_on_slowly"));
+  run.cell.on_frame = kNoLink6;
+  run.step(300);
+  run.cell.on_send = [](int bus, CanFrame& frame) {
+    if (bus == 1 && frame.id == 0x202 && frame.data[0] == 0x02) frame.data[0] = 0x07;
+    return true;
+  };
+  run.cell.input.stop_requested = true;
+  ASSERT_TRUE(run.cell.runUntil(Mode::kFault, 10'000));
+  EXPECT_EQ(run.fault(), Fault::kDriveStateLost);
+  EXPECT_EQ(run.cell.cycle.report().joint, 4);
+  EXPECT_EQ(run.cell.cycle.report().detail.module, -1);
+  EXPECT_STREQ(run.cell.cycle.report().detail.unit, "");
+}
+
 /// It goes back to where the one that counts was last felt, not to where a lost one was.
 TEST(LostModule, DoesNotLengthenTheWayBack) {
   SkinRun run(skinScene("go_on_slowly"));

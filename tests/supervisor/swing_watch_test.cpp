@@ -82,6 +82,7 @@ TEST(SwingWatch, JudgesTheLastThreeByTheLeastOfThem) {
   EXPECT_EQ(leastOfSteps({2, 3, 2, 3, 2, 2.5625}, 1.0), 1.0);
   EXPECT_EQ(leastOfSteps({0, 4, 0.75, 3.5, 1}, 1.0), 2.75) << "they shrink slowly";
   EXPECT_EQ(leastOfSteps({0, 5, 1, 5, 1}, 1.0), 4.0) << "to just eight tenths";
+  EXPECT_EQ(leastOfSteps({0, 5, 0, 4, 0}, 1.0), 4.0) << "the newest to just as much";
   EXPECT_EQ(leastOfSteps({0, 4, 1, 4, 1}, 1.0), 0.0) << "to less";
   EXPECT_EQ(leastOfSteps({0, 4, 0, 3, 0}, 1.0), 0.0) << "so does the newest";
   EXPECT_EQ(leastOfSteps({0, 2, 1, 3.5, 1}, 1.0), 0.0) << "and the one between";
@@ -98,6 +99,19 @@ TEST(SwingWatch, WantsThreeSwings) {
 TEST(SwingWatch, ForgetsAfterASecondWithoutATurn) {
   EXPECT_EQ(leastOfSteps({2, 3, 2, 3, 2, 3}, 1.0, 0.95), 1.0);
   EXPECT_EQ(leastOfSteps({2, 3, 2, 3, 2, 3}, 1.0, 1.05), 0.0);
+}
+
+/// With a period whose sums have no rounding.
+TEST(SwingWatch, RemembersForOneSecondToTheCycle) {
+  constexpr double kTick = 1.0 / 1024.0;
+  SwingWatch watch;
+  for (const double force_N : {2.0, 3.0, 2.0, 3.0, 2.0, 3.0}) watch.update(force_N, 0.5, kTick);
+  for (int i = 0; i < 1024; ++i) {
+    watch.update(3.0, 0.5, kTick);
+    ASSERT_EQ(watch.swing_N(), 1.0) << i;
+  }
+  watch.update(3.0, 0.5, kTick);
+  EXPECT_EQ(watch.swing_N(), 0.0);
 }
 
 /// As a moving obstacle leaves it.

@@ -71,6 +71,35 @@ void pause(VirtualRobotCell& cell, int cycles) {
   cell.input.missed_cycles = 0;
 }
 
+/// One that ended in time is over, however old the sample was with which the motion began.
+TEST(ControlCycleTactileSilence, BeforeTheMotionIsNoPartOfALaterOne) {
+  Scene scene = test::shippedScene("scenario1_null_space");
+  scene.hardware->gpio.emplace().brake.emplace();
+  VirtualRobotCell booted(scene);
+  ASSERT_TRUE(booted.runUntil(Mode::kEnabling, 5000));
+  const auto mute = [](int bus, CanFrame& frame) {
+    if (bus == 3) frame.id = 0x7FF;
+  };
+  int cycles_to_run = 0;
+  for (VirtualRobotCell cell = booted; cell.cycle.report().mode != Mode::kRunning; cell.step())
+    ASSERT_LT(++cycles_to_run, 1000);
+  const auto cyclesOfSilence = [&](bool was_silent_before) {
+    VirtualRobotCell cell = booted;
+    for (int i = 0; i < cycles_to_run + 40; ++i) {
+      const bool is_silent = i > cycles_to_run - 12 && i < cycles_to_run + 2;
+      cell.on_frame = nullptr;
+      if (is_silent && was_silent_before) cell.on_frame = mute;
+      cell.step();
+    }
+    EXPECT_EQ(cell.cycle.report().mode, Mode::kRunning);
+    cell.on_frame = mute;
+    int cycles = 0;
+    for (; cycles < 100 && cell.cycle.report().fault == Fault::kNone; ++cycles) cell.step();
+    return cycles;
+  };
+  EXPECT_EQ(cyclesOfSilence(true), cyclesOfSilence(false));
+}
+
 /// What waited to be read while the loop paused is not of now, whenever it is read.
 TEST(ControlCycleTactileSilence, OfTheLoopItselfIsNotEndedByWhatHasWaitedMeanwhile) {
   Scene scene = test::shippedScene("scenario1_null_space");
@@ -104,6 +133,56 @@ TEST(ControlCycleTactileSilence, OfTheLoopItselfIsNotEndedByWhatHasWaitedMeanwhi
   paused.on_frame = nullptr;
   for (int i = 0; i < 5; ++i) paused.step();
   EXPECT_GT(paused.record().tactile_sequence[0], sequence);
+}
+
+Scene sceneThatBearsPauses() {
+  Scene scene = test::shippedScene("scenario1_null_space");
+  scene.hardware->gpio.emplace().brake.emplace();
+  scene.hardware->gpio->enable.emplace();
+  for (int bus = 0; bus < 3; ++bus) {
+    Trouble& trouble = scene.troubles.emplace_back();
+    trouble.kind = Trouble::Kind::kHeartbeatOnly;
+    trouble.until_s = 1e3;
+    trouble.bus = bus;
+  }
+  return scene;
+}
+
+/// The first sample that comes after what two cycles read is of now, and is taken at once.
+TEST(ControlCycleTactileSilence, OfTheLoopItselfEndsWithTheFirstSampleAfterIt) {
+  VirtualRobotCell running(sceneThatBearsPauses());
+  ASSERT_TRUE(running.runUntil(Mode::kRunning, 5000));
+  for (int i = 0; i < 1000; ++i) running.step();
+  int at_once = 0;
+  for (int phase = 0; phase < 4; ++phase, running.step()) {
+    VirtualRobotCell cell = running;
+    const auto newest = [&] { return cell.cycle.robot().tactileModules()[0].sample().sequence; };
+    pause(cell, 21);
+    cell.step();
+    const auto waited = newest();
+    int cycles = 0;
+    for (; cycles < 10 && newest() == waited; ++cycles) cell.step();
+    ASSERT_NE(newest(), waited);
+    EXPECT_EQ(cell.record().tactile_sequence[0], newest()) << phase;
+    at_once += cycles == 1 ? 1 : 0;
+  }
+  EXPECT_GT(at_once, 0);
+}
+
+/// An arm that waits for its start has time for a new sample; one that is about to move has none.
+TEST(ControlCycleTactileSilence, OfTheLoopItselfMattersOnceDrivesSwitchOn) {
+  VirtualRobotCell cell(sceneThatBearsPauses());
+  cell.input.lines.enable = false;
+  ASSERT_TRUE(cell.runUntil(Mode::kReady, 5000));
+  for (int i = 0; i < 10; ++i) cell.step();
+  pause(cell, 21);
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kNone);
+  for (int i = 0; i < 10; ++i) cell.step();
+  EXPECT_EQ(cell.cycle.report().mode, Mode::kReady);
+  cell.input.lines.enable = true;
+  ASSERT_TRUE(cell.runUntil(Mode::kEnabling, 5));
+  pause(cell, 21);
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kTactileStale);
 }
 
 }  // namespace

@@ -133,6 +133,28 @@ TEST(ToolOrdersLimits, AStreamThatLeadsNotOnBeginsAtTheTool) {
   }
 }
 
+/// Wherever the tool is in its base frame.
+TEST(ToolOrdersLimits, AStreamLeadsBackFromTheToolAndNotFromTheBase) {
+  for (const Vector3& place : {Vector3(0, 0, 0), Vector3(0, 0, 1), Vector3(-1, 2, -0.5)}) {
+    for (const bool leads_back : {false, true}) {
+      LimitsRig rig;
+      rig.motion = ToolMotion(Pose{Matrix3::Identity(), place});
+      rig.seen.X_BaseTool = {Matrix3::Identity(), place};
+      rig.tell(orderTo(place + Vector3(0.3, 0.0, 0.0), 1, kStreaming));
+      rig.pass(100);
+      ASSERT_GT(rig.place().x(), place.x());
+      rig.seen.progress = kHeldOff;
+      rig.pass(1);
+      ASSERT_EQ(rig.state(), ToolState::kBlocked);
+      const double x = leads_back ? -0.1 : 0.1;
+      rig.tell(orderTo(place + Vector3(x, 0.0, -5.0 * x), 1, kStreaming));
+      EXPECT_EQ((rig.place() - place).norm() < 1e-9, leads_back) << place;
+      EXPECT_EQ(rig.place().x() > place.x() + 1e-6, !leads_back) << place;
+      EXPECT_EQ(rig.state(), leads_back ? ToolState::kMoving : ToolState::kBlocked);
+    }
+  }
+}
+
 /// Whose clock runs freely is not held off, but for rounding.
 TEST(ToolOrdersLimits, AFreeToolGoesOnFromItsReference) {
   LimitsRig rig;
@@ -236,6 +258,23 @@ TEST(ToolOrdersLimits, OfThisRunAreObeyed) {
   EXPECT_EQ(rig.state(), ToolState::kMoving);
   rig.updateAt(rig.motion.end_s());
   EXPECT_EQ(rig.state(), ToolState::kArrived);
+}
+
+/// What is told after it begins at once, whatever pause was under way.
+TEST(ToolOrdersLimits, AStopEndsAPause) {
+  for (const double pause_s : {0.0, 10.0}) {
+    LimitsRig rig;
+    ToolOrder first = orderTo({0.1, 0.0, 0.0}, 1);
+    first.pause_s = pause_s;
+    rig.tell(first);
+    rig.updateAt(rig.motion.end_s());
+    ASSERT_EQ(rig.state(), ToolState::kArrived);
+    rig.seen.is_running = false;
+    rig.pass(3);
+    rig.seen.is_running = true;
+    rig.tell(orderTo({0.1, 0.1, 0.0}, 2, kBehind));
+    EXPECT_EQ(rig.orders.report(), (ToolReport{2, ToolState::kMoving, 0})) << pause_s;
+  }
 }
 
 /// A hold of a tool that is held off is another plan, which the log has to know.

@@ -1,0 +1,102 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "support/shipped_scene.h"
+#include "support/virtual_robot_cell.h"
+
+/// An arm that goes on after a hold, an e-stop or a start that was broken off.
+namespace tactus {
+namespace {
+
+using test::VirtualRobotCell;
+
+Scene stoppableScene() {
+  Scene scene = test::shippedScene("scenario1_null_space", {{"simulation.obstacles", "[]"}});
+  scene.hardware->gpio.emplace().brake.emplace();
+  scene.hardware->gpio->enable.emplace();
+  scene.hardware->gpio->brake_switching_s = 0.15;
+  return scene;
+}
+
+double fastestCommand(const VirtualRobotCell& cell) {
+  const CycleRecord record = cell.record();
+  return std::abs(*std::max_element(std::begin(record.dq), std::end(record.dq),
+                                    [](double a, double b) { return std::abs(a) < std::abs(b); }));
+}
+
+/// However soon the enable line is on again.
+TEST(StoppedArm, GoesOnFromAHoldOnlyOnceItRests) {
+  Scene scene = stoppableScene();
+  scene.controller.limits.max_acceleration.setConstant(0.02);
+  VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  for (int i = 0; i < 5000; ++i) cell.step();
+  cell.input.lines.enable = false;
+  cell.step();
+  cell.step();
+  cell.input.lines.enable = true;
+  int cycles = 0;
+  double fastest = 1.0;
+  for (; cycles < 10'000 && cell.cycle.report().mode != Mode::kRunning; ++cycles) {
+    ASSERT_EQ(cell.cycle.report().mode, Mode::kHolding);
+    fastest = fastestCommand(cell);
+    cell.step();
+  }
+  EXPECT_EQ(cell.cycle.report().mode, Mode::kRunning);
+  EXPECT_EQ(fastest, 0.0);
+  EXPECT_GT(cycles, 100) << "it hardly moved: this test is blind";
+}
+
+/// A stop may lead a joint farther than an arm may be from its start, but no farther than a stop
+/// leads: there it goes on.
+TEST(StoppedArm, GoesOnFromWhereEachDriveHasStoppedItsJoint) {
+  const Scene scene = stoppableScene();
+  VirtualRobotCell running(scene);
+  ASSERT_TRUE(running.runUntil(Mode::kRunning, 5000));
+  for (int i = 0; i < 2000; ++i) running.step();
+  running.input.lines.emergency_stop = true;
+  for (const int joint : {0, 4, 8}) {
+    VirtualRobotCell cell = running;
+    const double counts = scene.hardware->drives[joint].counts_per_unit;
+    const auto way = static_cast<std::int32_t>(1.5 * scene.hardware->start_tolerance * counts);
+    cell.on_frame = [=](int bus, CanFrame& frame) {
+      if (bus != joint / 3 || frame.id != 0x181U + static_cast<std::uint32_t>(joint % 3)) return;
+      std::int32_t position = 0;
+      std::memcpy(&position, frame.data.data() + 2, sizeof(position));
+      position += way;
+      std::memcpy(frame.data.data() + 2, &position, sizeof(position));
+    };
+    for (int i = 0; i < 500; ++i) cell.step();
+    ASSERT_TRUE(cell.areDrivesOff());
+    cell.input.lines.emergency_stop = false;
+    cell.switchEnable();
+    EXPECT_TRUE(cell.runUntil(Mode::kRunning, 4000))
+        << joint << " " << faultName(cell.cycle.report().fault);
+  }
+}
+
+/// That brakes were open once, before drives were off, is no reason to give drives power.
+TEST(StoppedArm, GetsNoPowerInALaterStartThatIsCutShort) {
+  VirtualRobotCell cell(stoppableScene());
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  cell.input.lines.emergency_stop = true;
+  for (int i = 0; i < 500; ++i) cell.step();
+  cell.input.lines.emergency_stop = false;
+  cell.switchEnable();
+  ASSERT_TRUE(cell.runUntil(Mode::kEnabling, 5000));
+  cell.step();
+  ASSERT_FALSE(cell.cycle.lines().release_brake);
+  cell.input.lines.enable = false;
+  for (int i = 0; i < 5; ++i) cell.step();  // what is on its way
+  for (int i = 0; i < 300; ++i) {
+    cell.step();
+    ASSERT_TRUE(cell.areDrivesLimp()) << i;
+  }
+  EXPECT_EQ(cell.cycle.report().mode, Mode::kReady);
+}
+
+}  // namespace
+}  // namespace tactus
