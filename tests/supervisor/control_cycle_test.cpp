@@ -123,6 +123,20 @@ TEST(ControlCycleBoot, RefusesAnArmThatIsNotAtTheStart) {
       << describeMode(cell.cycle.report(), scene);
 }
 
+/// Within its tolerance it starts from where it is: drives follow that, and not the scene's start.
+TEST(ControlCycleBoot, TakesAnArmForWhereItIs) {
+  Scene scene = shippedScene("scenario1_null_space");
+  VirtualRobotCell cell(scene);
+  const double off = 1.5 * scene.hardware->drives[4].max_following_error;
+  scene.hardware->start_tolerance = 2.0 * off;
+  scene.controller.q_start[4] += off;
+  cell.cycle = ControlCycle(scene.controller, *scene.hardware, scene.period_s);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000)) << faultName(cell.cycle.report().fault);
+  EXPECT_NEAR(cell.record().q[4], scene.controller.q_start[4] - off, 1e-3);
+  for (int i = 0; i < 100; ++i) cell.step();
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kNone) << faultName(cell.cycle.report().fault);
+}
+
 TEST(ControlCycleBoot, NamesTheDriveThatDoesNotAnswer) {
   const auto mute = [](VirtualRobotCell& cell) {
     cell.on_frame = [](int bus, CanFrame& frame) {
