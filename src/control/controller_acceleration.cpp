@@ -12,9 +12,9 @@ FreeAcceleration Controller::freeAcceleration(const Gains& gains, double path_ti
                                               ControllerState& state) const noexcept {
   const TaskKinematics& kinematics = prepared.kinematics;
   FreeAcceleration free;
-  free.v_before.setZero();
-  for (int i = 0; i < config_.chain.size(); ++i)
-    free.v_before[i] = state.velocity_before[i] / inv_sqrt_weights_[i];
+  free.v_before =
+      scaled(state.velocity_before.cwiseQuotient(inv_sqrt_weights_.head(config_.chain.size())),
+             ScaledVector::Ones());
   free.y_before = kinematics.pseudoinverse.project(free.v_before);
 
   const AttachedFrame& tip = config_.chain.tip();

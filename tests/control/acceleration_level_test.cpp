@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "support/controller_run.h"
 #include "support/rail_robot.h"
 
@@ -86,28 +88,57 @@ TEST(AccelerationLevel, MovesFreelyAsTheVelocityLevelDoes) {
   }
 }
 
-/// Next to no k_v has to bring the tool back: that joints which turn accelerate it is known.
+/// Next to no k_v has to bring the tool back: that joints which turn accelerate it is known. In
+/// position and, of nine joints, in orientation.
 TEST(AccelerationLevel, FollowsAPathThatTurnsItsJoints) {
   test::Random random(506);
   for (int i = 0; i < 10; ++i) {
-    ControllerConfig config = accelerationController(random, 7, 3, Variant::kNullSpace);
-    config.task.components = {0, 1, 2};
+    ControllerConfig config = accelerationController(random, 9, 3, Variant::kNullSpace);
+    const bool turns = i % 2 != 0;
+    config.task.components = turns ? std::array{3, 4, 5, 0, 1, 2} : std::array{0, 1, 2, 3, 4, 5};
     config.gains.force.velocity_gain_per_s = 1e-3;
     Waypoint there;
-    there.displacement_m = random.vector<Vector3>(3, -0.2, 0.2);
+    (turns ? there.rotation_vector_rad : there.displacement_m) =
+        random.vector<Vector3>(3, -0.2, 0.2);
     there.speed_m_per_s = 0.2;
     config.task.trajectory = {0.1, {there}};
     const Controller controller(config);
     ControllerState state = controller.initialState();
     ControllerOutput output;
-    double apart_m = 0.0;
+    double apart = 0.0;
     for (int cycle = 0; cycle < 2000; ++cycle) {
       controller.update({state.q_desired, {test::touchAt(0.2, 0.0, 0.0, cycle + 1)}},
                         controller.initialGains(), cycle * kCycle_s, kCycle_s, state, output);
-      apart_m = std::max(apart_m, output.error.norm());
+      apart = std::max(apart, output.error.norm());
     }
-    EXPECT_LT(apart_m, 5e-4) << i;
+    EXPECT_LT(apart, 5e-4) << i;
   }
+}
+
+/// The approach limit of null_limit is what v is led to by k_v: at once where that is large.
+TEST(AccelerationLevel, LimitsTheApproachAsTheVelocityLevelDoesWithALargeGain) {
+  ControllerConfig config = test::undelayedRail(0.05, 2000.0);
+  config.gains.force.max_null_speed_m_per_s = 1e-12;
+  config.gains.force.velocity_gain_per_s = 1e9;
+  const test::RailWorld world{2000.0, 0.01};
+  std::vector<double> forces_N;
+  for (const ControlLevel level : {ControlLevel::kVelocity, ControlLevel::kAcceleration}) {
+    config.force_control->level = level;
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    for (int cycle = 0; cycle < 2000; ++cycle) {
+      controller.update(world.input(state), config.gains, cycle * kCycle_s, kCycle_s, state,
+                        output);
+      const double force_N = world.force_N(state.q_desired);
+      if (level == ControlLevel::kVelocity) {
+        forces_N.push_back(force_N);
+      } else {
+        ASSERT_NEAR(force_N, forces_N[cycle], 0.02) << cycle;
+      }
+    }
+  }
+  EXPECT_NEAR(forces_N.back(), config.gains.force.activation_force_N, 0.01);
 }
 
 /// On a rail, where nothing turns, the way off the limits is that of the velocity level, whatever

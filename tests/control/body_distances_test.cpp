@@ -66,6 +66,27 @@ TEST(BodyDistances, FindEachThatIsNearerThanItsReach) {
   EXPECT_GT(cut, 5000);
 }
 
+/// Bars that are longer than they are apart touch at an end, far from their middles.
+TEST(BodyDistances, FindTheEndsOfLongBars) {
+  const SerialChain chain(std::vector<Joint>(2), {1, {}});
+  ClearanceConfig config;
+  for (const int joint : {1, -1}) {
+    LinkCapsule& bar = config.capsules.emplace_back();
+    bar.link.joint = joint;
+    bar.p_LinkTo = 3.0 * Vector3::UnitX();
+    bar.radius_m = 0.01;
+  }
+  config.capsules[1].link.X_JointFrame.p_AB = Vector3(3.1, 0.0, 0.0);
+  config.pairs = {{0, 1}};
+  const BodyDistances distances(chain, config);
+  ChainPose pose;
+  chain.computePose(JointVector::Zero(2), pose);
+  NearBodies near;
+  distances.findNear(pose, 0.1, near);
+  ASSERT_EQ(near.size, 1);
+  EXPECT_NEAR(near.body[0].distance_m, 0.08, 1e-12);
+}
+
 /// Where the nearest points jump, as of parallels, there is no gradient: such cases show in that
 /// the differences to both sides differ.
 TEST(BodyDistances, HaveTheGradientOfFiniteDifferences) {

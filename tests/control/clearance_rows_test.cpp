@@ -97,6 +97,7 @@ TEST(ClearanceRows, AreThoseOfTheEquation) {
     EXPECT_LT((row.a_task - rail.kinematics.pseudoinverse.project(row.a_scaled)).norm(), 1e-15);
   }
   EXPECT_EQ(rail.rows(kInfluence_m + 1e-9).size, 0);
+  EXPECT_EQ(rail.kinematics.near.size, 0) << "nobody has to look at it";
   rail.config.clearance->avoid = {0.3, 1.0};
   EXPECT_EQ(rail.rows(0.2).size, 0) << "near enough to be avoided alone";
   EXPECT_TRUE(rail.isKept(0.2, 9.0));
@@ -131,6 +132,10 @@ TEST(ClearanceRows, AreKeptByWhatGoesNoFaster) {
   EXPECT_FALSE(rail.isKept(0.06, 1.001 * v_max));
   EXPECT_TRUE(rail.isKept(0.06, -9.0)) << "away from it";
   EXPECT_TRUE(rail.isKept(0.2, 9.0)) << "far from it";
+  const double back = 5.0 * 0.0005 * (kInfluence_m - 0.0205) / (kInfluence_m - kSafe_m);
+  EXPECT_FALSE(rail.isKept(0.0205, 0.0)) << "the margin is lost";
+  EXPECT_FALSE(rail.isKept(0.0205, -0.999 * back));
+  EXPECT_TRUE(rail.isKept(0.0205, -1.001 * back));
   EXPECT_FALSE(rail.isKept(0.06, std::numeric_limits<double>::quiet_NaN()));
 }
 
@@ -154,6 +159,29 @@ TEST(ClearanceRows, AreNotAllThatTheGateKeeps) {
       EXPECT_EQ(l[0] > 0.0, excess > 0.0);
       EXPECT_NEAR(speedAlong(rows.row[0], 1, motion), -v_max - std::min(excess, 0.0), 1e-6);
     }
+  }
+}
+
+/// Nor are those of contacts: a joint near its limit is slowed far from all bodies as well.
+TEST(ClearanceRows, AreKeptWithThoseOfJointLimits) {
+  RailBeforeAWall rail;
+  rail.config.limits.lower.setConstant(-2.0);
+  rail.config.limits.upper.setConstant(2.0);
+  const JointVector q{{-2.0 + 0.1, 0.0}}, rest = JointVector::Zero(2);
+  MotionGate gate = rail.gateAt(0.5);
+  rail.look(*gate.clearance(), q);
+  ASSERT_EQ(rail.kinematics.near.size, 0);
+  const double allowed = std::min(5.0 * 0.1, std::sqrt(0.2 * 0.1)) / (1.0 - 0.1 / 0.25);
+  for (const double speed : {0.9 * allowed, 1.5 * allowed, 10.0 * allowed}) {
+    SpeedRows rows;
+    Motion motion;
+    motion.y.setZero();
+    motion.v_scaled = -speed / rail.inv_sqrt[0] * ScaledVector::Unit(0);
+    // No share of the joints' is asked for where an arm keeps clear.
+    gate.keep({q, rest, true}, rail.kinematics, 0.1, kRail_s, rows, motion);
+    const ScaledVector velocity = rail.inv_sqrt.cwiseProduct(
+        motion.v_scaled + rail.kinematics.pseudoinverse.expand(motion.y));
+    EXPECT_NEAR(velocity[0], -std::min(speed, allowed), 1e-6 * allowed);
   }
 }
 
@@ -193,6 +221,8 @@ TEST(ClearanceRows, HoldBackNoMoreThanIsNeeded) {
     EXPECT_LE(v[0], 60.0 * most * (1.0 + 1e-12)) << i;
     EXPECT_GT(v[0], 60.0 * (most - 1.0 / 32.0) - 1e-9) << i;
     EXPECT_NEAR(v[1], v[0] / 20.0, 1e-12) << "all joints together";
+    const double steps = v[0] / 60.0 * 32.0;
+    EXPECT_TRUE(v[0] == 60.0 || std::abs(steps - std::round(steps)) < 1e-9) << steps;
   }
 }
 

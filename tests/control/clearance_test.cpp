@@ -170,5 +170,67 @@ TEST(Clearance, LetsAnArmGoThatRestsOnItsLimits) {
   }
 }
 
+constexpr double kTurned_m = 0.5;
+constexpr double kTurningBall_m = 0.05;
+constexpr double kKept_m = 0.02;
+constexpr double kRowsFrom_m = 0.1;
+constexpr double kTurnCycle_s = 0.001;
+
+/// A ball at the end of an arm that turns about z: at 0 rad it moves straight to the wall.
+struct ArmBeforeAWall {
+  explicit ArmBeforeAWall(double distance_m)
+      : config{.chain = SerialChain(std::vector<Joint>(2), {1, {}})}, q(JointVector::Zero(2)) {
+    config.q_start = q;
+    config.limits = test::noLimits(2);
+    config.limits.max_acceleration.setConstant(10.0);
+    ClearanceConfig& clear = config.clearance.emplace();
+    LinkCapsule ball;
+    ball.link.joint = 0;
+    ball.p_LinkFrom = ball.p_LinkTo = kTurned_m * Vector3::UnitX();
+    ball.radius_m = kTurningBall_m;
+    clear.capsules = {ball};
+    clear.walls = {HalfSpace{(distance_m + kTurningBall_m) * Vector3::UnitY(), -Vector3::UnitY()}};
+    clear.wall_pairs = {{0, 0}};
+    clear.safe_distance_m = kKept_m;
+    clear.influence_distance_m = kRowsFrom_m;
+    clearance.emplace(config);
+    config.chain.computePose(q, kinematics.pose);
+    const ScaledVector ones = ScaledVector::Ones();
+    kinematics.pseudoinverse.factorise(TaskJacobian(TaskJacobian::Constant(1, 2, kTurned_m)), ones);
+    clearance->findNear(kinematics.pose, kinematics.near);
+  }
+
+  ControllerConfig config;
+  JointVector q;
+  std::optional<Clearance> clearance;
+  TaskKinematics kinematics;
+};
+
+/// 1 rad/s at 10 rad/s^2: 100 cycles, which add up to 50.5.
+const JointVector kTurn{{1.0, 0.0}};
+constexpr double kTurn_s = 0.0505;
+constexpr double kTurn_m = kTurned_m * kTurn_s;
+constexpr double kBend_m = 0.5 * kTurned_m * kTurn_s * kTurn_s;
+
+TEST(ClearanceOfAnArmThatTurns, HasRowsThatKnowHowItsWayBends) {
+  const ArmBeforeAWall arm(0.06);
+  SpeedRows rows;
+  arm.clearance->add(arm.kinematics.near, arm.kinematics, ScaledVector::Ones(), arm.q, kTurn,
+                     kTurnCycle_s, rows);
+  ASSERT_EQ(rows.size, 1);
+  EXPECT_NEAR(rows.row[0].v_max_m_per_s, 5.0 * (0.06 - kKept_m - 1e-3 - kBend_m) / 0.5, 1e-12);
+}
+
+/// It does not come nearer than the ball's own way, nor bend more than that; one bound is enough.
+TEST(ClearanceOfAnArmThatTurns, CanStopWhereItsWayIsNotTooLong) {
+  for (const double more_m : {-1e-6, 1e-6, 0.5 * kBend_m, kBend_m, 2.0 * kBend_m}) {
+    const ArmBeforeAWall arm(kKept_m + kTurn_m + more_m);
+    EXPECT_EQ(arm.clearance->canStopAfter(arm.kinematics.pose, arm.kinematics.near, arm.q, kTurn,
+                                          kTurnCycle_s),
+              more_m > 0.0)
+        << more_m;
+  }
+}
+
 }  // namespace
 }  // namespace tactus

@@ -108,6 +108,13 @@ TEST(LocateContact, BelievesAMomentAboutTheAxisOnlySoFar) {
   }
 }
 
+TEST(LocateContact, BelievesAMomentOfOneNewtonMetreToo) {
+  ContactPointState contact;
+  locateContact({0.0, 40.0, 0.0, 0.0, 1, 1.0}, tellingMomentX(), contact);
+  EXPECT_NEAR(contact.direction.y(), -0.5, 1e-12);  // 1 Nm / (0.05 m 40 N)
+  EXPECT_NEAR(contact.force_N, 40.0 * std::sqrt(0.75), 1e-9);
+}
+
 TEST(LocateContact, KeepsThePointOnTheLink) {
   ContactPointState contact;
   locateContact(test::touchAt(-0.3, 5.0, 0.3, 1), test::moduleOfLength(kLength_m), contact);

@@ -70,6 +70,21 @@ TEST(ContradictorySample, IsAFaultThatSaysHowFarOffThePushWouldBe) {
   }
 }
 
+TEST(ContradictorySample, MayLieAsFarOffAsTheCoverIsLong) {
+  TactileModuleConfig module = contradictedModule();
+  module.length_m = 0.5;
+  TactileReading reading;
+  // Of 16 N at 1 m, and at -0.5 m.
+  for (const double moment_Nm : {16.0, -8.0}) {
+    const TactileSample sample{16.0, 0.0, 0.0, moment_Nm, reading.sequence + 1};
+    EXPECT_EQ(readSample(module, sample, test::kPeriod_s, reading), Fault::kNone);
+    TactileSample beyond = sample;
+    ++beyond.sequence;
+    beyond.moment_z_Nm *= 1.001;
+    EXPECT_EQ(readSample(module, beyond, test::kPeriod_s, reading), Fault::kTactileInvalid);
+  }
+}
+
 TEST(ContradictorySample, IsNoneOfAForceThatIsNoise) {
   TactileReading reading;
   EXPECT_EQ(readOnce(test::touchAt(5.0, 9.9, 0.3, 1), reading), Fault::kNone);

@@ -173,7 +173,7 @@ TEST(ControllerFaults, CommandThatIsNoNumber) {
     }
     EXPECT_EQ(output.velocity.norm(), 0.0);
     EXPECT_FALSE(std::isfinite(output.fault_detail.value));
-    EXPECT_GE(output.fault_detail.joint, 0);
+    EXPECT_EQ(output.fault_detail.joint, 0) << "of all of them the first one";
     EXPECT_GT(output.fault_detail.limit, 0.0);
   }
 }

@@ -3,8 +3,9 @@
 #include <stdexcept>
 
 #include "support/controller_run.h"
+#include "support/rail_robot.h"
 
-/// A stage that a scene leaves out changes nothing for the others.
+/// A stage that a scene leaves out changes nothing for the others, and the last one is the limiter.
 namespace tactus {
 namespace {
 
@@ -109,6 +110,53 @@ TEST(ControllerStages, EveryStagePresentDoesChangeTheMotion) {
     }
     EXPECT_GT(different, 100) << "stage " << stage;
   }
+}
+
+/// Each joint's own part of it: the contact point is that of the first one.
+TEST(LimitedCommand, TellsTheLawWhatIsCutFromTheContactPointsWayOut) {
+  ControllerConfig config = test::railController(Variant::kNullSpace);
+  const Controller free(config);
+  config.limits.max_velocity << 1e-3, 1e3;
+  const Controller limited(config);
+  const RobotInput input{config.q_start, test::touchAt(0.5, 20.0, 0.0, 1)};
+  ControllerState free_state = free.initialState(), state = limited.initialState();
+  ControllerOutput free_output, output;
+  free.update(input, config.gains, 0.0, 1e-3, free_state, free_output);
+  limited.update(input, config.gains, 0.0, 1e-3, state, output);
+  ASSERT_GT(free_output.velocity[0], 0.01) << "this test is blind";
+  EXPECT_EQ(free_state.contact.cut_m_per_s, 0.0);
+  EXPECT_NEAR(state.contact.cut_m_per_s, free_output.velocity[0] - output.velocity[0], 1e-12);
+}
+
+/// As long as no module is lost there is nothing but the limiter, also where it has to brake joint
+/// by joint.
+TEST(LimitedCommand, IsThatOfTheLimiterAlone) {
+  test::Random random(249);
+  int cut = 0;
+  for (int i = 0; i < 300; ++i) {
+    ControllerConfig config = test::fullController(random, 7, Variant::kNone);
+    config.limits.max_velocity.setConstant(1e3);
+    config.limits.max_acceleration.setConstant(1e9);
+    const Controller free(config);
+    config.limits.max_velocity = random.vector(7, 0.02, 0.5);
+    config.limits.max_acceleration = random.vector(7, 1.0, 100.0);
+    const Controller limited(config);
+    ControllerState state = limited.initialState();
+    state.q_desired += random.vector(7, -0.1, 0.1);
+    const JointVector before =
+        config.limits.max_velocity.cwiseProduct(JointVector(random.vector(7, -1.0, 1.0)));
+    state.velocity_before = before;
+    ControllerState free_state = state;
+    const RobotInput input{state.q_desired, test::touchAt(0.2, 0.0, 0.0, 1)};
+    ControllerOutput wanted, output;
+    free.update(input, config.gains, 0.3, 1e-3, free_state, wanted);
+    limited.update(input, config.gains, 0.3, 1e-3, state, output);
+    JointVector expected = wanted.velocity;
+    CommandLimiter(config.limits).apply(output.q_desired, before, 1e-3, expected);
+    cut += expected != wanted.velocity;
+    ASSERT_EQ(output.velocity, expected) << i;
+  }
+  EXPECT_GT(cut, 100);
 }
 
 }  // namespace

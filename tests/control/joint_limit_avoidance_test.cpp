@@ -81,6 +81,15 @@ TEST(JointLimitAvoidance, GrowsTowardsTheNearerLimitOnly) {
   EXPECT_NEAR(at(2.5, 0.0)[0], 1.76, 1e-12);
 }
 
+TEST(JointLimitAvoidance, IsNoNearerThanTheLimitBeyondIt) {
+  JointLimits limits = test::noLimits(1);
+  limits.lower[0] = -1.0;
+  limits.upper[0] = 1.0;
+  const JointLimitAvoidance avoidance(limits, ScaledVector::Ones());
+  for (const double q : {1.0, 1.3, -1.3})
+    EXPECT_EQ(avoidance.evaluate(avoidance.zones({}), JointVector::Constant(1, q)).nearness, 1.0);
+}
+
 TEST(JointLimitAvoidance, IgnoresJointsWithoutLimits) {
   JointLimits limits = test::noLimits(3);
   limits.lower[1] = -1.0;  // one side alone has no middle

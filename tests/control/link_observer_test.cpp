@@ -47,6 +47,19 @@ TEST(LinkObserver, RingsAsTheLinkDoesAndComesToItsMotor) {
   }
 }
 
+/// A gear that damps takes its link along: M v = D (q_motor_dot - v) dt in the first step.
+TEST(LinkObserver, IsTakenAlongByTheMotorsSpeed) {
+  const SerialChain chain = crossedRails();
+  GearedLinks links{{{2.0}, {1.0}}, JointVector::Constant(2, 1e-9), JointVector{{30.0, 5.0}}};
+  constexpr double kStep_s = 0.01;
+  LinkObserverState state;
+  observeLinks(chain, links, JointVector::Zero(2), kStep_s, state);
+  const JointVector speed{{0.2, -0.1}};
+  observeLinks(chain, links, kStep_s * speed, kStep_s, state);
+  EXPECT_NEAR(state.velocity[0], 0.2 * 30.0 * kStep_s / (3.0 + 30.0 * kStep_s), 1e-9);
+  EXPECT_NEAR(state.velocity[1], -0.1 * 5.0 * kStep_s / (1.0 + 5.0 * kStep_s), 1e-9);
+}
+
 TEST(LinkObserver, StaysAtAMotorThatRestsAndStandsAnyGear) {
   const SerialChain chain = crossedRails();
   const JointVector motor{{0.3, -0.2}};

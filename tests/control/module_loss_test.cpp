@@ -221,5 +221,35 @@ TEST(ModuleLoss, EndsASecondAfterTheModuleIsBack) {
   EXPECT_EQ(speed_share, 1.0);
 }
 
+TEST(GoodModule, IsThereInTimeAndBelieved) {
+  TactileModuleConfig module;
+  module.max_sample_age_s = 0.02;
+  TactileReading reading;
+  reading.age_s = 0.02;
+  EXPECT_TRUE(isGood(reading, module)) << "as old as it may be";
+  reading.age_s = 0.021;
+  EXPECT_FALSE(isGood(reading, module));
+  reading.age_s = 0.0;
+  reading.is_lost = true;
+  EXPECT_FALSE(isGood(reading, module));
+  reading.is_lost = false;
+  reading.fault = Fault::kTactileInvalid;
+  EXPECT_FALSE(isGood(reading, module));
+}
+
+TEST(ModuleLoss, IsBorneUpToAPushThatIsReleased) {
+  TactileReading reading;
+  reading.hardest.force_N = 0.3;
+  EXPECT_TRUE(mayBeLost(reading, 0.3));
+  reading.contact.force_N = 0.31;
+  EXPECT_FALSE(mayBeLost(reading, 0.3));
+  reading.is_lost = true;
+  EXPECT_TRUE(mayBeLost(reading, 0.3)) << "what is lost stays so";
+  reading.has_excess = true;
+  EXPECT_TRUE(mayBeLost(reading, 0.3)) << "an excess of before the newest sample";
+  reading.fault = Fault::kTactileInvalid;
+  EXPECT_FALSE(mayBeLost(reading, 0.3)) << "it tells of a push";
+}
+
 }  // namespace
 }  // namespace tactus

@@ -51,6 +51,31 @@ TEST(ObstacleSpeed, IsLearntFromATenthOfTheLimitAboveTheActivationForce) {
   }
 }
 
+/// Where each of its conditions begins, of numbers that are exact.
+TEST(ObstacleSpeed, BeginsAboveItsLimitsAndNotAtThem) {
+  ForceGains gains;
+  gains.activation_force_N = 2.0;
+  gains.contact_threshold_N = 8.0;
+  gains.time_constant_s = 1.0;
+  const auto learnt = [&](double F_p_N, double m_N_per_m, int samples) {
+    ObstacleSpeedState state;
+    state.F_before_N = F_p_N;
+    for (int i = 0; i < samples; ++i)
+      followObstacle(gains, {F_p_N, m_N_per_m, -1e-4, 1.0, true}, state);
+    return state.v_m_per_s;
+  };
+  EXPECT_EQ(learnt(3.0, 1000.0, 9), 0.0) << "1 N is a tenth of 10 N";
+  EXPECT_GT(learnt(3.0625, 1000.0, 9), 0.0);
+  EXPECT_EQ(learnt(4.0, 1000.0, 3), 0.0) << "3 T";
+  EXPECT_GT(learnt(4.0, 1000.0, 4), 0.0);
+  EXPECT_GT(learnt(4.0, kSoftContact_N_per_m, 9), 0.0);
+  EXPECT_EQ(learnt(4.0, 1.001 * kSoftContact_N_per_m, 9), 0.0);
+  ObstacleSpeedState state;
+  state.v_m_per_s = 1e-4;
+  followObstacle(gains, {2.0, 1000.0, 0.0, 1.0, true}, state);
+  EXPECT_EQ(state.v_m_per_s, 1e-4) << "at the activation force it stays";
+}
+
 TEST(ObstacleSpeed, TakesTheChangeOfForceForAWayToo) {
   // The arm stands still, and the force rises by 1 mm/s.
   ObstacleSpeedState state;

@@ -64,11 +64,12 @@ TEST(PreparedCycle, IsUsedOnceOnly) {
   test::Random random(102);
   const Controller controller(test::fullController(random, 7, Variant::kNullTask));
   ControllerState state = controller.initialState();
+  state.waited_s = 0.25;
   PreparedCycle prepared;
-  controller.prepare(controller.initialGains(), 0.25, state, prepared);
+  controller.prepare(controller.initialGains(), 0.5, state, prepared);
   EXPECT_EQ(prepared.path_time_s, 0.25);
   ControllerOutput output;
-  controller.update({}, controller.initialGains(), 0.25, 0.001, prepared, state, output);
+  controller.update({}, controller.initialGains(), 0.5, 0.001, prepared, state, output);
   EXPECT_NE(prepared.path_time_s, prepared.path_time_s) << "NaN: for no time";
 }
 

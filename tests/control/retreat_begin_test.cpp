@@ -106,6 +106,8 @@ TEST(RetreatBegin, TakesAContactForAsSoftAsItMayBe) {
     EXPECT_EQ(arm.begin().stiffness_N_per_m, has_estimator ? assumed / 10.0 : assumed / 8.0);
     arm.state.contact.estimator.stiffness_N_per_m = assumed;
     EXPECT_EQ(arm.begin().stiffness_N_per_m, assumed / 8.0);
+    arm.state.contact.estimator.stiffness_N_per_m = 0.9;
+    EXPECT_EQ(arm.begin().stiffness_N_per_m, has_estimator ? 0.45 : assumed / 8.0);
   }
   Struck limit(skinOf(Variant::kNullLimit, true, 1));
   limit.state.modules[0].hardest = pushOf(5.0, 0.2);

@@ -47,6 +47,29 @@ TEST(RetreatRows, LeaveByTheNullSpaceMostly) {
     EXPECT_NEAR(arm.output.velocity[1], -14.5 / 15.5 * arm.output.velocity[0], 1e-9);
     EXPECT_NEAR(arm.state.retreat.way, kPeriod_s * kPeriod_s * i * (i + 1), 1e-9);
   }
+  EXPECT_TRUE(arm.state.retreat.has_moved);
+  arm.controller.goOn(config.gains, arm.state);
+  EXPECT_EQ(arm.state.return_share, 0.0) << "it comes back to its path gently";
+}
+
+/// An arm that goes slowly without a module leaves contacts as fast as ever.
+TEST(RetreatRows, AreAsFastWhileAModuleIsLost) {
+  ControllerConfig config = test::railController(Variant::kNullSpace);
+  config.gains.force.contact_threshold_N = 1.2;
+  config.limits.max_velocity.setConstant(1.0);
+  config.module_loss = ModuleLossConfig{0.3};
+  for (const double share : {1.0, 0.3}) {
+    LeavingArm arm(config);
+    arm.state.speed_share = share;
+    arm.state.modules[0].unproven_s = share < 1.0 ? 1.0 : 0.0;
+    arm.state.modules[0].hardest = pushAt(0.5, 5.0, M_PI);
+    arm.begin();
+    arm.step(test::touchAt(0.5, 5.0, M_PI, 1));
+    arm.state.retreat.speed = 0.9;
+    arm.step(test::touchAt(0.5, 5.0, M_PI, 2));
+    EXPECT_EQ(arm.output.speed_share, share);
+    EXPECT_NEAR(arm.output.velocity[0], -0.9 - 2.0 * kPeriod_s, 1e-9);
+  }
 }
 
 /// Along the push as it was, by differences of the point's position alone, though the link turns.

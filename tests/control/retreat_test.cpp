@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/period.h"
 #include "support/random.h"
 
@@ -100,6 +102,42 @@ TEST(RetreatWay, WithoutReadingsFollowsFromWhatWasKnown) {
   }
 }
 
+/// It could stand by the end of its way at 2 m/s^2.
+TEST(RetreatWay, WithoutReadingsSlowsDownToItsEnd) {
+  Carriage carriage({50.0, 1000.0, 0.0, 0.0});
+  double fastest = 0.0;
+  while (!carriage.state.is_over) {
+    const double left_m = std::max(0.0, carriage.state.way_to - carriage.state.way);
+    carriage.step(silence());
+    fastest = std::max(fastest, carriage.state.speed);
+    ASSERT_LE(carriage.state.speed, std::sqrt(2.0 * 2.0 * left_m) + 1e-12);
+  }
+  EXPECT_EQ(fastest, 0.25);
+}
+
+/// Where samples end, the rest of the way is that of the last one felt.
+TEST(RetreatWay, GoesOnByTheLastSampleOnceTheModuleIsSilent) {
+  Carriage carriage({90.0, 1000.0, 0.0, 0.0});
+  for (int i = 0; i < 60; ++i) carriage.step(felt(90.0 - i));
+  const double felt_m = carriage.state.way - kPeriod_s * carriage.state.speed;
+  carriage.run([](int) { return silence(); });
+  EXPECT_NEAR(carriage.state.way, felt_m + 31.0 / 1000.0 + 0.02, 5e-4);
+}
+
+/// 30 mm of way without an answer count from where a contact was felt first, or again.
+TEST(RetreatWay, OfASensorThatAnswersNothingIsShortFromWhereItFelt) {
+  for (const RetreatReading& first : {silence(), felt(kThreshold_N)}) {
+    Carriage carriage({50.0, 1000.0, 0.0, 0.0});
+    if (first.is_new)
+      while (carriage.state.way < 0.02) carriage.step(felt(150.0));
+    for (int i = 0; i < 100; ++i) carriage.step(first);
+    const double felt_m = carriage.state.way;
+    ASSERT_GT(felt_m, 0.009);
+    carriage.run([](int) { return felt(200.0); });
+    EXPECT_NEAR(carriage.state.way, felt_m + 0.03, 0.0005);
+  }
+}
+
 TEST(RetreatWay, GoesOnByFeelingOnceTheModuleIsBack) {
   Carriage carriage({50.0, 1e6, 0.0, 0.0});
   const auto now_N = [&] { return std::max(0.0, 50.0 - 1000.0 * carriage.state.way); };
@@ -119,6 +157,10 @@ TEST(RetreatWay, BackIsAsLongAsItIsTold) {
   startWayBack(0.05, carriage.state);
   const int cycles = carriage.run([](int) { return silence(); });
   EXPECT_NEAR(cycles * kPeriod_s, 0.05, 2.0 * kPeriod_s);
+  Carriage stays({}, false);
+  startWayBack(0.0, stays.state);
+  stays.run([](int) { return silence(); });
+  EXPECT_EQ(stays.state.way, 0.0);
 }
 
 TEST(RetreatWay, GivesWayToWhatComesAfterIt) {
@@ -147,12 +189,17 @@ TEST(RetreatWay, EndsOnceNothingPressedForAFifthOfASecond) {
   EXPECT_FALSE(carriage.state.is_over);
   for (int i = 0; i < 3; ++i) carriage.step(felt(kThreshold_N));
   EXPECT_TRUE(carriage.state.is_over);
+  RetreatState exact;
+  for (int i = 1; i <= 3; ++i) {
+    retreatSpeed(felt(0.0), kThreshold_N, 0.1, exact);
+    EXPECT_EQ(exact.is_over, i == 3) << "beyond 0.2 s";
+  }
 }
 
 TEST(RetreatWay, GoesOnFromWhereTheForceFellByANewton) {
-  for (const bool answers : {false, true}) {
+  for (const double later_N : {149.01, 149.0}) {
+    const bool answers = later_N == 149.0;
     Carriage carriage({150.0, 1000.0, 0.0, 0.0});
-    const double later_N = answers ? 148.99 : 149.01;
     carriage.run([&](int) { return felt(carriage.state.way < 0.02 ? 150.0 : later_N); });
     EXPECT_NEAR(carriage.state.way, answers ? 0.05 : 0.03, 0.0015);
   }
@@ -177,12 +224,14 @@ TEST(RetreatWay, FeelsAsLongAsItsSampleMayBeOld) {
   EXPECT_TRUE(carriage.state.is_felt);
   carriage.step({false, true, kMaxAge_s, kMaxAge_s, 0.0});
   EXPECT_TRUE(carriage.state.is_felt);
+  EXPECT_FALSE(carriage.state.is_free) << "no sample has said so";
   carriage.step({false, true, 1.01 * kMaxAge_s, kMaxAge_s, 0.0});
   EXPECT_FALSE(carriage.state.is_felt);
   carriage.step(felt(50.0));
   EXPECT_TRUE(carriage.state.is_felt);
-  carriage.step({true, false, 0.0, kMaxAge_s, 50.0});
+  carriage.step({true, false, 0.0, kMaxAge_s, 0.0});
   EXPECT_FALSE(carriage.state.is_felt);
+  EXPECT_FALSE(carriage.state.is_free) << "nor has one that cannot be read";
 }
 
 TEST(RetreatWay, ThatIsOverStaysSo) {

@@ -48,6 +48,17 @@ TEST(ReturnSpeed, IsCappedWithItsDirectionKept) {
   EXPECT_GT(capped, 500);
 }
 
+TEST(ReturnSpeed, IsCappedAtOneMetrePerSecondToo) {
+  TaskConfig task;
+  task.components = {0};
+  task.size = 1;
+  TaskGains gains;
+  gains.max_return_speed_m_per_s = 0.25;
+  TaskVector correction = TaskVector::Ones(1);
+  limitReturnSpeed(gains, task, {}, correction);
+  EXPECT_EQ(correction[0], 0.25);
+}
+
 /// In contact the law holds the correction off: together they are no faster than the key.
 TEST(ReturnSpeed, IsThatOfTheToolWhichTheLawPushes) {
   TaskConfig task;

@@ -129,6 +129,8 @@ TEST(Excess, IsOfAReadingThatMayBeOne) {
   EXPECT_NEAR(reading.detail.value, 1001.0, 1e-9);
   EXPECT_TRUE(hasExcess(0.999e6));
   EXPECT_FALSE(hasExcess(1.001e6));
+  readSample(module, {1e6, 0.0, 0.0, 0.0, ++sequence}, test::kPeriod_s, reading);
+  EXPECT_FALSE(reading.has_excess) << "exactly";
   EXPECT_EQ(reading.fault, Fault::kTactileInvalid);
   EXPECT_FALSE(hasExcess(std::nan("")));
   EXPECT_FALSE(hasExcess(5.0));
@@ -146,6 +148,16 @@ TEST(HardestPush, AnInvalidSampleLeavesItButForWhatFades) {
   for (int i = 3; i < 2000; ++i)
     readSample(module, test::touchAt(0.1, 1e4, -2.0, i), test::kPeriod_s, reading);
   EXPECT_LT(reading.hardest.force_N, 1e-6) << "two seconds later nothing of it is left";
+}
+
+TEST(SampleAge, IsThatAPeriodAfterTheLastCycle) {
+  TactileReading reading;
+  const TactileModuleConfig module = moduleThatFilters(15.0);
+  readSample(module, {1.0, 0.0, 0.0, 0.0, 7}, 0.001, reading);
+  EXPECT_EQ(sampleAge_s({1.0, 0.0, 0.0, 0.0, 7}, 0.001, reading), 0.001);
+  readSample(module, {1.0, 0.0, 0.0, 0.0, 7}, 0.25, reading);
+  EXPECT_EQ(sampleAge_s({1.0, 0.0, 0.0, 0.0, 7}, 0.5, reading), 0.75);
+  EXPECT_EQ(sampleAge_s({1.0, 0.0, 0.0, 0.0, 8}, 0.5, reading), 0.0) << "a new one has come";
 }
 
 }  // namespace

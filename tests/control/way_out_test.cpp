@@ -205,6 +205,7 @@ TEST(PreparedState, OfAnotherStateIsNotUsed) {
   const Change changes[] = {[](ControllerState& s) { s.q_desired[2] += 1e-3; },
                             [](ControllerState& s) { s.contact.push.setConstant(0.005); },
                             [](ControllerState& s) { s.return_share = 0.04; },
+                            [](ControllerState& s) { s.return_share = 1.0; },
                             [](ControllerState& s) { s.is_leaning = true; },
                             [](ControllerState& s) { s.waited_s = 0.02; }};
   for (const Change change : changes) {
@@ -213,6 +214,14 @@ TEST(PreparedState, OfAnotherStateIsNotUsed) {
     const ControllerOutput output = run(changed, ahead);
     test::expectSame(output, run(changed, {}));
     EXPECT_NE(output.velocity, expected.velocity) << "it makes no difference: this test is blind";
+    // Nor is it taken for that of a state which the same work had been done for before.
+    PreparedCycle other = ahead;
+    other.q_desired = before.q_desired;
+    other.push = before.contact.push;
+    other.return_share = before.return_share;
+    other.is_leaning = before.is_leaning;
+    controller.prepare(config.gains, 0.3, changed, other);
+    test::expectSame(run(before, other), expected);
   }
 }
 
