@@ -63,6 +63,24 @@ TEST(ModuleLoss, IsBorneByAnArmThatMoves) {
   EXPECT_FALSE(Controller(strict).goesOnWithout(1, strict.gains, arm.state));
 }
 
+/// In 0.2 s from all to nothing, as far as the share; and back once the module was good for 1 s.
+TEST(ModuleLoss, SlowsTheArmUntilTheModuleHasProvenItself) {
+  SkinArm arm(83);
+  const auto run = [&](bool speaks, int cycles) {
+    for (int i = 0; i < cycles; ++i) arm.step({speaks, true, true});
+    return arm.output.speed_share;
+  };
+  EXPECT_EQ(run(true, 50), 1.0);
+  int silent = 0;
+  while (arm.output.modules_lost == 0 && silent++ < 50) run(false, 1);
+  EXPECT_NEAR(run(false, 100), 0.5, 0.011);
+  EXPECT_EQ(run(false, 100), kSlowShare);
+  EXPECT_EQ(run(true, 998), kSlowShare);
+  EXPECT_NEAR(run(true, 100), kSlowShare + 0.5, 0.021);
+  EXPECT_EQ(run(true, 100), 1.0);
+  EXPECT_EQ(arm.output.modules_lost, 0u);
+}
+
 /// What stops the arm is the module that was good until then, else the first of those that tell of
 /// a push.
 TEST(ModuleLoss, IsNotBlamedForTheFaultOfAnother) {

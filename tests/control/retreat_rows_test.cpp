@@ -107,6 +107,23 @@ TEST(RetreatRows, MoveThePointAlongItsPush) {
   }
 }
 
+/// Without samples, as far as what was known when it began says: also where it moved outwards then.
+TEST(RetreatRows, LeaveWithoutSamplesByWhatWasKnown) {
+  ControllerConfig config = test::railController(Variant::kNullSpace);
+  config.gains.force.contact_threshold_N = 1.2;
+  config.gains.force.assumed_stiffness_N_per_m = 8000.0;
+  LeavingArm arm(config);
+  arm.state.modules[0].hardest = pushAt(0.5, 5.0, M_PI);
+  arm.state.velocity_before << -0.1, 0.0;
+  arm.begin();
+  const double expected_m = 5.0 / 1000.0 + 0.1 * arm.state.retreat.untold_s + 0.02;
+  ASSERT_LT(expected_m, 0.09);
+  for (int i = 0; i < 1000; ++i) arm.step({});
+  EXPECT_TRUE(arm.state.retreat.is_over);
+  EXPECT_NEAR(arm.state.retreat.way_to, expected_m, 1e-12);
+  EXPECT_NEAR(arm.state.retreat.way, expected_m, 1e-3);
+}
+
 /// Joints come to their limits on the way out as slowly as ever.
 TEST(RetreatRows, KeepJointsOffTheirLimits) {
   ControllerConfig config = test::railController(Variant::kNullSpace);
