@@ -152,7 +152,8 @@ TEST(WatchedSensors, AreKnownToTheNextCycle) {
   EXPECT_EQ(arm.state.modules[1].sequence, 9u);
   EXPECT_NEAR(arm.state.modules[1].contact.force_N, 5.0, 1e-12);
   EXPECT_NEAR(arm.state.modules[1].age_s, 2 * kPeriod_s, 1e-15);
-  EXPECT_NEAR(arm.state.modules[2].age_s, 3 * kPeriod_s, 1e-15);
+  for (const int silent : {0, 2})
+    EXPECT_NEAR(arm.state.modules[silent].age_s, 3 * kPeriod_s, 1e-15);
   const FaultDetail age = arm.controller.sampleAge(1, input, kPeriod_s, arm.state);
   EXPECT_NEAR(age.value, 3 * kPeriod_s, 1e-15);
   EXPECT_EQ(age.limit, arm.config.tactile_modules[1].max_sample_age_s);

@@ -80,6 +80,8 @@ TEST(RetreatBegin, TakesAnExcessForWhatWasNotFeltBefore) {
   reading.fault = Fault::kNone;
   EXPECT_FALSE(arm.begin().has_push) << "it is over";
   reading.fault = Fault::kTactileInvalid;
+  reading.hardest = pushOf(arm.config.gains.force.contact_threshold_N, 0.1);
+  EXPECT_EQ(arm.begin().push.force_N, 400.0) << "that was none yet";
   reading.hardest = pushOf(2.0, 0.1);
   EXPECT_EQ(arm.begin().push.position_m, 0.1) << "where a contact was felt before it";
 }

@@ -150,10 +150,16 @@ TEST(RetreatWay, EndsInTimeWhereTheArmCannotMove) {
   carriage.state.row.setZero();
   carriage.run([](int) { return felt(150.0); });
   EXPECT_NEAR(carriage.state.time_s, kMaxRetreat_s, 2.0 * kPeriod_s);
+  RetreatState exact;
+  for (int i = 1; i <= 4; ++i) {
+    retreatSpeed(felt(150.0), kThreshold_N, 0.5, exact);
+    EXPECT_EQ(exact.is_over, i == 4) << "beyond 1.5 s";
+  }
 }
 
 TEST(RetreatWay, BackIsAsLongAsItIsTold) {
   Carriage carriage({}, false);
+  carriage.state.way = 0.3;  // of another one
   startWayBack(0.05, carriage.state);
   const int cycles = carriage.run([](int) { return silence(); });
   EXPECT_NEAR(cycles * kPeriod_s, 0.05, 2.0 * kPeriod_s);
