@@ -44,5 +44,15 @@ TEST(PathProgress, IsANumberForEveryLag) {
   EXPECT_EQ(pathProgress(0.0, kTiny), 1.0);
 }
 
+/// Its rotation may lag as it will.
+TEST(ToolLag, IsThatOfThePosition) {
+  TaskConfig task;
+  task.components = {4, 2, 0, 3, 5, 1};
+  task.size = 5;
+  PaddedTaskVector error = PaddedTaskVector::Zero();
+  error.head<5>() << 0.7, 0.03, -0.04, 0.8, 0.9;
+  EXPECT_NEAR(toolLag_m(task, error), 0.05, 1e-15);
+}
+
 }  // namespace
 }  // namespace tactus
