@@ -178,7 +178,7 @@ constexpr double kTurnCycle_s = 0.001;
 
 /// A ball at the end of an arm that turns about z: at 0 rad it moves straight to the wall.
 struct ArmBeforeAWall {
-  explicit ArmBeforeAWall(double distance_m)
+  explicit ArmBeforeAWall(double distance_m, const Vector3& to_wall = Vector3::UnitY())
       : config{.chain = SerialChain(std::vector<Joint>(2), {1, {}})}, q(JointVector::Zero(2)) {
     config.q_start = q;
     config.limits = test::noLimits(2);
@@ -189,7 +189,8 @@ struct ArmBeforeAWall {
     ball.p_LinkFrom = ball.p_LinkTo = kTurned_m * Vector3::UnitX();
     ball.radius_m = kTurningBall_m;
     clear.capsules = {ball};
-    clear.walls = {HalfSpace{(distance_m + kTurningBall_m) * Vector3::UnitY(), -Vector3::UnitY()}};
+    clear.walls = {HalfSpace{
+        to_wall.dot(ball.p_LinkTo) * to_wall + (distance_m + kTurningBall_m) * to_wall, -to_wall}};
     clear.wall_pairs = {{0, 0}};
     clear.safe_distance_m = kKept_m;
     clear.influence_distance_m = kRowsFrom_m;
@@ -229,6 +230,17 @@ TEST(ClearanceOfAnArmThatTurns, CanStopWhereItsWayIsNotTooLong) {
                                           kTurnCycle_s),
               more_m > 0.0)
         << more_m;
+  }
+}
+
+/// Along the wall at first: what brings it nearer is how its way bends.
+TEST(ClearanceOfAnArmThatTurns, CanStopWhereItsWayDoesNotBendTooFar) {
+  for (const double bends : {0.5, 0.99, 1.01, 1.5}) {
+    const ArmBeforeAWall arm(kKept_m + bends * kBend_m, Vector3::UnitX());
+    EXPECT_EQ(arm.clearance->canStopAfter(arm.kinematics.pose, arm.kinematics.near, arm.q, kTurn,
+                                          kTurnCycle_s),
+              bends > 1.0)
+        << bends;
   }
 }
 
