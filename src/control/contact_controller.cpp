@@ -14,12 +14,8 @@ namespace {
 const ContactPointState& holdLost(const ForceGains& gains, const ContactPointState& sensor,
                                   ContactControllerState& state) noexcept {
   ContactPointState& contact = state.contact;
-  if (sensor.force_N > gains.contact_threshold_N || !state.transition.touched) {
-    contact = sensor;
-  } else {
-    contact.force_N = sensor.force_N;
-    contact.interval_s = sensor.interval_s;
-  }
+  if (sensor.force_N > gains.contact_threshold_N || !state.transition.touched) contact = sensor;
+  contact.force_N = sensor.force_N;
   return contact;
 }
 
@@ -30,7 +26,6 @@ void goOn(const Vector3& p_BaseContact, bool is_touching, ContactControllerState
   state.transition = {is_touching, p_BaseContact, gamma};
   state.joint_space_transition.touching = is_touching;
   state.joint_space_transition.gamma = gamma;
-  state.joint_space_transition.p_BaseLost = p_BaseContact;
 }
 
 void rememberPush(bool pushes, const WeightedPseudoinverse& pseudoinverse,

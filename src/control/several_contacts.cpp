@@ -149,8 +149,7 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
   if (reading.is_lost) {
     contact.force_N = 0.0;
     state.approach.position = {};  // else all of its absence were one way to its next sample
-    state.haste = 1.0;
-    state.transition = {};
+    state.transition = {};         // so that the next contact is a new one
   }
   locate(kinematics, module, contact, place);
   const double F_p_N = contactForce_N(gains.force, state);
@@ -232,7 +231,6 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
     if (approach.smoother.contact.force_N <= most_N) continue;
     most_N = approach.smoother.contact.force_N;
     leading = i;
-    motion.a = place.a;
   }
   const int contacts = rows.size;
   gate.add(commanded, kinematics, 1.0, period_s, rows);
