@@ -124,6 +124,63 @@ TEST_F(ApproachEstimate, UnloadingTellsTheStiffnessToo) {
   EXPECT_NEAR(c(), kAssumed + kKappa * (500.0 - kAssumed), 1e-9);
 }
 
+/// Else every sample of the way back would be one more quotient of the same change.
+TEST_F(ApproachEstimate, UnloadingCountsFromWhereItWasLastLearntOf) {
+  touch(3.0, 1e-3);
+  touch(2.5, -1e-3);
+  EXPECT_EQ(state_.F_ref_N, 2.5);
+  EXPECT_EQ(state_.x_m, 0.0);
+  const double before = c();
+  touch(2.4, -1e-4);
+  EXPECT_EQ(c(), before) << "0.1 N more mean nothing";
+}
+
+TEST_F(ApproachEstimate, UnloadingCountsFromWhereTheWayTurned) {
+  touch(3.0, 1e-3);
+  touch(3.1, 1e-3);  // on, by less than what means anything
+  touch(2.6, -1e-3);
+  EXPECT_NEAR(state_.stiffness_raw_N_per_m, 500.0, 1e-9) << "0.5 N over 1 mm";
+}
+
+TEST_F(ApproachEstimate, AShortWayBackTellsNothing) {
+  for (const double way_m : {40e-6, 50e-6}) {
+    state_ = assumedApproach();
+    touch(3.0, 1e-3);
+    touch(2.5, -way_m);
+    EXPECT_EQ(state_.stiffness_raw_N_per_m, 3000.0);
+    touch(2.5, -20e-6);
+    EXPECT_NEAR(state_.stiffness_raw_N_per_m, 0.5 / (way_m + 20e-6), 1e-6) << "together they do";
+  }
+}
+
+/// As of an obstacle that follows the arm.
+TEST_F(ApproachEstimate, ForceThatRisesOnTheWayBackOnlyRearms) {
+  touch(3.0, 1e-3);
+  touch(3.5, -1e-3);
+  EXPECT_EQ(state_.stiffness_raw_N_per_m, 3000.0);
+  EXPECT_EQ(state_.F_ref_N, 3.5);
+  EXPECT_EQ(state_.x_m, 0.0);
+}
+
+TEST_F(ApproachEstimate, AChangeNoLargerThanNoiseIsNone) {
+  touch(2.0 * kMin_N, 1e-3);
+  const double raw = state_.stiffness_raw_N_per_m;
+  touch(kMin_N, -1e-3);
+  EXPECT_EQ(state_.stiffness_raw_N_per_m, raw);
+  EXPECT_EQ(state_.x_m, -1e-3) << "it goes on";
+  state_ = assumedApproach();
+  state_.F_ref_N = kMin_N;
+  touch(2.0 * kMin_N, -1e-3);
+  EXPECT_EQ(state_.F_ref_N, kMin_N);
+  state_.x_m = 0.0;
+  state_.F_ref_N = 2.0 * kMin_N;
+  touch(kMin_N, 1e-3);
+  EXPECT_EQ(state_.x_m, 1e-3) << "not re-armed";
+  state_ = assumedApproach();
+  touch(0.1, 50e-6);
+  EXPECT_EQ(state_.stiffness_raw_N_per_m, kAssumed) << "nor is the shortest way long enough";
+}
+
 TEST_F(ApproachEstimate, UnloadingNeverRaises) {
   touch(3.0, 1e-3);
   touch(0.5, -51e-6);  // 49 kN/m
@@ -144,6 +201,7 @@ TEST_F(ApproachEstimate, ForgetsWithoutContact) {
   ASSERT_NEAR(c(), 3e4, 1e-8);
   for (int i = 0; i < 1000; ++i) forgetContact({}, 0.001, state_);
   EXPECT_NEAR(c(), kAssumed + (3e4 - kAssumed) * std::exp(-1.0), 1e-6);
+  EXPECT_EQ(state_.stiffness_raw_N_per_m, c());
   EXPECT_EQ(state_.x_m, 0.0);
   EXPECT_EQ(state_.F_ref_N, 0.0);
   EXPECT_EQ(state_.F_before_N, 0.0);

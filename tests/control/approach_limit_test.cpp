@@ -153,6 +153,8 @@ TEST(ApproachLimit, CutsExactlyTheExcessByHand) {
   EXPECT_TRUE(state.is_limiting);
   EXPECT_NEAR(limit.excess(kGains, 5.8, 0.004, state), -0.006, 1e-15)
       << "back at 10 mm/s, 4 of it by others";
+  EXPECT_EQ(limit.excess(kGains, kLimit_N, 0.0, state), 0.0);
+  EXPECT_FALSE(state.is_limiting) << "at rest at F_act";
   state.way_ahead_m = 1e-3;  // 2 N more
   EXPECT_NEAR(limit.excess(kGains, 1.8, -0.0125, state), -0.0125, 1e-15);
   state.way_ahead_m = -1.0;
@@ -172,6 +174,9 @@ TEST(ApproachLimit, TakesTheObstaclesSpeedOffTheApproach) {
   rows.size = 1;
   limit.limitRows(kGains, 1.8, 0.5, state, 0, rows);
   EXPECT_NEAR(rows.row[0].v_max_m_per_s, 0.5 * 0.008, 1e-15);
+  EXPECT_EQ(rows.row[0].presence, 1.0);
+  limit.limitRows(kGains, 0.0, 0.5, state, 0, rows);
+  EXPECT_NEAR(rows.row[0].v_max_m_per_s, 0.5 * (kLimit_N / 200.0 - 0.002), 1e-15);
   const ScaledVector a = -ScaledVector::Unit(0);
   limit.observe(kGains, a, {0.0, 0.0}, JointVector::Zero(2), kPeriod_s, state);
   EXPECT_EQ(state.obstacle.v_m_per_s, 0.0) << "forgotten without contact";

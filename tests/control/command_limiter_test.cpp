@@ -165,5 +165,101 @@ TEST(CommandLimiter, ComesAsCloseAsItCanWhereNoMultipleIsAdmissible) {
   EXPECT_DOUBLE_EQ(v[1], 0.9);
 }
 
+/// Three joints, of which two say by how much all are scaled.
+struct ScaledCommand {
+  const char* what;
+  Vector3 wanted, before, max_velocity, change, expected;
+};
+
+TEST(CommandLimiter, ScalesAllJointsByWhatOneOfThemNeeds) {
+  constexpr double kExact_s = 1.0 / 1024.0;  // so that limits are met to the bit
+  constexpr double kFree = 100.0;
+  const Vector3 free(kFree, kFree, kFree);
+  const ScaledCommand cases[] = {{"a joint at rest needs nothing",
+                                  {1.0, 0.4, 0.0},
+                                  {0.0, 0.0, 0.0},
+                                  {0.5, kFree, 0.75},
+                                  free,
+                                  {0.5, 0.2, 0.0}},
+                                 {"nor does one that can only just rest",
+                                  {1.0, 0.4, 0.0},
+                                  {0.0, 0.0, -0.25},
+                                  {0.5, kFree, kFree},
+                                  {kFree, kFree, 0.25},
+                                  {0.5, 0.2, 0.0}},
+                                 {"there is but one factor",
+                                  {1.0, 1.0, 0.4},
+                                  {0.75, 0.0, 0.0},
+                                  {kFree, 0.5, kFree},
+                                  {0.25, kFree, kFree},
+                                  {0.5, 0.5, 0.2}},
+                                 {"no factor does for two of them: each by itself",
+                                  {1.0, 0.5, 0.4},
+                                  {1.25, 0.0, 0.0},
+                                  {kFree, 0.25, kFree},
+                                  {0.25, kFree, kFree},
+                                  {1.0, 0.25, 0.4}},
+                                 {"nor does one for a joint that cannot rest yet",
+                                  {0.0, 0.5, 0.4},
+                                  {1.0, 0.5, 0.4},
+                                  free,
+                                  {0.25, kFree, kFree},
+                                  {0.75, 0.5, 0.4}}};
+  for (const ScaledCommand& c : cases) {
+    JointLimits limits;
+    limits.lower = JointVector::Constant(3, -kNoLimit);
+    limits.upper = JointVector::Constant(3, kNoLimit);
+    limits.max_velocity = c.max_velocity;
+    limits.max_acceleration = c.change / kExact_s;
+    JointVector v = c.wanted;
+    ASSERT_TRUE(CommandLimiter(limits).apply(JointVector::Zero(3), c.before, kExact_s, v));
+    EXPECT_LT((v - JointVector(c.expected)).cwiseAbs().maxCoeff(), 1e-15)
+        << c.what << ": " << v.transpose();
+  }
+}
+
+/// Whichever joint it is, and whatever limits it.
+TEST(CommandLimiter, AdmitsAtAGlanceNoJointThatItWouldLimit) {
+  constexpr double kGlance_s = 0.001;
+  for (int n = 2; n <= kMaxJoints; ++n) {
+    const JointVector none = JointVector::Constant(n, kNoLimit);
+    const JointLimits unlimited{-none, none, none, none};
+    const JointVector q = JointVector::Zero(n), v = JointVector::Ones(n);
+    EXPECT_TRUE(CommandLimiter(unlimited).admits(q, v, kGlance_s, v)) << n;
+    for (int k = 0; k < n; ++k) {
+      JointLimits slow = unlimited, lazy = unlimited, near = unlimited, other_way = unlimited;
+      slow.max_velocity[k] = 0.5;
+      EXPECT_FALSE(CommandLimiter(slow).admits(q, v, kGlance_s, v)) << n << " " << k;
+      lazy.max_acceleration[k] = 100.0;
+      JointVector before = v;
+      before[k] = 0.5;
+      EXPECT_FALSE(CommandLimiter(lazy).admits(q, before, kGlance_s, v)) << n << " " << k;
+      near.max_acceleration[k] = other_way.max_acceleration[k] = 10.0;
+      near.upper[k] = 0.01;
+      EXPECT_FALSE(CommandLimiter(near).admits(q, v, kGlance_s, v)) << n << " " << k;
+      other_way.lower[k] = -0.01;
+      EXPECT_FALSE(CommandLimiter(other_way).admits(q, -v, kGlance_s, -v)) << n << " " << k;
+    }
+  }
+}
+
+/// Braking from v takes v dt / 2 + v^2 / (2 a) + a dt^2 / 8, and no more is kept clear.
+TEST(CommandLimiter, BrakesNoEarlierThanItHasTo) {
+  test::Random random(166);
+  for (int i = 0; i < 1000; ++i) {
+    const double a = random.logUniform(0.1, 100.0), dt = random.logUniform(1e-4, 1e-2);
+    const double v = a * dt * random.logUniform(1.1, 1e3);
+    JointLimits limits;
+    limits.lower = JointVector::Constant(1, -kNoLimit);
+    limits.upper = JointVector::Constant(1, 0.5 * v * dt + 0.5 * v * v / a + a * dt * dt / 8.0);
+    limits.max_velocity = JointVector::Constant(1, kNoLimit);
+    limits.max_acceleration = JointVector::Constant(1, a);
+    JointVector faster = JointVector::Constant(1, v + 0.5 * a * dt);
+    ASSERT_TRUE(CommandLimiter(limits).apply(JointVector::Zero(1), JointVector::Constant(1, v), dt,
+                                             faster));
+    ASSERT_NEAR(faster[0], v, 1e-12 * v) << i;
+  }
+}
+
 }  // namespace
 }  // namespace tactus

@@ -5,57 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/period.h"
-#include "support/rail_robot.h"
+#include "support/one_contact_run.h"
 
-/// What the answer to one contact tells and remembers, on a rail where all of it can be told by
-/// hand: nothing delays or filters, and c is known.
+/// What the answer to one contact tells and remembers, on a rail.
 namespace tactus {
 namespace {
 
+using test::addFarWall;
+using test::kOneAct_N;
+using test::kOneC_N_per_m;
+using test::kOneT_s;
+using test::kOneThreshold_N;
 using test::kPeriod_s;
-constexpr double kOneT_s = 0.1;
-constexpr double kOneC_N_per_m = 1000.0;
-constexpr double kOneThreshold_N = 1.2;
-constexpr double kOneAct_N = 3.8;
-
-ControllerConfig oneContactRail(double speed_m_per_s, double friction_coefficient = 0.0) {
-  ControllerConfig config = test::undelayedRail(speed_m_per_s, kOneC_N_per_m);
-  config.force_control->friction_coefficient = friction_coefficient;
-  config.gains.force.contact_threshold_N = kOneThreshold_N;
-  config.gains.force.activation_force_N = kOneAct_N;
-  return config;
-}
-
-/// A wall that is far away, but watched in every cycle.
-void addFarWall(ControllerConfig& config) {
-  ClearanceConfig& clear = config.clearance.emplace();
-  LinkCapsule ball;
-  ball.link.joint = 0;
-  ball.radius_m = 0.05;
-  clear.capsules = {ball};
-  clear.walls = {HalfSpace{100.0 * Vector3::UnitY(), -Vector3::UnitY()}};
-  clear.wall_pairs = {{0, 0}};
-}
-
-struct OneContactRun {
-  explicit OneContactRun(const ControllerConfig& c) : config(c) {}
-  /// A sample of a force from +y.
-  void press(double force_N) {
-    const std::uint32_t next = state.modules[0].sequence + 1;
-    controller.update({state.q_desired, {test::touchAt(0.5, -force_N, 0.0, next)}}, config.gains,
-                      cycle++ * kPeriod_s, kPeriod_s, state, output);
-  }
-  void pressFor(int cycles, double force_N) {
-    for (int i = 0; i < cycles; ++i) press(force_N);
-  }
-
-  ControllerConfig config;
-  Controller controller{config};
-  ControllerState state = controller.initialState();
-  ControllerOutput output;
-  int cycle = 0;
-};
+using test::oneContactRail;
+using test::OneContactRun;
 
 enum class RowsFor { kFriction, kWall, kJoints };
 
@@ -154,6 +117,7 @@ TEST(ContactRows, AreNoneBeforeAContact) {
     none.press(0.0);
     ASSERT_EQ(law.output.velocity, none.output.velocity) << i;
     ASSERT_EQ(law.output.fault, Fault::kNone);
+    ASSERT_EQ(law.output.contact.u_t, 0.0);
     ASSERT_EQ(law.state.contact.cut_by_rows_m_per_s, 0.0);
     ASSERT_FALSE(law.state.contact.keeps_joints);
   }
@@ -232,6 +196,8 @@ TEST(ContactIntegral, OfAHeldArmFadesWhereNothingIsFelt) {
     run.state.is_stopping = true;
     run.pressFor(500, 3.0);
     EXPECT_EQ(run.state.contact.law.V_m_per_s, held_m_per_s);
+    run.pressFor(100, kOneThreshold_N + 0.5);
+    EXPECT_EQ(run.state.contact.law.V_m_per_s, held_m_per_s);
     run.pressFor(500, 0.0);
     const double T_s = config.gains.force.transition.max_time_constant_s;
     EXPECT_NEAR(run.state.contact.law.V_m_per_s, held_m_per_s * std::exp(-0.5 / T_s),
@@ -243,7 +209,7 @@ TEST(ContactIntegral, OfAHeldArmFadesWhereNothingIsFelt) {
 TEST(ContactThatIsHeld, IsOneWhenTheArmGoesOnAfterARetreatToo) {
   for (const Variant variant : {Variant::kNullSpace, Variant::kJointSpace, Variant::kNullLimit}) {
     for (const bool has_retreated : {false, true}) {
-      for (const double force_N : {0.2, 0.8}) {  // of 0.3 N, and below the threshold
+      for (const double force_N : {0.2, 0.3, 0.8}) {  // of 0.3 N, and below the threshold
         ControllerConfig config = oneContactRail(0.1);
         config.force_control->variant = variant;
         OneContactRun run(config);
@@ -255,6 +221,9 @@ TEST(ContactThatIsHeld, IsOneWhenTheArmGoesOnAfterARetreatToo) {
         run.press(force_N);
         EXPECT_NEAR(run.output.contact.gamma, force_N > 0.3 ? 1.0 : 0.0, 0.01)
             << static_cast<int>(variant) << " " << has_retreated << " " << force_N;
+        if (variant != Variant::kJointSpace || force_N <= 0.3) continue;
+        run.pressFor(100, force_N);
+        EXPECT_NEAR(run.output.contact.gamma, 1.0, 0.01) << "it is not left";
       }
     }
   }

@@ -49,6 +49,22 @@ TEST(SmootherSteps, AddWeights) {
       << "below the threshold nothing comes to it";
 }
 
+TEST(SmootherSteps, RememberOneOfSeveralFourTimesAsLong) {
+  SmootherRig rig(0.0, true);
+  rig.read(3.0, 0.3);
+  rig.read(3.0, 0.3);
+  EXPECT_NEAR(rig.state.weight, 9.0 * std::exp(-kReading_s / 4.0) + 9.0, 1e-9);
+}
+
+/// What touches does not turn with a link that turns about itself.
+TEST(SmootherSteps, KeepTheDirectionInTheBaseFrame) {
+  SmootherRig rig;
+  rig.read(3.0, 0.3);
+  rig.X_BaseModule.R_AB = Eigen::AngleAxisd(0.3, Vector3::UnitX()).toRotationMatrix();
+  rig.read(0.5, 0.3, Vector3::UnitZ());  // too little to say anything
+  EXPECT_LT((rig.X_BaseModule.R_AB * rig.state.contact.direction - Vector3::UnitY()).norm(), 1e-12);
+}
+
 /// A link whose axis turns by 0.05 forgets half.
 TEST(SmootherSteps, ForgetWhereTheAxisTurns) {
   SmootherRig rig;

@@ -59,6 +59,10 @@ TEST_F(JointSpace, EngagesFasterWithMoreForce) {
   state_ = {};
   updateFor(0.1, 1.2 + 0.25);  // half: a quarter of the rate
   EXPECT_NEAR(state_.gamma, 1.0 - std::exp(-0.25), 1e-9);
+  state_ = {};
+  gains_.transition.engage_force_N = 1.0;
+  updateFor(0.1, 1.2 + 1.0);
+  EXPECT_NEAR(state_.gamma, 1.0 - std::exp(-1.0), 1e-9);
 }
 
 TEST_F(JointSpace, KeepsItsFeedforwardBetweenReleaseAndThreshold) {
@@ -204,6 +208,11 @@ TEST_F(JointSpace, FreezesThePointWhenNothingIsFelt) {
   EXPECT_EQ(state_.contact.force_N, 0.3);
   EXPECT_EQ(state_.contact.position_m, 0.1);
   EXPECT_EQ(state_.contact.direction, Vector3(Vector3::UnitY()));
+}
+
+TEST_F(JointSpace, StaysANumberWithoutADirection) {
+  followContact(gains_, {2.0, 0.1, Vector3::Zero()}, true, kPeriod_s, state_);
+  EXPECT_EQ(state_.contact.direction, Vector3(Vector3::Zero()));
 }
 
 class JointSpaceAtOnce : public JointSpace {

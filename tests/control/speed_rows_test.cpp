@@ -226,6 +226,46 @@ TEST(SpeedRows, AreKeptByASlowerMotionWhereTheSolverMustEndEarly) {
   EXPECT_GT(cut, 1000);
 }
 
+/// And no slower than the first of them asks for, whatever hardly moves or stands.
+TEST(SpeedRows, SlowAMotionDownNoFurtherThanTheyHaveTo) {
+  test::Random random(321);
+  int slowed = 0, stopped = 0;
+  for (int i = 0; i < 3000; ++i) {
+    RowsCase c(random, random.integer(2, 6));
+    for (int row = 0; row < c.rows.size; ++row) {
+      if (random.chance(0.2)) c.rows.row[row].v_max_m_per_s = 0.0;
+      if (random.chance(0.3)) c.setRow(row, JointVector(JointVector::Zero(c.n)));
+    }
+    const Eigen::VectorXd before = c.joints(c.motion);
+    const Eigen::VectorXd approach = -c.A * before;
+    double share = 1.0;
+    for (int row = 0; row < c.rows.size; ++row) {
+      const double v_max = c.rows.row[row].v_max_m_per_s;
+      if (v_max >= 0.0 && approach[row] > 0.0) share = std::min(share, v_max / approach[row]);
+    }
+    const bool is_whole =
+        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), kBothSpaces, c.motion, 0).is_whole;
+    if (is_whole) continue;
+    RowProblem(c.rows, c.m).keep(c.motion, 0);
+    ASSERT_LT((c.joints(c.motion) - share * before).norm(), 1e-9 * (1.0 + before.norm())) << i;
+    slowed += share > 0.0 && share < 1.0 ? 1 : 0;
+    stopped += share == 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(slowed, 100);
+  EXPECT_GT(stopped, 100);
+}
+
+TEST(SpeedRows, AddEachMultiplierByItself) {
+  test::Random random(322);
+  const RowsCase c(random, 1);
+  for (const double l : {0.0, 0.5, 1.0, 2.0}) {
+    Motion motion = c.motion;
+    addRows(c.rows, RowVector::Constant(1, l), kBothSpaces, motion);
+    const ScaledVector added = motion.v_scaled - c.motion.v_scaled;
+    ASSERT_LT((added - 30.0 * l * c.rows.row[0].a_scaled).norm(), 1e-12);
+  }
+}
+
 /// Room that an earlier cycle has used is no row.
 TEST(SpeedRows, EndWhereTheirNumberSays) {
   test::Random random(318);
