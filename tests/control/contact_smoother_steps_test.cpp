@@ -92,6 +92,21 @@ TEST(SmootherSteps, KnowAnImpact) {
   EXPECT_NEAR(one_of_several.state.significant_N, kS_min_N, 0.01);
 }
 
+/// What grows by as much as that and no more is none yet.
+TEST(SmootherSteps, TakeTheLeastImpactForGrowth) {
+  SmootherRig rig;
+  rig.read(5.0, 0.3);
+  const double before = rig.state.weight;
+  rig.read(1.2 * 5.0, 0.3);
+  EXPECT_NEAR(rig.state.weight, before * kFading + 36.0, 1e-9);
+  SmootherRig one_of_several(0.0, true);
+  for (int i = 0; i < 10; ++i) one_of_several.read(3.0, 0.3);
+  for (int i = 0; i < 50; ++i) one_of_several.read(2.0 * kS_min_N, 0.3);
+  ASSERT_EQ(one_of_several.state.significant_N, kS_min_N);
+  one_of_several.read(4.0 * kS_min_N, 0.3);  // by twice the noise
+  EXPECT_GT(one_of_several.state.weight, 50.0);
+}
+
 /// One of several rests at F_th, so it counts from the mean of F_rel and F_th on.
 TEST(SmootherSteps, CountFromTheThresholdOn) {
   const auto isTaken = [](bool is_one_of_several, double force_N) {
@@ -149,6 +164,12 @@ TEST(SmootherSteps, LearnNothingOfABlowsEndWithFriction) {
 }
 
 /// By 1 % a sample: up where the second difference is above 0.48 of it, else down; within 10 s_min.
+TEST(SmootherSteps, TakeAsMuchAsTheMedianForNoise) {
+  SmootherRig rig;
+  rig.read(0.48 * kS_min_N, 0.2);
+  EXPECT_EQ(rig.state.significant_N, kS_min_N);
+}
+
 TEST(SmootherSteps, TrackTheNoise) {
   SmootherRig rig;
   rig.read(0.0, 0.2);

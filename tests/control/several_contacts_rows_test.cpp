@@ -198,6 +198,22 @@ TEST(SeveralContactsMemory, FadesAsAtFirstOfWhatIsMetElsewhere) {
   EXPECT_NEAR(run.forgetting_per_s(), 0.2 / kRailT_s, 0.01 * 0.2 / kRailT_s);
 }
 
+/// Half of the distance where a contact is another is elsewhere already.
+TEST(SeveralContactsMemory, TellsElsewhereFromHalfTheDistanceOn) {
+  for (const double away_m : {0.12, 0.125, 0.13}) {
+    ControllerConfig config = rowsRail(kRowsOf[0], 0.0);
+    config.gains.force.transition.distance_m = 0.25;
+    RowsRun run(config, 1.0);
+    run.state.q_desired[0] = 0.5;
+    run.press({3.0});
+    for (int i = 0; i < 3; ++i) run.press({0.0});
+    run.state.several.modules[0].haste = 0.25;
+    run.state.q_desired[0] = 0.5 + away_m;
+    run.press({3.0});
+    EXPECT_EQ(run.state.several.modules[0].haste, away_m < 0.125 ? 0.125 : 1.0) << away_m;
+  }
+}
+
 /// Of a module that the arm goes on without nothing is known, nor that it was here before.
 TEST(SeveralContactsMemory, IsOfNoUseOfALostModule) {
   RowsRun run(rowsRail(kRowsOf[0], 1e-9), -0.002);

@@ -297,7 +297,10 @@ TEST(SeveralContacts, TellOfTheModuleThatIsPressedMost) {
       less.tactile[module] = test::touchAt(0.5, module == most ? -0.8 : 0.0, 0.0, 5);
     state.several.modules[1 - most].transition.gamma = 0.0;
     controller.update(less, config.gains, 0.0, kPeriod_s, state, output);
-    EXPECT_NEAR(output.contact.gamma, 1.0, 1e-3) << "below the threshold, too";
+    EXPECT_NEAR(output.contact.gamma, 1.0, 0.01) << "below the threshold, too";
+    less.tactile[0] = less.tactile[1] = test::touchAt(0.5, 0.0, 0.0, 6);
+    controller.update(less, config.gains, 0.0, kPeriod_s, state, output);
+    EXPECT_NEAR(output.contact.gamma, most == 0 ? 1.0 : 0.0, 0.01) << "else of the first";
   }
 }
 

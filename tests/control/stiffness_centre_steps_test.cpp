@@ -72,6 +72,16 @@ TEST(StiffnessCentreSteps, LearnOfChangesThatMeanSomething) {
   EXPECT_NEAR(falling.state.weight, 4.0, 1e-12) << "less force tells as much";
 }
 
+TEST(StiffnessCentreSteps, ReplaceAReadingOnceItIsExactlyASecondOld) {
+  CentreRig rig;
+  rig.read(5.0, 0.2, 0.25);
+  for (int i = 0; i < 3; ++i) rig.read(5.1, 0.2, 0.25);
+  EXPECT_EQ(rig.state.F_BaseRef.y(), 5.0);
+  rig.read(5.1, 0.2, 0.25);
+  EXPECT_EQ(rig.state.F_BaseRef.y(), 5.1);
+  EXPECT_EQ(rig.state.since_s, 0.0);
+}
+
 /// x = dM / dF, and the mean weighs by dF^2.
 TEST(StiffnessCentreSteps, FindWhereTheChangeActs) {
   CentreRig rig;
