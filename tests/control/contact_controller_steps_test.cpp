@@ -189,5 +189,24 @@ TEST(ContactRows, EaseTheApproachAtTheAccelerationLevel) {
   }
 }
 
+/// Nor does it ever carry on towards the obstacle what the law is about to stop.
+TEST(ContactRows, NeverPushTowardsAContactAtTheAccelerationLevel) {
+  int eased = 0;
+  for (double before_m_per_s = 0.05; before_m_per_s < 1.0; before_m_per_s += 0.01) {
+    ControllerConfig config = oneContactRail(0.1);
+    config.force_control->level = ControlLevel::kAcceleration;
+    config.gains.force.max_null_speed_m_per_s = 1e-12;
+    config.gains.force.time_constant_s = 0.03;
+    config.gains.force.assumed_stiffness_N_per_m = 300.0;
+    OneContactRun run(config);
+    run.press(kOneThreshold_N + 0.1);
+    run.state.velocity_before.setConstant(2, before_m_per_s);
+    run.press(kOneThreshold_N + 0.9);
+    EXPECT_LE(run.output.contact.u_t, 0.0) << before_m_per_s;
+    eased += run.state.contact.approach.is_limiting && run.output.contact.u_t == 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(eased, 0);
+}
+
 }  // namespace
 }  // namespace tactus

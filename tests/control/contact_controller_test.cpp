@@ -256,7 +256,7 @@ struct PulledRail {
     config.gains.task.drift_gain_per_s = 5.0;
     config.gains.force.pull_gain_per_s = 3.0;
   }
-  JointVector velocity(double return_share = 1.0) const {
+  ControllerOutput output(double return_share = 1.0) const {
     OneContactRun run(config);
     run.state.q_desired[1] = tool_m;
     run.state.return_share = return_share;
@@ -264,11 +264,11 @@ struct PulledRail {
     transition.gamma = transition.kappa = 1.0;
     transition.touching = true;
     run.press(1.0);
-    return run.output.velocity;
+    return run.output;
   }
   /// The carriage that is touched comes no nearer; what its share would be is not made up for.
   void expectSpeed(double m_per_s, double return_share = 1.0) const {
-    const JointVector v = velocity(return_share);
+    const JointVector v = output(return_share).velocity;
     EXPECT_NEAR(v[0], std::min(0.0, 0.5 * m_per_s), 1e-9);
     EXPECT_NEAR(v[1], 0.5 * m_per_s, 1e-9);
   }
@@ -282,6 +282,7 @@ TEST(JointSpacePull, IsWhatTheReturnSpeedLeaves) {
   for (const double side : {1.0, -1.0}) {
     PulledRail rail(side * kAway_m);
     rail.expectSpeed(side * 8.0 * kAway_m);
+    EXPECT_NEAR(rail.output().contact.x_dot_eff_m_per_s, -0.5 * side * 8.0 * kAway_m, 1e-9);
     for (const double cap_per_s : {9.0, 7.0, 4.0}) {
       rail.config.gains.task.max_return_speed_m_per_s = cap_per_s * kAway_m;
       rail.expectSpeed(side * std::min(8.0, cap_per_s) * kAway_m);

@@ -63,6 +63,12 @@ TEST(SmootherSteps, KeepTheDirectionInTheBaseFrame) {
   rig.X_BaseModule.R_AB = Eigen::AngleAxisd(0.3, Vector3::UnitX()).toRotationMatrix();
   rig.read(0.5, 0.3, Vector3::UnitZ());  // too little to say anything
   EXPECT_LT((rig.X_BaseModule.R_AB * rig.state.contact.direction - Vector3::UnitY()).norm(), 1e-12);
+  SmootherRig turning;
+  turning.read(3.0, 0.3);
+  turning.X_BaseModule.R_AB = Eigen::AngleAxisd(0.3, Vector3::UnitZ()).toRotationMatrix();
+  turning.read(0.5, 0.3, Vector3::UnitZ());
+  EXPECT_LT((turning.state.contact.direction - Vector3::UnitY()).norm(), 1e-12)
+      << "as far as it is across the link";
 }
 
 /// A link whose axis turns by 0.05 forgets half.
@@ -151,6 +157,8 @@ TEST(SmootherSteps, KnowTheFiltersRebound) {
   same_side.read(40.0, 0.3);
   same_side.read(2.0, 0.3);
   EXPECT_EQ(same_side.state.contact.force_N, 2.0);
+  same_side.read(1.9, 0.3, Vector3::UnitZ());
+  EXPECT_EQ(same_side.state.contact.force_N, 1.9) << "nor is square to it the other side";
 }
 
 /// With friction what is left of a blow says nothing, from whatever side.
@@ -163,13 +171,14 @@ TEST(SmootherSteps, LearnNothingOfABlowsEndWithFriction) {
   }
 }
 
-/// By 1 % a sample: up where the second difference is above 0.48 of it, else down; within 10 s_min.
+/// Rather than for a signal.
 TEST(SmootherSteps, TakeAsMuchAsTheMedianForNoise) {
   SmootherRig rig;
   rig.read(0.48 * kS_min_N, 0.2);
   EXPECT_EQ(rig.state.significant_N, kS_min_N);
 }
 
+/// By 1 % a sample: up where the second difference is above 0.48 of it, else down; within 10 s_min.
 TEST(SmootherSteps, TrackTheNoise) {
   SmootherRig rig;
   rig.read(0.0, 0.2);

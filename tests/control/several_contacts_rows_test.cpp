@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "support/crops9.h"
@@ -23,11 +24,13 @@ using test::rowsRail;
 using test::RowsRun;
 
 struct CropsContact {
-  explicit CropsContact(const RowsOf& rows_of)
+  explicit CropsContact(const RowsOf& rows_of, int modules = 1)
       : config([&] {
           ControllerConfig crops = test::crops9Controller(Variant::kNullLimit, true);
           crops.force_control->limit_at = rows_of.limit_at;
           crops.force_control->friction_coefficient = rows_of.friction_coefficient;
+          for (int i = 1; i < modules; ++i)
+            crops.tactile_modules.push_back(crops.tactile_modules.front());
           return crops;
         }()),
         contacts(config, ScaledVector::Ones()),
@@ -38,11 +41,13 @@ struct CropsContact {
                        framePosition(kinematics.pose, config.chain.tip()),
                        config.task.components.data(), config.task.size, ScaledVector::Ones(), J);
     kinematics.pseudoinverse.factorise(J, config.chain.size(), config.task.size);
-    ModuleContactState& module = state.modules[0];
-    module.approach.memory_N_per_m = 1000.0;
-    module.approach.estimator.stiffness_N_per_m = 1000.0;
-    module.approach.smoother.contact.position_m = 0.1;
-    module.approach.smoother.contact.direction = Vector3(0.0, 0.6, -0.8);
+    for (int i = 0; i < modules; ++i) {
+      ModuleContactState& module = state.modules[i];
+      module.approach.memory_N_per_m = 1000.0;
+      module.approach.estimator.stiffness_N_per_m = 1000.0;
+      module.approach.smoother.contact.position_m = 0.1;
+      module.approach.smoother.contact.direction = Vector3(0.0, 0.6, -0.8);
+    }
   }
 
   SpeedRows rows() const {
@@ -95,6 +100,13 @@ TEST(SeveralContactsRows, StandAtBothEndsIfAskedTo) {
   for (int i = 0; i < 4; ++i) EXPECT_EQ(corners.row[i].a_scaled, expected.row[i].a_scaled) << i;
 }
 
+/// Two modules of one link that feel the same.
+TEST(SeveralContactsRows, AreTheCornersOfTheConeOfEachModule) {
+  const SpeedRows rows = CropsContact({LimitAt::kStiffnessCentre, 0.5}, 2).rows();
+  ASSERT_EQ(rows.size, 8);
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(rows.row[4 + i].a_scaled, rows.row[i].a_scaled) << i;
+}
+
 /// The stiffness may be forgotten sooner than the contact.
 TEST(SeveralContactsRows, ArePresentAsTheContactIsRememberedButNeverMoreThanWhole) {
   CropsContact crops({LimitAt::kStiffnessCentre, 0.0});
@@ -131,9 +143,11 @@ TEST(SeveralContactsRows, AreBesideThoseOfJoints) {
   constexpr double kLeft_m = 0.1;
   ControllerConfig config = rowsRail(kRowsOf[0], 10.0);
   config.limits.upper[1] = kLeft_m;
+  config.gains.force.max_null_speed_m_per_s = 100.0;
   RowsRun run(config, 1.0);
   run.step();
   EXPECT_NEAR(run.output.velocity[1], 5.0 * kLeft_m / (1.0 - kLeft_m / 0.25), 1e-4);
+  EXPECT_NEAR(run.output.velocity.sum(), 10.0, 1e-3) << "the null space is enough";
 }
 
 /// Four modules that are pressed, one of them hard.
@@ -154,8 +168,8 @@ TEST(SeveralContactsRows, LimitWhereTheyAreBrokenAlone) {
 
 /// 4 N halfway, and 4 N more beyond: of whichever module that feels it.
 TEST(SeveralContactsRows, KnowTheStiffnessCentreOfEachModule) {
-  for (const int felt : {0, 1}) {
-    ControllerConfig config = rowsRail({LimitAt::kAuto, 0.0}, 1e-9);
+  const auto shifts_m = [](LimitAt limit_at, int felt) {
+    ControllerConfig config = rowsRail({limit_at, 0.0}, 1e-9);
     config.tactile_modules.push_back(config.tactile_modules.front());
     RowsRun run(config, 1.0);
     for (std::uint32_t i = 1; i < 12; ++i) {
@@ -166,9 +180,14 @@ TEST(SeveralContactsRows, KnowTheStiffnessCentreOfEachModule) {
       run.controller.update(input, config.gains, 0.0, kPeriod_s, run.state, run.output);
     }
     const auto& modules = run.state.several.modules;
-    EXPECT_GT(modules[felt].centre.shift_m, 0.05);
-    EXPECT_LT(modules[felt].centre.shift_m, 0.4);
-    EXPECT_EQ(modules[1 - felt].centre.shift_m, 0.0);
+    return std::array<double, 2>{modules[0].centre.shift_m, modules[1].centre.shift_m};
+  };
+  for (const int felt : {0, 1}) {
+    const std::array<double, 2> shift_m = shifts_m(LimitAt::kAuto, felt);
+    EXPECT_GT(shift_m[felt], 0.05);
+    EXPECT_LT(shift_m[felt], 0.4);
+    EXPECT_EQ(shift_m[1 - felt], 0.0);
+    EXPECT_EQ(shifts_m(LimitAt::kResultant, felt)[felt], 0.0) << "nobody asks for it";
   }
 }
 

@@ -72,6 +72,23 @@ TEST(StiffnessCentreSteps, LearnOfChangesThatMeanSomething) {
   EXPECT_NEAR(falling.state.weight, 4.0, 1e-12) << "less force tells as much";
 }
 
+/// However little is known yet.
+TEST(StiffnessCentreSteps, WeighSmallChangesLikewise) {
+  CentreRig rig;
+  rig.read(2.0, 0.1);
+  rig.read(2.6, 0.32 / 2.6);  // 0.6 N more at 0.2 m
+  EXPECT_NEAR(rig.learnt_m(), 0.2, 1e-12);
+  rig.read(3.2, 0.56 / 3.2);  // and as much at 0.4 m
+  EXPECT_NEAR(rig.learnt_m(), 0.3, 1e-12);
+}
+
+TEST(StiffnessCentreSteps, CountForcesAlongTheSmoothedDirection) {
+  CentreRig rig;
+  rig.read(2.0, 0.1);
+  rig.centre.update({}, {5.0, 0.2, Vector3(0.0, 0.8, 0.6), 0.004}, rig.smoother, rig.state);
+  EXPECT_NEAR(rig.state.weight, 4.0, 1e-12);
+}
+
 TEST(StiffnessCentreSteps, ReplaceAReadingOnceItIsExactlyASecondOld) {
   CentreRig rig;
   rig.read(5.0, 0.2, 0.25);
