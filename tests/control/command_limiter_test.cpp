@@ -230,21 +230,24 @@ TEST(CommandLimiter, AdmitsAtAGlanceNoJointThatItWouldLimit) {
   for (int n = 2; n <= kMaxJoints; ++n) {
     const JointVector none = JointVector::Constant(n, kNoLimit);
     const JointLimits unlimited{-none, none, none, none};
-    const JointVector q = JointVector::Zero(n), v = JointVector::Ones(n);
-    EXPECT_TRUE(CommandLimiter(unlimited).admits(q, v, kGlance_s, v)) << n;
+    const JointVector v = JointVector::Ones(n);
+    EXPECT_TRUE(CommandLimiter(unlimited).admits(0.0 * v, v, kGlance_s, v)) << n;
     for (int k = 0; k < n; ++k) {
-      JointLimits slow = unlimited, lazy = unlimited, near = unlimited, other_way = unlimited;
-      slow.max_velocity[k] = 0.5;
-      EXPECT_FALSE(CommandLimiter(slow).admits(q, v, kGlance_s, v)) << n << " " << k;
-      lazy.max_acceleration[k] = 100.0;
-      JointVector before = v;
-      before[k] = 0.5;
-      EXPECT_FALSE(CommandLimiter(lazy).admits(q, before, kGlance_s, v)) << n << " " << k;
-      near.max_acceleration[k] = other_way.max_acceleration[k] = 10.0;
-      near.upper[k] = 0.01;
-      EXPECT_FALSE(CommandLimiter(near).admits(q, v, kGlance_s, v)) << n << " " << k;
-      other_way.lower[k] = -0.01;
-      EXPECT_FALSE(CommandLimiter(other_way).admits(q, -v, kGlance_s, -v)) << n << " " << k;
+      for (const double place : {-1.0, 0.0, 1.0}) {
+        const JointVector q = place * v;
+        JointLimits slow = unlimited, lazy = unlimited, near = unlimited, other_way = unlimited;
+        slow.max_velocity[k] = 0.5;
+        EXPECT_FALSE(CommandLimiter(slow).admits(q, v, kGlance_s, v)) << n << " " << k;
+        lazy.max_acceleration[k] = 100.0;
+        JointVector before = v;
+        before[k] = 0.5;
+        EXPECT_FALSE(CommandLimiter(lazy).admits(q, before, kGlance_s, v)) << n << " " << k;
+        near.max_acceleration[k] = other_way.max_acceleration[k] = 10.0;
+        near.upper[k] = place + 0.01;
+        EXPECT_FALSE(CommandLimiter(near).admits(q, v, kGlance_s, v)) << n << " " << k;
+        other_way.lower[k] = place - 0.01;
+        EXPECT_FALSE(CommandLimiter(other_way).admits(q, -v, kGlance_s, -v)) << n << " " << k;
+      }
     }
   }
 }
