@@ -31,7 +31,7 @@ struct CommandedMotion {
 struct Motion {
   PaddedTaskVector y;
   ScaledVector v_scaled;
-  ScaledVector a;               ///< J_p^T F^ of the contact, m or m/rad; set by the law
+  ScaledVector a;               ///< J_p^T F^ of the contact, m or m/rad; set by the law of one
   double limit_nearness = 0.0;  ///< s_max of the joint-limit cost, 0 to 1
 };
 
