@@ -36,7 +36,7 @@ def compile_flags(folder, layer):
             for word in words:
                 if word in ("-o", "-c", "-include"):
                     next(words)
-                elif not re.match(r"-(O\d|Winvalid-pch|Werror|W|-param|fno-var-tracking)", word):
+                elif not re.match(r"-(O\d|Winvalid-pch|Werror|W|-param|fno-var-tracking|ffile-prefix-map)", word):
                     flags.append(word)
                 elif word == "--param":
                     next(words)
@@ -57,7 +57,7 @@ def link(folder, program, replaced, output, compiler=None, more=()):
     """Links the program with `replaced[layer]` (words) in the place of libtactus_<layer>.a."""
     words = link_command(folder, program) if isinstance(program, str) else list(program)
     if compiler:
-        words[0] = compiler
+        words = [compiler, *(word for word in words[1:] if not word.startswith("-fno-var-tracking"))]
     words[words.index("-o") + 1] = str(output)
     result, rest = [], dict(replaced)
     for word in words:
