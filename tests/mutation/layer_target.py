@@ -13,10 +13,8 @@ from trials import Stage, Target
 BUILD = SOURCE / "build" / "release"
 # After a layer's own tests: whole runs in virtual time.
 OTHERS = {"control": ("sim", "supervisor"), "canopen": ("supervisor", "plant"), "supervisor": ()}
-CAMPAIGN = Stage("campaign", "tactus_campaign", ("--runs", "40"))
-
-
 LONG_S = 1.0
+CAMPAIGN = Stage("campaign", "tactus_campaign", ("--runs", "40"))
 
 
 def tests_of(layer):

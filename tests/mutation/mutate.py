@@ -15,6 +15,7 @@ import yaml
 import places
 from trials import Trials
 
+
 def code_at(target, mutant):
     return (target.root / mutant.file).read_text().splitlines()[mutant.line - 1].strip()
 

@@ -11,6 +11,7 @@ import subprocess
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 LAYERS = ("control", "canopen", "supervisor")
+UNKNOWN_TO_CLANG = "-fno-var-tracking"  # begins so
 
 
 def sources(layer, root=SOURCE):
@@ -36,7 +37,7 @@ def compile_flags(folder, layer):
             for word in words:
                 if word in ("-o", "-c", "-include"):
                     next(words)
-                elif not re.match(r"-(O\d|Winvalid-pch|Werror|W|-param|fno-var-tracking|ffile-prefix-map)", word):
+                elif not re.match(rf"{UNKNOWN_TO_CLANG}|-(O\d|Winvalid-pch|Werror|W|-param|ffile-prefix-map)", word):
                     flags.append(word)
                 elif word == "--param":
                     next(words)
@@ -57,7 +58,7 @@ def link(folder, program, replaced, output, compiler=None, more=()):
     """Links the program with `replaced[layer]` (words) in the place of libtactus_<layer>.a."""
     words = link_command(folder, program) if isinstance(program, str) else list(program)
     if compiler:
-        words = [compiler, *(word for word in words[1:] if not word.startswith("-fno-var-tracking"))]
+        words = [compiler, *(word for word in words[1:] if not word.startswith(UNKNOWN_TO_CLANG))]
     words[words.index("-o") + 1] = str(output)
     result, rest = [], dict(replaced)
     for word in words:

@@ -116,6 +116,10 @@ def list_tests(program, arguments):
     return names
 
 
+class DoesNotLink(SystemExit):
+    """Of a mutant that is compiled alone that is a state; of all else it ends the tool."""
+
+
 class Trials:
     """Of these mutants; `folder` is made anew."""
 
@@ -163,7 +167,7 @@ class Trials:
         output = folder / program
         done = self.target.link(program, objects, output)
         if done.returncode:
-            raise SystemExit(f"{program} does not link:\n{done.stderr[-2000:]}")
+            raise DoesNotLink(f"{program} does not link:\n{done.stderr[-2000:]}")
         return output
 
     def measure(self, stage):
@@ -232,7 +236,10 @@ class Trials:
                 linked[name] = self.link(name, {mutant.file: output}, sandbox)
             return linked[name]
 
-        return self.judge(mutant, program, sandbox)
+        try:
+            return self.judge(mutant, program, sandbox)
+        except DoesNotLink:
+            return "does not compile", "does not link"
 
     def trial(self, mutant):
         """(state, by): killed by a test, survived, or 'does not compile'."""
