@@ -100,6 +100,18 @@ TEST(CycleReports, ShowWhereTheToolIs) {
   }
 }
 
+/// For 3 s, at rest.
+void tryGainsUnderForce(const Scene& scene, VirtualRobotCell& cell) {
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  cell.on_frame = [](int bus, CanFrame& frame) {
+    if (bus == 3 && frame.id == 0x100) frame.data[4] = 5;  // 3.3 N
+  };
+  GainOrder order{.number = 1, .gains = scene.controller.gains};
+  order.gains.force.time_constant_s = 0.11;
+  cell.cycle.order(order);
+  for (int i = 0; i < 3000; ++i) cell.step();
+}
+
 /// Pushed by the same force all the time, an arm whose joints may move slowly only is at their
 /// limits. New gains are taken back for that, and not where there is none.
 TEST(CycleReports, GainsAreTakenBackAtLimitsOfSpeed) {
@@ -108,14 +120,7 @@ TEST(CycleReports, GainsAreTakenBackAtLimitsOfSpeed) {
     scene.controller.limits.max_velocity.setConstant(most);
     scene.controller.task.trajectory.waypoints.clear();
     VirtualRobotCell cell(scene);
-    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
-    cell.on_frame = [](int bus, CanFrame& frame) {
-      if (bus == 3 && frame.id == 0x100) frame.data[4] = 5;  // 3.3 N
-    };
-    GainOrder order{.number = 1, .gains = scene.controller.gains};
-    order.gains.force.time_constant_s = 0.11;
-    cell.cycle.order(order);
-    for (int i = 0; i < 3000; ++i) cell.step();
+    tryGainsUnderForce(scene, cell);
     EXPECT_EQ(cell.cycle.gainReport().trouble,
               most < 1.0 ? GainTrouble::kAtLimits : GainTrouble::kNone)
         << most;
@@ -135,14 +140,7 @@ TEST(CycleReports, GainsAreTakenBackAtTheLimitOfOneJoint) {
     scene.controller.limits.max_velocity[joint] = 1e-5;
     scene.controller.task.trajectory.waypoints.clear();
     VirtualRobotCell cell(scene);
-    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
-    cell.on_frame = [](int bus, CanFrame& frame) {
-      if (bus == 3 && frame.id == 0x100) frame.data[4] = 5;  // 3.3 N
-    };
-    GainOrder order{.number = 1, .gains = scene.controller.gains};
-    order.gains.force.time_constant_s = 0.11;
-    cell.cycle.order(order);
-    for (int i = 0; i < 3000; ++i) cell.step();
+    tryGainsUnderForce(scene, cell);
     EXPECT_EQ(cell.cycle.gainReport().trouble, GainTrouble::kAtLimits) << joint;
   }
 }

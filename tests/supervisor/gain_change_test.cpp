@@ -7,35 +7,14 @@
 #include <functional>
 #include <numbers>
 
+#include "support/gain_change_rig.h"
+
 namespace tactus {
 namespace {
 
-constexpr double kPeriod_s = 0.001;
+using test::kPeriod_s;
 
-/// An arm that rests in contact, if nothing else is said.
-class GainChangeTest : public testing::Test {
- protected:
-  void pass(double duration_s, GainWatchInput seen = {.force_N = 5.0}) {
-    for (int i = 0; i < std::lround(duration_s / kPeriod_s); ++i) {
-      change_.update(seen);
-      ++cycle_;
-    }
-  }
-  void passForce(double duration_s, const std::function<double(double)>& force) {
-    for (int i = 0; i < std::lround(duration_s / kPeriod_s); ++i)
-      pass(kPeriod_s, {.force_N = force(kPeriod_s * static_cast<double>(cycle_))});
-  }
-  GainOrder order(std::uint32_t number, double T_s) const {
-    GainOrder order{.number = number, .gains = change_.kept()};
-    order.gains.force.time_constant_s = T_s;
-    return order;
-  }
-  double T_s() const { return change_.gains().force.time_constant_s; }
-  GainState state() const { return change_.report().state; }
-
-  GainChange change_{Gains{}, kPeriod_s};
-  long cycle_ = 0;
-};
+class GainChangeTest : public test::GainChangeRig {};
 
 /// Contact is lost with less than what counts as a swing, which would be told of first.
 Gains bouncy() {

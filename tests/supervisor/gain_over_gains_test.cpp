@@ -2,37 +2,23 @@
 
 #include <cmath>
 
-#include "tactus/supervisor/gain_change.h"
+#include "support/gain_change_rig.h"
 
 /// Gains that are ordered while others ramp, are on trial or go back.
 namespace tactus {
 namespace {
 
-constexpr double kOverPeriod_s = 0.001;
+using test::kPeriod_s;
 
-class GainOverGains : public testing::Test {
- protected:
-  void pass(double duration_s, const GainWatchInput& seen = {.force_N = 5.0}) {
-    for (int i = 0; i < std::lround(duration_s / kOverPeriod_s); ++i) change_.update(seen);
-  }
-  GainOrder order(std::uint32_t number, double T_s) const {
-    GainOrder order{.number = number, .gains = change_.kept()};
-    order.gains.force.time_constant_s = T_s;
-    return order;
-  }
-  double T_s() const { return change_.gains().force.time_constant_s; }
-  GainState state() const { return change_.report().state; }
-
-  GainChange change_{Gains{}, kOverPeriod_s};
-};
+class GainOverGains : public test::GainChangeRig {};
 
 /// The way that was begun is as long as if nothing waited, there and back.
 TEST_F(GainOverGains, WhatWaitsDoesNotHurryTheRampBeforeIt) {
   for (const bool is_back : {false, true}) {
-    change_ = GainChange(Gains{}, kOverPeriod_s);
+    change_ = GainChange(Gains{}, kPeriod_s);
     GainChange alone = change_;
     const auto passBoth = [&](double duration_s, const GainWatchInput& seen) {
-      for (int i = 0; i < std::lround(duration_s / kOverPeriod_s); ++i) {
+      for (int i = 0; i < std::lround(duration_s / kPeriod_s); ++i) {
         change_.update(seen);
         alone.update(seen);
         ASSERT_EQ(T_s(), alone.gains().force.time_constant_s) << i;
@@ -40,7 +26,7 @@ TEST_F(GainOverGains, WhatWaitsDoesNotHurryTheRampBeforeIt) {
     };
     for (GainChange* change : {&change_, &alone}) change->order(order(1, 0.3));
     passBoth(0.4, {.force_N = 5.0});
-    if (is_back) passBoth(kOverPeriod_s, {.force_N = 5.0, .has_fault = true});
+    if (is_back) passBoth(kPeriod_s, {.force_N = 5.0, .has_fault = true});
     GainOrder next = order(2, 0.2);
     next.waits_for_free = true;
     change_.order(next);
@@ -55,19 +41,18 @@ TEST_F(GainOverGains, WhatWaitsDoesNotHurryTheRampBeforeIt) {
 TEST_F(GainOverGains, WhatIsOrderedOverATrialDoesNotSaveIt) {
   for (const bool waits : {false, true}) {
     for (const bool has_fault : {false, true}) {
-      change_ = GainChange(Gains{}, kOverPeriod_s);
+      change_ = GainChange(Gains{}, kPeriod_s);
       GainOrder first = order(1, 0.3);
       if (!has_fault) first.for_s = 1.0;
       change_.order(first);
-      while (state() != GainState::kOnTrial) pass(kOverPeriod_s);
-      if (!has_fault) pass(waits ? 0.5 : 1.0 - kOverPeriod_s);
+      while (state() != GainState::kOnTrial) pass(kPeriod_s);
+      if (!has_fault) pass(waits ? 0.5 : 1.0 - kPeriod_s);
       ASSERT_EQ(state(), GainState::kOnTrial);
       GainOrder next = order(2, 0.2);
       next.waits_for_free = waits;
       change_.order(next);
-      if (!has_fault && waits) pass(0.5 - kOverPeriod_s);
-      pass(has_fault ? kOverPeriod_s : 2.0 * kOverPeriod_s,
-           {.force_N = 5.0, .has_fault = has_fault});
+      if (!has_fault && waits) pass(0.5 - kPeriod_s);
+      pass(has_fault ? kPeriod_s : 2.0 * kPeriod_s, {.force_N = 5.0, .has_fault = has_fault});
       EXPECT_EQ(state(), GainState::kGoingBack) << waits << has_fault;
       EXPECT_EQ(change_.report().trouble,
                 has_fault ? GainTrouble::kFault : GainTrouble::kTimeIsOver);
@@ -79,7 +64,7 @@ TEST_F(GainOverGains, WhatIsOrderedOverATrialDoesNotSaveIt) {
 TEST_F(GainOverGains, AnOrderOverGainsThatWentBackIsReportedWithThem) {
   change_.order(order(1, 0.3));
   pass(2.0);
-  pass(kOverPeriod_s, {.force_N = 5.0, .has_fault = true});
+  pass(kPeriod_s, {.force_N = 5.0, .has_fault = true});
   GainOrder over = order(2, 0.3);
   over.gains.force.damping *= 1.1;
   over.over = 1;
