@@ -13,11 +13,11 @@
 namespace tactus {
 namespace {
 
-using test::kHold_N;
+using test::kOneAct_N;
+using test::kOneC_N_per_m;
+using test::kOneT_s;
+using test::kOneThreshold_N;
 using test::kPeriod_s;
-using test::kRailAct_N;
-using test::kRailC_N_per_m;
-using test::kRailT_s;
 using test::kRowsOf;
 using test::RowsOf;
 using test::rowsRail;
@@ -127,15 +127,15 @@ TEST(SeveralContactsRows, CountTheWayThatNoSampleHasToldOf) {
   double largest_N = 0.0;
   for (int i = 0; i < 2000; ++i) {
     drives.update(run.state.q_desired, true, kPeriod_s, seen);
-    const double force_N = kRailC_N_per_m * (seen.sensed[0] - run.world.surface_m);
+    const double force_N = kOneC_N_per_m * (seen.sensed[0] - run.world.surface_m);
     largest_N = std::max(largest_N, force_N);
     run.press({std::max(0.0, force_N)});
     if (i < 200) continue;
-    ASSERT_NEAR(run.output.velocity[0], (kHold_N - run.force_N()) / (kRailT_s * kRailC_N_per_m),
-                2e-3)
+    ASSERT_NEAR(run.output.velocity[0],
+                (kOneThreshold_N - run.force_N()) / (kOneT_s * kOneC_N_per_m), 2e-3)
         << i;
   }
-  EXPECT_NEAR(run.force_N(), kHold_N, 0.02);
+  EXPECT_NEAR(run.force_N(), kOneThreshold_N, 0.02);
 }
 
 /// A joint that is near its limit keeps off it before anything is felt.
@@ -199,7 +199,7 @@ TEST(SeveralContactsMemory, FadesNoSlowerForWhatIsFeltBelowTheThreshold) {
   run.run(10);
   run.press({0.8});
   run.run(1);
-  EXPECT_NEAR(run.forgetting_per_s(), 0.2 / kRailT_s, 0.01 * 0.2 / kRailT_s);
+  EXPECT_NEAR(run.forgetting_per_s(), 0.2 / kOneT_s, 0.01 * 0.2 / kOneT_s);
 }
 
 /// However slowly the last one was forgotten.
@@ -214,7 +214,7 @@ TEST(SeveralContactsMemory, FadesAsAtFirstOfWhatIsMetElsewhere) {
   run.run(10);
   run.world.surface_m = 1.0;
   run.run(1);
-  EXPECT_NEAR(run.forgetting_per_s(), 0.2 / kRailT_s, 0.01 * 0.2 / kRailT_s);
+  EXPECT_NEAR(run.forgetting_per_s(), 0.2 / kOneT_s, 0.01 * 0.2 / kOneT_s);
 }
 
 /// Half of the distance where a contact is another is elsewhere already.
@@ -240,13 +240,13 @@ TEST(SeveralContactsMemory, IsOfNoUseOfALostModule) {
   run.state.several.modules[0].haste = 1.0 / 64.0;
   run.state.modules[0].is_lost = true;
   run.step();
-  EXPECT_NEAR(run.forgetting_per_s(), 0.2 / kRailT_s, 0.01 * 0.2 / kRailT_s) << "whatever it says";
+  EXPECT_NEAR(run.forgetting_per_s(), 0.2 / kOneT_s, 0.01 * 0.2 / kOneT_s) << "whatever it says";
   run.state.modules[0].is_lost = false;
   run.world.surface_m = run.state.q_desired[0] - 0.002;
   run.run(2);
   run.world.surface_m = 1.0;
   run.run(1);
-  EXPECT_NEAR(run.forgetting_per_s(), 0.2 / kRailT_s, 0.01 * 0.2 / kRailT_s) << "a new one";
+  EXPECT_NEAR(run.forgetting_per_s(), 0.2 / kOneT_s, 0.01 * 0.2 / kOneT_s) << "a new one";
 }
 
 /// The way of a module's absence says nothing of how soft a contact is.
@@ -261,8 +261,8 @@ TEST(SeveralContactsMemory, CountsNoWayOfALostModule) {
   run.controller.update({run.state.q_desired, {test::touchAt(0.5, 0.0, 0.0, sequence)}},
                         config.gains, 0.0, kPeriod_s, run.state, run.output);
   run.state.modules[0].is_lost = false;
-  run.press({kHold_N + 0.4 * kRailAct_N});
-  EXPECT_GE(run.output.contact.stiffness_N_per_m, kRailC_N_per_m);
+  run.press({kOneThreshold_N + 0.4 * kOneAct_N});
+  EXPECT_GE(run.output.contact.stiffness_N_per_m, kOneC_N_per_m);
 }
 
 }  // namespace

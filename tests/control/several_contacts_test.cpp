@@ -14,11 +14,11 @@
 namespace tactus {
 namespace {
 
-using test::kHold_N;
+using test::kOneAct_N;
+using test::kOneC_N_per_m;
+using test::kOneT_s;
+using test::kOneThreshold_N;
 using test::kPeriod_s;
-using test::kRailAct_N;
-using test::kRailC_N_per_m;
-using test::kRailT_s;
 using test::kRowsOf;
 using test::RowsOf;
 using test::rowsRail;
@@ -77,11 +77,12 @@ TEST(SeveralContacts, HoldTheThresholdInTheNullSpace) {
   for (const RowsOf& rows : kRowsOf) {
     RowsRun run(rowsRail(rows, 0.1), -0.01);
     run.run(20);  // until it is felt
-    run.expectDecay(kHold_N, 800);
-    EXPECT_NEAR(run.force_N(), kHold_N, 0.01);
+    run.expectDecay(kOneThreshold_N, 800);
+    EXPECT_NEAR(run.force_N(), kOneThreshold_N, 0.01);
     EXPECT_LT(std::abs(run.output.error[0]), 1e-9);
-    EXPECT_NEAR(run.output.contact.force_contact_N, std::max(0.0, run.force_N() - kHold_N), 0.01);
-    EXPECT_EQ(run.output.contact.stiffness_N_per_m, kRailC_N_per_m);
+    EXPECT_NEAR(run.output.contact.force_contact_N, std::max(0.0, run.force_N() - kOneThreshold_N),
+                0.01);
+    EXPECT_EQ(run.output.contact.stiffness_N_per_m, kOneC_N_per_m);
     EXPECT_LT(run.output.contact.u_n, 0.0);
     if (rows.friction_coefficient == 0.0) {
       EXPECT_NEAR(run.output.contact.u_n, 2.0 * run.output.velocity[0] - 0.1, 1e-9);
@@ -101,7 +102,7 @@ TEST(SeveralContacts, AreMetNoFasterThanTheyAreHeld) {
       largest_N = std::max(largest_N, run.force_N());
     }
     EXPECT_LT(largest_N, 2.5) << "what a cycle or two of the approach add";
-    EXPECT_NEAR(run.force_N(), kHold_N, 0.01);
+    EXPECT_NEAR(run.force_N(), kOneThreshold_N, 0.01);
   }
 }
 
@@ -112,8 +113,8 @@ TEST(SeveralContacts, LimitTheToolWhereTheNullSpaceIsUsedUp) {
     config.gains.force.max_null_speed_m_per_s = 1e-12;
     RowsRun run(config, -0.01);
     run.run(20);
-    run.expectDecay(kRailAct_N + kHold_N, 800);
-    EXPECT_NEAR(run.force_N(), kRailAct_N + kHold_N, 0.01);
+    run.expectDecay(kOneAct_N + kOneThreshold_N, 800);
+    EXPECT_NEAR(run.force_N(), kOneAct_N + kOneThreshold_N, 0.01);
     EXPECT_LT(run.output.contact.u_t, 0.0);
     EXPECT_TRUE(run.state.several.modules[0].approach.is_limiting);
   }
@@ -123,9 +124,9 @@ TEST(SeveralContacts, LimitTheToolWhereTheNullSpaceIsUsedUp) {
 TEST(SeveralContacts, ForgetSlowlyAndSlowerWhatComesBack) {
   RowsRun run(rowsRail(kRowsOf[0], 1e-9), -0.002);
   run.run(10);
-  double rate = 0.2 / kRailT_s;
+  double rate = 0.2 / kOneT_s;
   for (int times = 0; times < 8; ++times) {
-    ASSERT_EQ(run.memory(), kRailC_N_per_m) << times;
+    ASSERT_EQ(run.memory(), kOneC_N_per_m) << times;
     run.world.surface_m = 1.0;  // it is taken away
     run.step();
     const double first = run.memory();
@@ -133,7 +134,7 @@ TEST(SeveralContacts, ForgetSlowlyAndSlowerWhatComesBack) {
     EXPECT_NEAR(std::log(first / run.memory()) / (200 * kPeriod_s), rate, 0.01 * rate) << times;
     run.world.surface_m = run.state.q_desired[0] - 0.002;
     run.run(2);
-    rate = std::max(0.5 * rate, 0.2 / kRailT_s / 64.0);
+    rate = std::max(0.5 * rate, 0.2 / kOneT_s / 64.0);
   }
 }
 
@@ -150,7 +151,7 @@ TEST(SeveralContacts, ForgetAtOnceWhatTheyHaveGoneAwayFrom) {
       run.run(2);
       const double first = run.memory();
       run.run(100);
-      const double rate = 0.2 / kRailT_s * (away_m > 0.0 ? 1.0 : haste);
+      const double rate = 0.2 / kOneT_s * (away_m > 0.0 ? 1.0 : haste);
       EXPECT_NEAR(std::log(first / run.memory()) / (100 * kPeriod_s), rate, 0.01 * rate)
           << haste << " " << away_m;
     }
@@ -166,18 +167,18 @@ TEST(SeveralContacts, KnowHowStiffItIsWhileItIsFelt) {
       RowsRun run(config, -0.002);
       run.run(10);
       const double& c = run.state.several.modules[0].approach.estimator.stiffness_N_per_m;
-      run.state.several.modules[0].approach.estimator.stiffness_N_per_m = 50.0 * kRailC_N_per_m;
+      run.state.several.modules[0].approach.estimator.stiffness_N_per_m = 50.0 * kOneC_N_per_m;
       run.state.q_desired.array() -= away_m;
       for (int i = 0; i < 1000; ++i) {
-        run.world.surface_m = run.state.q_desired[0] - force_N / kRailC_N_per_m;
+        run.world.surface_m = run.state.q_desired[0] - force_N / kOneC_N_per_m;
         run.step();
       }
       const bool is_known = force_N > 0.0 || away_m == 0.0;
       if (is_known)
-        EXPECT_NEAR(c, 50.0 * kRailC_N_per_m, (force_N > 0.0 ? 1e-9 : 5.0) * kRailC_N_per_m)
+        EXPECT_NEAR(c, 50.0 * kOneC_N_per_m, (force_N > 0.0 ? 1e-9 : 5.0) * kOneC_N_per_m)
             << away_m << " " << force_N;
       else
-        EXPECT_LT(c, 25.0 * kRailC_N_per_m) << away_m << " " << force_N;
+        EXPECT_LT(c, 25.0 * kOneC_N_per_m) << away_m << " " << force_N;
     }
   }
 }
@@ -188,7 +189,7 @@ TEST(SeveralContacts, RememberWhatIsStillFelt) {
   run.run(10);
   for (const double force_N : {1.1, 0.31, 0.3, 0.29}) {
     for (int i = 0; i < 100; ++i) run.press({force_N});
-    EXPECT_EQ(run.memory() == kRailC_N_per_m, force_N > 0.3) << force_N;
+    EXPECT_EQ(run.memory() == kOneC_N_per_m, force_N > 0.3) << force_N;
   }
 }
 
@@ -199,7 +200,7 @@ TEST(SeveralContacts, AreGivenWayAsFastAsTheyCome) {
     config.gains.force.max_null_speed_m_per_s = 1e-12;
     RowsRun run(config, 0.0);
     run.run(2000);
-    EXPECT_NEAR(run.force_N(), kRailAct_N + kHold_N, 0.01);
+    EXPECT_NEAR(run.force_N(), kOneAct_N + kOneThreshold_N, 0.01);
     const double& high_s = run.state.several.modules[0].approach.obstacle.high_s;
     const auto come = [&](int cycles) {
       double longest_s = 0.0;
@@ -216,7 +217,7 @@ TEST(SeveralContacts, AreGivenWayAsFastAsTheyCome) {
     stopped.step();
     EXPECT_EQ(stopped.state.several.modules[0].approach.obstacle.high_s, 0.0);
     come(4000);
-    EXPECT_LT(run.force_N(), 1.15 * (kRailAct_N + kHold_N)) << "T c v_o alone were 2 N more";
+    EXPECT_LT(run.force_N(), 1.15 * (kOneAct_N + kOneThreshold_N)) << "T c v_o alone were 2 N more";
   }
 }
 
@@ -286,8 +287,8 @@ TEST(SeveralContacts, TellOfTheModuleThatIsPressedMost) {
         input.tactile[module] = test::touchAt(0.5, module == most ? -4.0 : -2.0, 0.0, i);
       controller.update(input, config.gains, 0.0, kPeriod_s, state, output);
     }
-    EXPECT_NEAR(output.contact.force_contact_N, 4.0 - kHold_N, 1e-9);
-    EXPECT_EQ(output.contact.stiffness_raw_N_per_m, kRailC_N_per_m);
+    EXPECT_NEAR(output.contact.force_contact_N, 4.0 - kOneThreshold_N, 1e-9);
+    EXPECT_EQ(output.contact.stiffness_raw_N_per_m, kOneC_N_per_m);
     EXPECT_EQ(output.contact.gamma, 1.0);
     for (int module = 0; module < 2; ++module)
       EXPECT_NEAR(state.several.modules[module].approach.smoother.contact.force_N,

@@ -5,17 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "support/period.h"
-#include "support/rail_robot.h"
+#include "support/one_contact_run.h"
 
-/// Contacts with rows of their own, on a rail where all of it can be told by hand: nothing delays
-/// or filters, and c is known.
+/// Contacts with rows of their own, on the rail of one_contact_run.h.
 namespace tactus::test {
-
-inline constexpr double kRailT_s = 0.1;
-inline constexpr double kRailC_N_per_m = 1000.0;
-inline constexpr double kHold_N = 1.2;
-inline constexpr double kRailAct_N = 3.8;
 
 struct RowsOf {
   LimitAt limit_at;
@@ -27,18 +20,15 @@ inline constexpr RowsOf kRowsOf[] = {{LimitAt::kStiffnessCentre, 0.0},
                                      {LimitAt::kModuleEnds, 0.5}};
 
 inline ControllerConfig rowsRail(const RowsOf& rows, double speed_m_per_s) {
-  ControllerConfig config = undelayedRail(speed_m_per_s, kRailC_N_per_m);
+  ControllerConfig config = oneContactRail(speed_m_per_s, rows.friction_coefficient);
   config.force_control->limit_at = rows.limit_at;
-  config.force_control->friction_coefficient = rows.friction_coefficient;
-  config.gains.force.contact_threshold_N = kHold_N;
-  config.gains.force.activation_force_N = kRailAct_N;
   return config;
 }
 
 /// A controller and an obstacle at +y of its first carriage.
 struct RowsRun {
   RowsRun(const ControllerConfig& c, double surface_m)
-      : config(c), world{kRailC_N_per_m, surface_m} {}
+      : config(c), world{kOneC_N_per_m, surface_m} {}
   void step() {
     controller.update(world.input(state), config.gains, cycle++ * kPeriod_s, kPeriod_s, state,
                       output);
@@ -59,7 +49,7 @@ struct RowsRun {
     for (int i = 0; i < cycles; ++i) {
       const double before_N = force_N();
       step();
-      const double expected_N = -kPeriod_s / kRailT_s * (before_N - end_N);
+      const double expected_N = -kPeriod_s / kOneT_s * (before_N - end_N);
       ASSERT_NEAR(force_N() - before_N, expected_N, 0.06 * std::abs(expected_N) + 1e-5) << i;
     }
   }
