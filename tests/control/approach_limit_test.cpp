@@ -47,6 +47,25 @@ TEST(ApproachLimit, LetsTheForceSettleExponentiallyAtTheActivationForce) {
   EXPECT_NEAR(force_N, kLimit_N, 1e-3);
 }
 
+/// The task gives way then, and the null space would have to take back what it gathered meanwhile.
+TEST(ApproachLimit, NothingIsIntegratedWhileItHoldsTheArmBack) {
+  ControllerConfig config = test::undelayedRail(0.0, kC_N_per_m);
+  config.task.trajectory.waypoints.clear();
+  config.gains.force.damping = 0.1;  // P = 0.002 m/(s N), v_max = (F_act - F) 0.01 m/(s N)
+  const Controller controller(config);
+  const auto integralAfter = [&](double force_N) {
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    for (std::uint32_t cycle = 0; cycle < 20; ++cycle)
+      controller.update({state.q_desired, {test::touchAt(0.5, -force_N, 0.0, cycle + 1)}},
+                        config.gains, cycle * kPeriod_s, kPeriod_s, state, output);
+    return state.contact.law.V_m_per_s;
+  };
+  const double rate_m_per_s = kPeriod_s * 4.0 / (kT_s * kT_s * kC_N_per_m);
+  EXPECT_NEAR(integralAfter(4.0), 20.0 * rate_m_per_s, 1e-12);  // -P 4 N is faster than v_max
+  EXPECT_LE(integralAfter(20.0), 2.0 * 5.0 * rate_m_per_s);     // -P 20 N is not
+}
+
 /// A contact that swings about F_th would else be taken for the assumed one after a while.
 TEST(ApproachLimit, KnowsAContactAsLongAsItIsFelt) {
   ControllerConfig config = bareRail(0.1);

@@ -129,7 +129,9 @@ TEST(ControlLaw, WhatTheLimitsCutIsTakenOffTheIntegralEvenWhileItIsHeld) {
   input.hold_integral = true;
   EXPECT_EQ(updateOnce(lawOf(Variant::kNullLimit), input, kBefore).state.V_m_per_s, 0.003);
   input.cut_m_per_s = 0.1;
-  EXPECT_LT(updateOnce(lawOf(Variant::kNullLimit), input, kBefore).state.V_m_per_s, 0.003);
+  EXPECT_NEAR(updateOnce(lawOf(Variant::kNullLimit), input, kBefore).state.V_m_per_s,
+              0.003 + 0.001 * 4.0 / (0.01 * 1000.0) - 0.001 * 0.1 / 0.1, 1e-16)
+      << "V gets dt F_p / (T^2 c) - dt cut / T";
 }
 
 TEST(ControlLaw, FirstOrderHasNoIntegralAndTheGainOfItsOwn) {
