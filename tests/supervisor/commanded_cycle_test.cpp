@@ -93,6 +93,37 @@ TEST(CommandedCycle, ArrivesNoFartherOffThanItSays) {
   }
 }
 
+/// Radians are not measured by what is near enough in metres.
+TEST(CommandedCycle, ArrivesTurnedNoFartherOffThanItSays) {
+  Scene scene = toldScene({{"simulation.obstacles", "[]"},
+                           {"task.components", "[x, y, z, rx, ry, rz]"},
+                           {"task.max_return_speed_rad_per_s", "0.2"}});
+  scene.controller.limits.max_velocity.setConstant(0.05);
+  scene.controller.gains.task.drift_gain_per_s = 1.0;
+  scene.controller.task.commands->arrival_m = 1.0;
+  const double near_rad = scene.controller.task.commands->arrival_rad;
+  for (int axis = 0; axis < 3; ++axis) {
+    VirtualRobotCell cell(scene);
+    ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+    Pose target = toolPose(cell, scene);
+    target.R_AB = Eigen::AngleAxisd(0.1, Vector3::Unit(axis)).toRotationMatrix() * target.R_AB;
+    tell(cell, target, 1);
+    const auto isThere = [&] { return cell.cycle.toolReport()->state == ToolState::kArrived; };
+    double farthest_rad = 0.0;
+    for (int i = 0; i < 20000 && !isThere(); ++i) {
+      stepPrepared(cell);
+      const CycleRecord record = cell.record();
+      farthest_rad = std::max(farthest_rad, (Eigen::Map<const Vector3>(record.wd + 3) -
+                                             Eigen::Map<const Vector3>(record.w + 3))
+                                                .norm());
+    }
+    EXPECT_GT(farthest_rad, 2.0 * near_rad) << "it follows at once: this test is blind";
+    EXPECT_TRUE(isThere());
+    const Matrix3 left = toolPose(cell, scene).R_AB.transpose() * target.R_AB;
+    EXPECT_LT(Eigen::AngleAxisd(left).angle(), 1.01 * near_rad) << axis;
+  }
+}
+
 /// 20 targets and 50 sets of gains in contact, a hold, an e-stop and missed cycles.
 TEST(CommandedCycle, ReplaysToTheBitFromItsLog) {
   const Scene scene = toldScene();

@@ -136,6 +136,33 @@ TEST(LostModule, LetsNoJointBeFasterThanItsShare) {
   }
 }
 
+/// It is late because it is slow, and nothing is in its way.
+TEST(LostModule, DoesNotHoldTheToolOffItsTarget) {
+  SkinRun run(skinScene("go_on_slowly", {{"task.source", "commands"},
+                                         {"task.trajectory", "~"},
+                                         {"task.max_return_speed_m_per_s", "0.05"},
+                                         {"simulation.obstacles", "[]"}}),
+              500);
+  run.cell.on_frame = kNoLink6;
+  run.step(300);
+  ASSERT_EQ(run.last().modules_lost, kLink6);
+  ToolSight sight;
+  run.cell.cycle.fill(sight);
+  ToolOrder order;
+  order.number = 1;
+  order.kind = ToolOrder::Kind::kGo;
+  order.run = sight.run;
+  std::copy_n(sight.p_BaseTool_m, 3, order.p_BaseTool_m);
+  std::copy_n(sight.R_BaseTool, 9, order.R_BaseTool);
+  order.p_BaseTool_m[1] += 0.1;
+  run.cell.cycle.order(order);
+  for (int i = 0; i < 20000 && run.cell.cycle.toolReport()->state != ToolState::kArrived; ++i) {
+    run.step(1);
+    ASSERT_NE(run.cell.cycle.toolReport()->state, ToolState::kBlocked) << i;
+  }
+  EXPECT_EQ(run.cell.cycle.toolReport()->state, ToolState::kArrived);
+}
+
 TEST(LostModule, IsForgottenWithItsContact) {
   // Lost before it touches: link 6 runs into its post unfelt, slowly.
   SkinRun run(skinScene("go_on_slowly"));
