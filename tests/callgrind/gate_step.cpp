@@ -5,6 +5,7 @@
 
 #include "support/crops9.h"
 #include "support/random.h"
+#include "support/task_kinematics.h"
 #include "tactus/control/friction_cone.h"
 #include "tactus/control/joint_limit_rows.h"
 #include "tactus/control/speed_rows.h"
@@ -23,12 +24,7 @@ struct Draw {
     q = random.vector(n, -0.8, 0.8);
     config.limits.lower = q - random.vector(n, 0.01, 0.2);
     config.limits.upper = q + random.vector(n, 0.01, 0.2);
-    config.chain.computePose(q, kinematics.pose);
-    ScaledJacobian J;
-    computeTipJacobian(config.chain, kinematics.pose,
-                       framePosition(kinematics.pose, config.chain.tip()),
-                       config.task.components.data(), config.task.size, ScaledVector::Ones(), J);
-    kinematics.pseudoinverse.factorise(J, n, config.task.size);
+    test::computeTaskKinematics(config, q, ScaledVector::Ones(), kinematics);
     motion.v_scaled = scaled(random.vector(n, -1.0, 1.0), ScaledVector::Ones());
     motion.y.setZero();
     for (int i = 0; i < config.task.size; ++i) motion.y[i] = random.uniform(-0.5, 0.5);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/rail_robot.h"
+#include "support/task_kinematics.h"
 #include "tactus/math/filter.h"
 
 /// The terms of the header one by one, on a rail: a = (-1, 0), of which half is in the null space.
@@ -23,13 +24,8 @@ struct AccelerationTerms {
     gains.activation_force_N = 3.0;
     input.stiffness_N_per_m = 1000.0;
     input.integral_decay = 1.0;
-    const SerialChain chain = test::railChain();
-    chain.computePose(JointVector::Zero(2), kinematics.pose);
-    const std::array<int, kMaxTaskSize> components{1};
-    ScaledJacobian J;
-    computeTipJacobian(chain, kinematics.pose, framePosition(kinematics.pose, chain.tip()),
-                       components.data(), 1, ScaledVector::Ones(), J);
-    kinematics.pseudoinverse.factorise(J, 2, 1);
+    test::computeTaskKinematics(test::railChain(), JointVector::Zero(2), {1}, ScaledVector::Ones(),
+                                kinematics);
     kinematics.y_eff.setZero();
     computeContactSpace(kinematics.pseudoinverse, -ScaledVector::Unit(0), ScaledVector::Ones(),
                         kinematics.y_eff, space);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "support/rail_robot.h"
+#include "support/task_kinematics.h"
 #include "tactus/control/clearance.h"
 #include "tactus/control/clearance_cost.h"
 #include "tactus/control/joint_limit_rows.h"
@@ -42,13 +43,7 @@ struct RailBeforeAWall {
     return JointVector{{kWall_m - kBall_m - distance_m, 0.0}};
   }
   void look(const Clearance& clearance, const JointVector& q) {
-    config.chain.computePose(q, kinematics.pose);
-    ScaledJacobian J;
-    const std::array<int, kMaxTaskSize> components{1};
-    computeTipJacobian(config.chain, kinematics.pose,
-                       framePosition(kinematics.pose, config.chain.tip()), components.data(), 1,
-                       inv_sqrt, J);
-    kinematics.pseudoinverse.factorise(J, 2, 1);
+    test::computeTaskKinematics(config.chain, q, {1}, inv_sqrt, kinematics);
     clearance.findNear(kinematics.pose, kinematics.near);
   }
   /// The gate of an arm there, whose task is its tip.

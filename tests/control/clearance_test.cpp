@@ -6,6 +6,7 @@
 
 #include "support/random_clearance.h"
 #include "support/random_limits.h"
+#include "support/task_kinematics.h"
 #include "tactus/control/command_limiter.h"
 #include "tactus/control/joint_limit_rows.h"
 
@@ -57,11 +58,7 @@ struct GuardedArm {
 
   void keepRows(JointVector& wanted) {
     const ScaledVector ones = ScaledVector::Ones();
-    ScaledJacobian J;
-    const Vector3 p_Tip = framePosition(kinematics.pose, config.chain.tip());
-    computeTipJacobian(config.chain, kinematics.pose, p_Tip, config.task.components.data(),
-                       config.task.size, ones, J);
-    kinematics.pseudoinverse.factorise(J, n, config.task.size);
+    test::computeTaskKinematics(config, q, ones, kinematics);
     SpeedRows rows;
     clearance->add(near, kinematics, ones, q, v, period_s, rows);
     JointLimitRows(config.limits, true).add(q, kinematics, ones, 1.0, rows);

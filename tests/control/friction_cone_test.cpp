@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/random_robot.h"
+#include "support/task_kinematics.h"
 
 namespace tactus {
 namespace {
@@ -20,17 +21,11 @@ struct ConeCase {
     contact.position_m = random.uniform(0.0, 0.5);
     const double angle = random.uniform(-3.0, 3.0);
     contact.direction = Vector3(0.0, std::cos(angle), std::sin(angle));
-    chain.computePose(q, kinematics.pose);
-    ScaledJacobian J;
-    const int components[] = {0, 1};
-    computeTipJacobian(chain, kinematics.pose, framePosition(kinematics.pose, chain.tip()),
-                       components, 2,
-                       scaled(JointVector(JointVector::Ones(n)), ScaledVector::Ones()), J);
-    kinematics.pseudoinverse.factorise(J, n, 2);
+    const ScaledVector ones = scaled(JointVector(JointVector::Ones(n)), ScaledVector::Ones());
+    test::computeTaskKinematics(chain, q, {0, 1}, ones, kinematics);
     const FrictionCone cone(module, mu);
     cone.add(chain, kinematics, contact.direction,
-             cone.around({contact.position_m, contact.position_m}),
-             scaled(JointVector(JointVector::Ones(n)), ScaledVector::Ones()), rows);
+             cone.around({contact.position_m, contact.position_m}), ones, rows);
   }
 
   Vector3 pointInBase(const JointVector& at, double position_m) const {

@@ -3,6 +3,7 @@
 #include "support/controller_run.h"
 #include "support/period.h"
 #include "support/rail_robot.h"
+#include "support/task_kinematics.h"
 #include "tactus/control/several_contacts.h"
 
 /// How the joints leave a contact: the way out as a row beside others.
@@ -187,12 +188,7 @@ TEST(RetreatRows, ShareWithOtherContactsAsAnyRow) {
   const ScaledVector inv_sqrt =
       scaled(JointVector(config.weights.cwiseSqrt().cwiseInverse()), ScaledVector::Ones());
   TaskKinematics kinematics;
-  config.chain.computePose(config.q_start, kinematics.pose);
-  ScaledJacobian J;
-  computeTipJacobian(config.chain, kinematics.pose,
-                     framePosition(kinematics.pose, config.chain.tip()),
-                     config.task.components.data(), 1, inv_sqrt, J);
-  kinematics.pseudoinverse.factorise(J, 2, 1);
+  test::computeTaskKinematics(config, config.q_start, inv_sqrt, kinematics);
   SpeedRows rows;
   SpeedRow& own = rows.row[rows.size++];
   own.a_scaled = -inv_sqrt[0] * ScaledVector::Unit(0);

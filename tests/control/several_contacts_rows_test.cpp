@@ -6,6 +6,7 @@
 
 #include "support/crops9.h"
 #include "support/rows_run.h"
+#include "support/task_kinematics.h"
 #include "tactus/control/sensed_position.h"
 #include "tactus/control/several_contacts.h"
 
@@ -35,12 +36,7 @@ struct CropsContact {
         }()),
         contacts(config, ScaledVector::Ones()),
         state(contacts.initialState()) {
-    config.chain.computePose(config.q_start, kinematics.pose);
-    ScaledJacobian J;
-    computeTipJacobian(config.chain, kinematics.pose,
-                       framePosition(kinematics.pose, config.chain.tip()),
-                       config.task.components.data(), config.task.size, ScaledVector::Ones(), J);
-    kinematics.pseudoinverse.factorise(J, config.chain.size(), config.task.size);
+    test::computeTaskKinematics(config, config.q_start, ScaledVector::Ones(), kinematics);
     for (int i = 0; i < modules; ++i) {
       ModuleContactState& module = state.modules[i];
       module.approach.memory_N_per_m = 1000.0;

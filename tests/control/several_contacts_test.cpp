@@ -9,6 +9,7 @@
 #include "support/crops9.h"
 #include "support/period.h"
 #include "support/rows_run.h"
+#include "support/task_kinematics.h"
 
 /// Contacts with rows of their own, on a rail.
 namespace tactus {
@@ -30,12 +31,7 @@ TEST(SeveralContacts, HaveTheConesAroundTheResultantAndTheStiffnessCentre) {
   config.force_control->friction_coefficient = 0.5;
   const ScaledVector inv_sqrt = ScaledVector::Ones();
   TaskKinematics kinematics;
-  config.chain.computePose(config.q_start, kinematics.pose);
-  ScaledJacobian J;
-  computeTipJacobian(config.chain, kinematics.pose,
-                     framePosition(kinematics.pose, config.chain.tip()),
-                     config.task.components.data(), config.task.size, inv_sqrt, J);
-  kinematics.pseudoinverse.factorise(J, config.chain.size(), config.task.size);
+  test::computeTaskKinematics(config, config.q_start, inv_sqrt, kinematics);
   const SeveralContacts contacts(config, inv_sqrt);
   const FrictionCone cone(config.tactile_modules.front(), 0.5);
   for (const double shift_m : {-0.05, 0.0, 0.05}) {
