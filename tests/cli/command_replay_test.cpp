@@ -8,6 +8,7 @@
 #include "tactus/cli/commands.h"
 #include "tactus/control/controller.h"
 #include "tactus/record/replay.h"
+#include "tactus/run/log_replay.h"
 #include "tactus/scene/input_error.h"
 
 namespace tactus {
@@ -264,6 +265,8 @@ TEST_F(CommandReplayOfParts, NothingComparedIsRefusedAndWritesNothing) {
     return text.replace(text.find("%s"), 2, verb);
   };
   EXPECT_EQ(refusal({third_.path(), "-o", csv_.path()}), lacks("parts 0 to 1 of the run", "are"));
+  EXPECT_THROW(replayLogs({.logs = {third_.path()}, .settings = {}, .output = {}}, [](double) {}),
+               MissingPartsError);
   EXPECT_FALSE(std::filesystem::exists(csv_.path()));
   records_.back().mode = static_cast<std::uint64_t>(Mode::kOff);  // a reset, with which it ends
   writePart(third_, "a", 2, 200, 400);

@@ -6,6 +6,7 @@
 
 #include "tactus/record/replay.h"
 #include "tactus/record/ulog_reader.h"
+#include "tactus/scene/input_error.h"
 #include "tactus/scene/json.h"
 
 namespace tactus {
@@ -23,6 +24,13 @@ struct ReplayResult {
   std::vector<LogExtent> extents;       ///< of each log
 
   bool isCutOff() const;  ///< any of the logs
+};
+
+/// No cycle can be replayed, as parts of the run before the logs are missing, and the logs do not
+/// tell what state the controller was in then.
+class MissingPartsError : public LocatedError {
+ public:
+  using LocatedError::LocatedError;
 };
 
 /// Feeds what was recorded to the controller of the log's scene. Throws InputError, also of logs
