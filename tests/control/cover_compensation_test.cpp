@@ -84,6 +84,22 @@ TEST(CoverCompensation, LeavesTheContactOfAnArmAtRestAnywhere) {
   }
 }
 
+/// It would turn the push.
+TEST(CoverCompensation, TellsNoMomentAboutTheLinkOfAModuleThatFeelsNone) {
+  test::Random random(907);
+  for (int i = 0; i < 10; ++i) {
+    ControllerConfig config = coveredRobot(random);
+    config.tactile_modules.front().feels_moment_x = false;
+    const CoverCompensation compensation(config, config.tactile_modules.front());
+    const auto n = static_cast<int>(config.q_start.size());
+    const JointVector q = random.vector(n, -2.0, 2.0);
+    TactileSample sample = sampleOf(random.vector<Wrench5>(5, -5.0, 5.0), 1);
+    sample.moment_x_Nm = 0.0;
+    CoverCompensationState state;
+    EXPECT_EQ(compensation.relieve(sample, q, kPeriod_s, state).moment_x_Nm, 0.0);
+  }
+}
+
 /// Joints swing, each with its own frequency.
 struct Swinging {
   JointVector q_middle, amplitude, frequency_hz;

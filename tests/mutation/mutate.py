@@ -82,13 +82,14 @@ def places_of(target, file, folder):
     return found
 
 
-def run(target, folder, options, listed):
+def run(target, folder, options, listed, unnoticed=()):
+    """listed: equivalents. unnoticed: what may survive, with what it would do."""
     folder.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         found = pool.map(lambda file: places_of(target, file, folder), target.files)
         every = [mutant for of_file in found for mutant in of_file]
-    stale = [entry for entry in listed if not any(reason_for(target, mutant, [entry]) for mutant in every
-                                                  if mutant.file == entry["file"])
+    stale = [entry for entry in [*listed, *unnoticed]
+             if not any(reason_for(target, mutant, [entry]) for mutant in every if mutant.file == entry["file"])
              and entry["file"] in target.files]
     for entry in stale:
         print(f"reason that fits no mutant any more: {entry['file']}: {entry['code']}: {entry['what']}")
@@ -117,22 +118,27 @@ def run(target, folder, options, listed):
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for done in [pool.submit(judge, mutant) for mutant in open_ones]:
             done.result()
-    return stale, table(target, mutants, known, listed, len(every))
+    return stale, table(target, mutants, known, listed, unnoticed, len(every))
 
 
-def table(target, mutants, known, listed, every):
+def table(target, mutants, known, listed, unnoticed, every):
     counts = collections.Counter()
     print("\n== what is not killed")
     for mutant in sorted(mutants):
         entry = reason_for(target, mutant, listed)
         state = "equivalent" if entry else known(mutant)[0]
         counts[state] += 1
+        if state == "survived":
+            entry = reason_for(target, mutant, unnoticed)
+            counts["without a reason"] += not entry
         if state == "survived" or entry:
-            print(f"{mutant.name}: {state}{': ' + entry['reason'] if entry else ''}\n    {code_at(target, mutant)}")
+            reason = entry["reason"] if entry else "WITHOUT A REASON"
+            print(f"{mutant.name}: {state}: {reason}\n    {code_at(target, mutant)}")
     judged = counts["killed"] + counts["survived"]
     low, high = interval_95(counts["killed"], judged)
-    print(f"\n{every} mutants, {len(mutants)} of them drawn: {counts['killed']} killed, {counts['survived']} survived, "
-          f"{counts['equivalent']} equivalent, {counts['does not compile']} do not compile")
+    print(f"\n{every} mutants, {len(mutants)} of them drawn: {counts['killed']} killed, {counts['survived']} survived "
+          f"({counts['without a reason']} without a reason), {counts['equivalent']} equivalent, "
+          f"{counts['does not compile']} do not compile")
     print(f"score: {counts['killed']} of {judged}, {100 * counts['killed'] / max(1, judged):.1f} %"
           + (f", 95 % interval {100 * low:.1f} to {100 * high:.1f} %" if len(mutants) < every else ""))
     return counts

@@ -89,9 +89,9 @@ class Toy(unittest.TestCase):
         return trials.Target(self.root, [FILE], {FILE: COMPILER}, {FILE: []}, link,
                              lambda file: [trials.Stage("toy", "toy")])
 
-    def run_all(self, sample=0, seed=1, listed=()):
+    def run_all(self, sample=0, seed=1, listed=(), unnoticed=()):
         options = argparse.Namespace(sample=sample, seed=seed, jobs=2, again=False)
-        return mutate.run(self.target(), self.root / "out", options, list(listed))
+        return mutate.run(self.target(), self.root / "out", options, list(listed), list(unnoticed))
 
     def state(self, what):
         for line in (self.root / "out" / "results.txt").read_text().splitlines():
@@ -148,6 +148,16 @@ class Toy(unittest.TestCase):
         stale, counts = self.run_all(listed=reasons)
         self.assertEqual(stale, reasons[1:])
         self.assertEqual(counts["equivalent"], 1)
+
+    def test_counts_what_survives_without_a_reason(self):
+        _, counts = self.run_all()
+        self.assertEqual(counts["without a reason"], counts["survived"])
+        reasons = [{"file": FILE, "code": "return x - 0.0;", "what": ["- becomes +"], "reason": "nobody asks"},
+                   {"file": FILE, "code": "return x - 1.0;", "what": ["- becomes +"], "reason": "no such line"}]
+        stale, again = self.run_all(unnoticed=reasons)
+        self.assertEqual(stale, reasons[1:])
+        self.assertEqual(again["survived"], counts["survived"])
+        self.assertEqual(again["without a reason"], counts["survived"] - 1)
 
     def test_the_interval_holds_the_share(self):
         low, high = mutate.interval_95(90, 100)
