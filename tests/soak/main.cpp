@@ -69,8 +69,10 @@ class Course {
  public:
   Course(const std::string& folder, double report_s) : folder_(folder), report_s_(report_s) {}
 
-  /// As a life begins.
+  /// As a life begins. What the one before has given back, the allocator may keep: a process of its
+  /// own would begin without.
   void begin(const Tally& tally) {
+    malloc_trim(0);
     note();
     heap_.push_back({tally.t_s, now_.heap_bytes});
     resident_.push_back({tally.t_s, now_.resident_bytes});
