@@ -159,7 +159,9 @@ void ControlCycle::withholdSamples(
 Fault ControlCycle::judgeModule(int module) noexcept {
   const TactileReceiver& receiver = robot_.tactileModules()[module];
   const bool is_boot = mode_.mode == Mode::kBoot;
-  if (!is_boot && hasFreshSample(module)) return receiver.fault();
+  // Of a module that was silent before the controller gets no such sample, but it may be a push.
+  const bool is_saturated = receiver.fault() == Fault::kTactileSaturated;
+  if (!is_boot && (is_saturated || hasFreshSample(module))) return receiver.fault();
   if (is_boot && receiver.tareState() == TareState::kRefused) {
     judged_.detail = receiver.tareRefusal();
     return Fault::kTareRefused;

@@ -201,6 +201,20 @@ TEST(LostModule, OfWhichMuchIsTooMuchToReadIsAFault) {
   EXPECT_NE(run.mode(), Mode::kRunning);
 }
 
+/// A push at its rail is a push, also of one that was out of reach before.
+TEST(LostModule, ThatComesBackWithTooMuchToReadIsAFault) {
+  SkinRun run(skinScene("go_on_slowly"));
+  run.cell.on_frame = kNoLink6;
+  run.step(300);
+  ASSERT_EQ(run.last().modules_lost, kLink6);
+  run.cell.on_frame = onModule(4, 0x100, saturate);
+  run.step(30);
+  EXPECT_EQ(faultName(run.fault()), std::string("tactile_saturated"));
+  EXPECT_EQ(run.cell.cycle.report().detail.module, 2);
+  EXPECT_NE(run.mode(), Mode::kRunning);
+  run.expectReplay();
+}
+
 TEST(LostModule, IsAFaultWhenNoOtherIsGood) {
   SkinRun run(skinScene("go_on_slowly"));
   run.cell.on_frame = [](int bus, CanFrame& frame) {
