@@ -173,12 +173,7 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   config.period_ns = std::llround(1e9 * scene.period_s);
   config.real_time = {real_time.priority, real_time.cpu};
   config.filter = &filter;
-  std::atomic<bool> has_ended{false};
-  PeriodicThread thread(config, [&](const Wake& wake) noexcept {
-    const bool goes_on = loop->cycle(wake);
-    if (!goes_on) has_ended.store(true, std::memory_order_release);
-    return goes_on;
-  });
+  PeriodicThread thread(config, [&](const Wake& wake) noexcept { return loop->cycle(wake); });
   refusals.insert(refusals.end(), thread.refusals().begin(), thread.refusals().end());
   judgeRefusals(refusals, real_time.required);
   // A run that is refused leaves no files.
@@ -190,7 +185,7 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   const std::int64_t process_start_ns = processTime_ns();
   thread.start();
   const StopRequests stop_requests(link.stop_requested);
-  while (!has_ended.load(std::memory_order_acquire)) {
+  while (!link.pulse.has_ended.load(std::memory_order_acquire)) {
     std::this_thread::sleep_for(kDrainPeriod);
     telemetry.drain();
   }

@@ -16,6 +16,7 @@ void LoopSide::finish(const Wake& wake, const LoopTimes& times, ControlCycle& cy
   cycle.prepare();
   reportGains(cycle);
   reportTool(cycle);
+  if (cycle.isFinished()) link_.pulse.has_ended.store(true, std::memory_order_release);
 }
 
 void LoopSide::publish(const Wake& wake, const LoopTimes& times,

@@ -14,6 +14,7 @@ bool LoopHealth::look() noexcept {
   const std::int64_t cycles = pulse_.cycles.load(std::memory_order_relaxed);
   const bool has_moved_on = cycles != seen_cycles_;
   seen_cycles_ = cycles;
+  if (pulse_.has_ended.load(std::memory_order_relaxed)) return true;
   return has_moved_on && pulse_.late_in_a_row.load(std::memory_order_relaxed) <= max_late_cycles_;
 }
 

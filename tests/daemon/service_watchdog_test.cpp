@@ -41,6 +41,18 @@ TEST(LoopHealth, isNotThatOfALoopThatMissesCycles) {
   EXPECT_TRUE(lookLate(0));  // caught up
 }
 
+/// The log's last bytes may wait for a disk; to be started anew for that would move the arm.
+TEST(LoopHealth, isThatOfALoopThatHasEnded) {
+  LoopPulse pulse;
+  LoopHealth health(pulse, 3);
+  pulse.cycles = 1;
+  pulse.late_in_a_row = 4;  // by an overrun
+  EXPECT_FALSE(health.look());
+  pulse.has_ended = true;
+  EXPECT_TRUE(health.look());
+  EXPECT_TRUE(health.look());
+}
+
 /// A loop in the hands of the test.
 class CountingLoop {
  public:

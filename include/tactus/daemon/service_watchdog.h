@@ -18,7 +18,9 @@ class LoopHealth {
       : pulse_(pulse), max_late_cycles_(max_late_cycles) {}
 
   /// True: the loop has counted cycles since the last look, and is not later than the fault
-  /// `overrun` allows.
+  /// `overrun` allows; or it has ended. Then the arm rests, and a disk may keep what is left of the
+  /// log waiting: a manager that ended that as a hang would start the daemon again, after a fault,
+  /// too, and the arm would move unasked.
   bool look() noexcept;
 
  private:
