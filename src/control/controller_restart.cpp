@@ -5,6 +5,12 @@
 
 /// How an arm goes on that its drives had stopped by themselves.
 namespace tactus {
+namespace {
+
+/// m or rad; less is an encoder's rounding, and no jump.
+constexpr double kBeside = 1e-4;
+
+}  // namespace
 
 void Controller::restart(const Gains& gains, ControllerState& state) const noexcept {
   if (joint_limit_avoidance_ && state.return_share > 0.0) {  // else it has not moved since
@@ -32,6 +38,11 @@ void Controller::place(const JointVector& q, const Gains& gains,
   state.is_leaning = config_.force_control && std::ranges::any_of(state.modules, isPushed);
   state.way_out_added = -limitCost(gains, state).gradient;
   if (state.is_leaning) state.way_out_added -= state.way_out_before;
+}
+
+void Controller::begin(ControllerState& state) const noexcept {
+  const JointVector beside = state.q_desired - config_.q_start;
+  if (beside.cwiseAbs().maxCoeff() > kBeside) state.return_share = 0.0;
 }
 
 void Controller::goOn(const Gains& gains, ControllerState& state) const noexcept {

@@ -18,6 +18,7 @@ void applyMode(const Controller& controller, Mode mode, Mode before, const Robot
   // Where drives stop by themselves, the arm is where they say.
   if (!isCommanding(mode) || !isCommanding(before))
     controller.place(input.q_measured, gains, state);
+  if (isCommanding(mode) && !isCommanding(before)) controller.begin(state);
   if (mode == Mode::kRetreating && before != Mode::kRetreating)
     controller.beginRetreat(gains, state);
   state.retreat.is_under_way = mode == Mode::kRetreating;

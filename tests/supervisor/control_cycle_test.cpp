@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -135,6 +136,35 @@ TEST(ControlCycleBoot, TakesAnArmForWhereItIs) {
   EXPECT_NEAR(cell.record().q[4], scene.controller.q_start[4] - off, 1e-3);
   for (int i = 0; i < 100; ++i) cell.step();
   EXPECT_EQ(cell.cycle.report().fault, Fault::kNone) << faultName(cell.cycle.report().fault);
+}
+
+/// Of the first 0.5 s, of an arm that stands so many tolerances beside its start.
+double fastestAtItsStart(double tolerances) {
+  Scene scene = shippedScene("scenario1_null_space", {{"task.drift_gain_per_s", "200"}});
+  VirtualRobotCell cell(scene);
+  for (int joint = 0; joint < 9; ++joint)
+    scene.controller.q_start[joint] +=
+        (joint % 2 == 0 ? tolerances : -tolerances) * scene.hardware->start_tolerance;
+  cell.cycle = ControlCycle(scene.controller, *scene.hardware, scene.period_s);
+  EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000)) << faultName(cell.cycle.report().fault);
+  const Controller controller(scene.controller);
+  Replayer replayer(controller, 9, scene.period_s);
+  ReplayComparison comparison(RecordShape{9, 3});
+  double fastest = 0.0;
+  for (int i = 0; i < 500; ++i, cell.step()) {
+    const CycleRecord record = cell.record();
+    comparison.add(record, replayer.replay(record));
+    for (int joint = 0; joint < 9; ++joint) fastest = std::max(fastest, std::abs(record.dq[joint]));
+  }
+  EXPECT_EQ(comparison.differingCycles(), 0);
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kNone) << faultName(cell.cycle.report().fault);
+  return fastest;
+}
+
+/// As one that its drives had let go.
+TEST(ControlCycleBoot, LeadsAnArmGentlyToItsPathFromBesideItsStart) {
+  EXPECT_LT(fastestAtItsStart(0.0), 0.01) << "the path does not begin slowly: this test is blind";
+  EXPECT_LT(fastestAtItsStart(0.9), 0.2);
 }
 
 TEST(ControlCycleBoot, NamesTheDriveThatDoesNotAnswer) {

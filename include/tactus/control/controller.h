@@ -101,6 +101,10 @@ class Controller {
   /// For an arm that stands at q, wherever it was commanded to be, m or rad.
   void place(const JointVector& q, const Gains& gains, ControllerState& state) const noexcept;
 
+  /// For an arm that was placed and begins to move: from beside the configured start it returns to
+  /// its path gently, as after restart().
+  void begin(ControllerState& state) const noexcept;
+
   /// For an arm that a tactile fault takes from its task, with is_stopping: out of the contact, or
   /// back the way it came, until state.retreat.is_over; see retreat.h.
   void beginRetreat(const Gains& gains, ControllerState& state) const noexcept;
