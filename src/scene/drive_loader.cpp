@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "tactus/canopen/moteus_frames.h"
 #include "tactus/scene/key_words.h"
 
 namespace tactus {
@@ -124,6 +125,13 @@ void checkIsDistinct(const LoadingRobot& l, std::size_t i) {
   if (drive.config.node_id == l.can.canopen.master_node_id) {
     l.fail(path + ".node_id", fmt::format("{} is the master's", drive.config.node_id),
            "another one than can.master_node_id");
+  }
+  const bool is_beside_moteus = std::ranges::any_of(l.config.drives.joints, [&](const auto& other) {
+    return other.interface == drive.interface && other.config.kind == DriveKind::kMoteus;
+  });
+  if (drive.config.node_id == kEveryMoteus && is_beside_moteus) {
+    l.fail(path + ".node_id", "127 is that of every moteus on the same bus",
+           "1 to 126 on a bus with a moteus");
   }
   for (std::size_t k = 0; k < i; ++k) {
     const DriveSection& other = l.config.drives.joints[k];

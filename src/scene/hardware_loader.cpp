@@ -102,6 +102,18 @@ std::vector<UsedId> moduleIds(const HardwareConfig& hardware, std::size_t before
   return ids;
 }
 
+/// Hazard: a moteus takes what a module says for commands, as of its mode.
+void checkAddress(const LoadingRobot& l, const DriveConfig& moteus, const CanTactileConfig& module,
+                  const std::string& path) {
+  for (std::uint32_t id = module.first_id; id < module.first_id + 4; ++id) {
+    const int address = moteusAddressOf(id);
+    if (address != moteus.node_id && address != kEveryMoteus) continue;
+    l.fail(path,
+           fmt::format("frame {:#05x} is one to moteus {} on the same bus", id, moteus.node_id),
+           "four ids whose low bytes are neither its node_id nor 127");
+  }
+}
+
 void checkModuleIds(const LoadingRobot& l, const HardwareConfig& hardware, std::size_t index) {
   const CanTactileConfig& module = hardware.tactile_modules[index];
   std::vector<UsedId> ids = usedIds(hardware, module.bus);
@@ -111,6 +123,10 @@ void checkModuleIds(const LoadingRobot& l, const HardwareConfig& hardware, std::
     l.fail(moduleKey(l.root, index) + ".first_id",
            fmt::format("frame {:#05x} is the {} on the same bus", used.id, used.name),
            "four ids of its own");
+  }
+  for (const DriveConfig& drive : hardware.drives) {
+    if (drive.kind == DriveKind::kMoteus && drive.bus == module.bus)
+      checkAddress(l, drive, module, moduleKey(l.root, index) + ".first_id");
   }
 }
 

@@ -92,7 +92,16 @@ INSTANTIATE_TEST_SUITE_P(
         test::BrokenText{"node_id: 2, kind: moteus", "node_id: 2, kind: moteus, eds: a.eds",
                          "robot.yaml:16:", "no CANopen device", "not this key"},
         test::BrokenText{"interface: can1\n  first_id: 0x110", "interface: can0\n  first_id: 0xFE",
-                         "robot.yaml:", "0x100 is the reply of moteus 1", "four ids"}));
+                         "robot.yaml:", "0x100 is the reply of moteus 1", "four ids"},
+        // A moteus obeys whatever is in a frame to its node, and in one to all.
+        test::BrokenText{"interface: can1\n  first_id: 0x110", "interface: can0\n  first_id: 0x2FF",
+                         "robot.yaml:", "0x301 is one to moteus 1", "low bytes"},
+        test::BrokenText{"interface: can1\n  first_id: 0x110", "interface: can0\n  first_id: 0x27C",
+                         "robot.yaml:", "0x27f is one to moteus 1", "low bytes"},
+        test::BrokenText{"node_id: 2, kind: moteus", "node_id: 127, kind: moteus",
+                         "robot.yaml:16:", "127 is that of every moteus", "1 to 126"},
+        test::BrokenText{"interface: can1, node_id: 9", "interface: can0, node_id: 127",
+                         "robot.yaml:14:", "127 is that of every moteus", "1 to 126"}));
 
 }  // namespace
 }  // namespace tactus

@@ -65,6 +65,11 @@ constexpr std::uint32_t moteusReplyId(int node_id) noexcept {
 
 CanFrame moteusCommandFrame(int node_id, const MoteusCommand& command) noexcept;
 
+/// A controller obeys what is in any frame whose id ends in its node or in this, whoever sent it:
+/// of 11 bits or 29, classic or FD.
+inline constexpr int kEveryMoteus = 127;
+constexpr int moteusAddressOf(std::uint32_t id) noexcept { return static_cast<int>(id & 0xFF); }
+
 /// What a controller replies; numbers as they came, which may be NaN.
 struct MoteusReply {
   int mode = 0;
