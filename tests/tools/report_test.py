@@ -7,7 +7,9 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -375,6 +377,41 @@ class Incomplete(Report):
         folders = [self.runs / "scenario2_assumed", self.runs / "scenario2_estimated"]
         self.assertEqual(self.report(*folders, "-o", output).returncode, 0)
         self.assertNotIn("Missing: scenario2", output.read_text(encoding="utf-8"))
+
+
+class Unwritten(Report):
+    def setUp(self):
+        super().setUp()
+        write_run(self.runs, "one")
+
+    def run_report(self, *arguments, **more):
+        return subprocess.run([REPORT, self.runs, *arguments], stderr=subprocess.PIPE, text=True, **more)
+
+    def test_a_full_disk_leaves_the_page_that_was_there(self):
+        self.report()
+        before = self.page()
+        result = self.run_report(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)),
+                                 stdout=subprocess.DEVNULL)
+        self.assertEqual((result.returncode, result.stderr),
+                         (1, f"{self.runs / 'report.html'}: cannot be written: File too large\n"))
+        self.assertEqual(self.page(), before)
+        self.assertEqual(sorted(path.name for path in self.runs.iterdir()), ["one", "report.html"])
+
+    def test_a_device_is_written_to(self):
+        result = self.run_report("-o", "/dev/full", stdout=subprocess.DEVNULL)
+        self.assertEqual((result.returncode, result.stderr),
+                         (1, "/dev/full: cannot be written: No space left on device\n"))
+        self.assertEqual(self.run_report("-o", "/dev/null", stdout=subprocess.DEVNULL).returncode, 0)
+
+    def test_standard_output_that_is_full_or_gone(self):
+        with open("/dev/full", "w") as full:
+            result = self.run_report(stdout=full)
+        self.assertEqual((result.returncode, result.stderr), (1, "standard output: cannot be written\n"))
+        reading, writing = os.pipe()
+        os.close(reading)
+        result = self.run_report(stdout=writing)
+        os.close(writing)
+        self.assertEqual((result.returncode, result.stderr), (-signal.SIGPIPE, ""))
 
 
 class OneScene(Report):
