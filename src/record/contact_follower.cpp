@@ -42,8 +42,7 @@ ContactFollower::ContactFollower(const ControllerConfig& config, std::size_t exp
       list_(contactList(config, expected_cycles, module)) {}
 
 void ContactFollower::Sums::add(const Cycle& cycle) noexcept {
-  if (cycle.force_N > peak_N) position_m = cycle.position_m;
-  peak_N = std::max(peak_N, cycle.force_N);
+  addPeak(cycle);
   above_s += cycle.above_s;
   tool_error_m = std::max(tool_error_m, cycle.tool_error_m);
   stiffness_N_per_m = cycle.stiffness_N_per_m;
@@ -51,6 +50,11 @@ void ContactFollower::Sums::add(const Cycle& cycle) noexcept {
   task_way_m += cycle.task_way_m;
   answers += cycle.answers ? 1 : 0;
   null_answers += cycle.answers_by_null_space_alone ? 1 : 0;
+}
+
+void ContactFollower::Sums::addPeak(const Cycle& cycle) noexcept {
+  if (cycle.force_N > peak_N) position_m = cycle.position_m;
+  peak_N = std::max(peak_N, cycle.force_N);
 }
 
 std::optional<ContactFigures> ContactFollower::add(const CycleRecord& record) {
@@ -131,8 +135,12 @@ ContactFollower::Cycle ContactFollower::cycleOf(const CycleRecord& record) const
 
 ContactFigures ContactFollower::figuresOf(const ContactSummary& contact) const {
   Sums sums = sums_;
-  for (const Cycle& cycle : recent_)
-    if (cycle.t_s <= contact.end_s) sums.add(cycle);
+  for (const Cycle& cycle : recent_) {
+    if (cycle.t_s <= contact.end_s)
+      sums.add(cycle);
+    else  // a last bounce counts in peak_force_N, too
+      sums.addPeak(cycle);
+  }
   ContactFigures figures;
   static_cast<ContactSummary&>(figures) = contact;
   figures.position_m = sums.position_m;

@@ -55,6 +55,17 @@ TEST(ContactFollower, OfAForceThatRests) {
   EXPECT_NEAR(figures.time_above_s, 1.0, 2e-3);  // F_act + F_th is 3.8 N
 }
 
+/// Behind the release, but within the 0.1 s that tell it.
+TEST(ContactFollower, OfALastBounceHasForceAndPlace) {
+  const ContactFigures figures = followed([](double t_s) {
+    const bool is_bounce = t_s > 4.0495 && t_s < 4.0525;
+    return is_bounce ? 9.0 : t_s < 4.0 ? kFollowed_N : 0.0;
+  });
+  EXPECT_NEAR(figures.end_s, 4.0, 1e-9);
+  EXPECT_NEAR(figures.peak_force_N, 9.0, 1e-9);
+  EXPECT_NEAR(figures.position_m, 4.05, 1e-9);
+}
+
 TEST(ContactFollower, OfOneThatSwings) {
   const ContactFigures figures = followed(
       [](double t_s) { return kFollowed_N + 0.5 * std::sin(2.0 * std::numbers::pi * 7.0 * t_s); });

@@ -43,6 +43,7 @@ class ContactFollower {
     long long answers = 0, null_answers = 0;
 
     void add(const Cycle& cycle) noexcept;
+    void addPeak(const Cycle& cycle) noexcept;
   };
 
   void passTime(const CycleRecord& record) noexcept;
