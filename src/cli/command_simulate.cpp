@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -58,12 +59,13 @@ std::vector<Scene> loadScenes(const SimulateOptions& options) {
   return scenes;
 }
 
-/// All folders are prepared before the first scene runs, too.
-std::vector<fs::path> prepareFolders(const SimulateOptions& options,
+/// All folders are prepared before the first scene runs, too. Nobody else may write there until all
+/// have: of two logs in one file nobody could read any.
+std::deque<RunFolder> prepareFolders(const SimulateOptions& options,
                                      const std::vector<Scene>& scenes) {
-  std::vector<fs::path> folders;
+  std::deque<RunFolder> folders;
   for (const Scene& scene : scenes)
-    folders.push_back(prepareRunFolder(options.directory, options.name.value_or(scene.name)));
+    folders.emplace_back(options.directory, options.name.value_or(scene.name));
   return folders;
 }
 
@@ -97,17 +99,17 @@ SimulationResult simulateScene(const Scene& scene, const fs::path& folder) {
 int simulateScenes(const SimulateOptions& options) {
   checkName(options);
   const std::vector<Scene> scenes = loadScenes(options);
-  const std::vector<fs::path> folders = prepareFolders(options, scenes);
+  const std::deque<RunFolder> folders = prepareFolders(options, scenes);
   int exit_code = kExitDone;
   if (!options.json) printHeading();
   Json json = Json::array();  // printed at the end, so that a failed run leaves no unfinished list
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const SimulationResult result = simulateScene(scenes[i], folders[i]);
+    const SimulationResult result = simulateScene(scenes[i], folders[i].path());
     if (result.figures.end.fault != Fault::kNone) exit_code = kExitFault;
     if (options.json) {
       json.push_back(summaryJson(scenes[i], result.figures, result.real_time_factor));
     } else {
-      printRow(folders[i].filename().string(), scenes[i], result);
+      printRow(folders[i].path().filename().string(), scenes[i], result);
       std::fflush(stdout);
     }
   }

@@ -1,5 +1,7 @@
 #include "tactus/record/run_folder.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -35,7 +37,9 @@ void checkRunName(const std::string& name) {
          "expected that of one folder, without /");
 }
 
-fs::path prepareRunFolder(const std::string& directory, const std::string& name) {
+namespace {
+
+fs::path makeFolder(const std::string& directory, const std::string& name) {
   if (directory.empty()) failAtOutput("", "no folder", "expected a path");
   const fs::path folder = fs::path(directory) / name;
   std::error_code error;
@@ -47,11 +51,38 @@ fs::path prepareRunFolder(const std::string& directory, const std::string& name)
     failAtOutput(folder, "cannot be written to: " + error.message(),
                  "expected a folder or room to make one");
   }
+  return folder;
+}
+
+void removeEarlierFrom(const fs::path& folder) {
   removeEarlier(folder / kSummaryName, "expected an earlier summary or nothing");
   removeEarlier(folder / kNextLogName, "expected an earlier log or nothing");
   for (int age = 1; age <= kMaxKeptLogs; ++age)
     removeEarlier(folder / logName(age), "expected an earlier log or nothing");
+}
+
+}  // namespace
+
+fs::path prepareRunFolder(const std::string& directory, const std::string& name) {
+  fs::path folder = makeFolder(directory, name);
+  removeEarlierFrom(folder);
   return folder;
+}
+
+FolderHold::FolderHold(const std::string& folder) noexcept
+    : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (fd_ >= 0) is_elsewhere_ = ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
+FolderHold::~FolderHold() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+RunFolder::RunFolder(const std::string& directory, const std::string& name)
+    : path_(makeFolder(directory, name)), hold_(path_) {
+  if (hold_.isElsewhere())
+    failAtOutput(path_, "another run writes there", "expected another folder");
+  removeEarlierFrom(path_);
 }
 
 }  // namespace tactus

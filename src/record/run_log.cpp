@@ -1,8 +1,6 @@
 #include "tactus/record/run_log.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -58,15 +56,6 @@ Json logJson(const LogState& state, const char* unless_stopped) {
   json["files"] = state.files;
   json["removed_files"] = state.removed_files;
   return json;
-}
-
-RunLog::FolderHold::FolderHold(const std::string& folder) noexcept
-    : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (fd_ >= 0) ::flock(fd_, LOCK_EX | LOCK_NB);
-}
-
-RunLog::FolderHold::~FolderHold() {
-  if (fd_ >= 0) ::close(fd_);
 }
 
 RunLog::RunLog(const Scene& scene, std::string folder)

@@ -3,6 +3,7 @@
 
 usage: bad_input_test.py TACTUS
 """
+import fcntl
 import json
 import os
 import pathlib
@@ -346,6 +347,20 @@ class BadInput(unittest.TestCase):
         error = json.loads(result.stdout)
         self.assertEqual((error["done"], error["error"] + "\n"), (False, result.stderr))
         self.assertFalse((folder / "summary.json").exists())
+
+    def test_folder_of_another_run(self):
+        folder = self.folder / "out" / GOOD.stem
+        folder.mkdir(parents=True)
+        for name in ("run.ulg", "summary.json"):
+            (folder / name).write_text("another's")
+        held = os.open(folder, os.O_RDONLY)
+        self.addCleanup(os.close, held)
+        fcntl.flock(held, fcntl.LOCK_EX)
+        self.expect_all_refuse([["simulate", GOOD, *SHORT, "-o", "out"]],
+                               f"out/{GOOD.stem}:1:1: -o: another run writes there, expected another folder")
+        self.assertEqual([(folder / name).read_text() for name in ("run.ulg", "summary.json")], ["another's"] * 2)
+        fcntl.flock(held, fcntl.LOCK_UN)
+        self.assertEqual(self.run_tactus("simulate", GOOD, *SHORT, "-o", "out").returncode, 0)
 
     def test_full_standard_output(self):
         commands = (

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "tactus/record/run_folder.h"
 #include "tactus/record/ulog_writer.h"
 #include "tactus/scene/json.h"
 #include "tactus/scene/scene.h"
@@ -41,19 +42,6 @@ class RunLog {
   const LogState& state() const noexcept { return state_; }
 
  private:
-  /// Keeps systemd-tmpfiles, which removes old logs, from the folder of a run that goes on: one
-  /// that waits long for its enable line writes nothing.
-  class FolderHold {
-   public:
-    explicit FolderHold(const std::string& folder) noexcept;
-    ~FolderHold();
-    FolderHold(const FolderHold&) = delete;
-    FolderHold& operator=(const FolderHold&) = delete;
-
-   private:
-    int fd_;
-  };
-
   template <typename Step>
   void attempt(const Step& step);
   void stop(const std::string& reason);
@@ -64,7 +52,7 @@ class RunLog {
 
   LogConfig config_;
   std::string folder_;
-  FolderHold hold_;
+  FolderHold hold_;  ///< also while a run that waits long for its enable line writes nothing
   LogDescription description_;
   int part_ = 0;
   double t_s_ = 0.0;       ///< of the last cycle
