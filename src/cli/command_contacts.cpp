@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
+#include "tactus/daemon/named_file.h"
 #include "tactus/daemon/running_log.h"
 #include "tactus/record/contact_figures.h"
 #include "tactus/record/contact_json.h"
@@ -170,8 +171,10 @@ void addContactsCommand(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<ContactsOptions>();
   CLI::App* const command =
       app.add_subcommand("contacts", "Show each contact of a run, a row each");
-  command->add_option("log", options->log,
-                      "Log of a run (run.ulg); else all that there are of the daemon that runs");
+  command
+      ->add_option("log", options->log,
+                   "Log of a run (run.ulg); else all that there are of the daemon that runs")
+      ->check(isNamed);
   command->add_flag("--follow", options->follows, "Go on with those that come, until the run ends");
   command->add_flag("--json", options->json, "Print JSON; with --follow an object a line");
   command->callback([options, &exit_code] {

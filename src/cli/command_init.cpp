@@ -153,6 +153,7 @@ std::string draftSummary(const RobotDraft& draft, const std::vector<SourceFile>&
 
 void init(const InitOptions& options) {
   namespace fs = std::filesystem;
+  if (options.folder.empty()) failAt(beginOf(""), "-o", "no folder", "expected a path");
   const fs::path folder = options.folder;
   const std::string robot = (folder / "robot.yaml").string(),
                     scene = (folder / "scene.yaml").string();

@@ -8,6 +8,7 @@
 
 #include "tactus/cli/commands.h"
 #include "tactus/cli/progress_line.h"
+#include "tactus/daemon/named_file.h"
 #include "tactus/run/log_replay.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/json.h"
@@ -87,8 +88,10 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
                        "; shows what that changes of the commands, while "
                        "forces stay as they were recorded")
       ->allow_extra_args(false);
-  command->add_option("-o,--output", options->request.output,
-                      "Write recorded and replayed commands as CSV, - for standard output");
+  command
+      ->add_option("-o,--output", options->request.output,
+                   "Write recorded and replayed commands as CSV, - for standard output")
+      ->check(isNamed);
   command->add_flag("--json", options->json, "Print the comparison as JSON");
   command->callback([options, &exit_code] { exit_code = runReplay(*options); });
 }

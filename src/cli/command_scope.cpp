@@ -4,6 +4,7 @@
 
 #include "tactus/cli/commands.h"
 #include "tactus/cli/scope_run.h"
+#include "tactus/daemon/named_file.h"
 #include "tactus/daemon/number_within.h"
 #include "tactus/scene/exit_code.h"
 
@@ -24,8 +25,9 @@ void addScopeCommand(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<ScopeOptions>();
   CLI::App* const command =
       app.add_subcommand("scope", "Show contacts over each other, as an oscilloscope does");
-  command->add_option("log", options->log,
-                      "Log of a run (run.ulg); else that of the daemon that runs");
+  command
+      ->add_option("log", options->log, "Log of a run (run.ulg); else that of the daemon that runs")
+      ->check(isNamed);
   command->add_option("--trigger", options->trigger,
                       "FIELD > NUMBER, also < >= <=, as 'force_N[0] > 1.2'; else force of any "
                       "module above F_th");
@@ -54,7 +56,7 @@ void addScopeCommand(CLI::App& app, int& exit_code) {
   command->add_option("--keep", options->keep, "How many of the last ones are shown")
       ->check(CLI::Range(1, 20))
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "HTML file to write");
+  command->add_option("-o,--output", options->output, "HTML file to write")->check(isNamed);
   command->add_flag("--follow", options->follows, "Go on with what comes, until the run ends");
   command->add_flag("--json", options->json, "Print JSON; with --follow an object a line");
   command->callback([options, &exit_code] {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tactus/cli/commands.h"
+#include "tactus/daemon/named_file.h"
 #include "tactus/daemon/number_within.h"
 #include "tactus/daemon/running_log.h"
 #include "tactus/io/datagram_socket.h"
@@ -97,7 +98,8 @@ void addStreamCommand(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<StreamOptions>();
   CLI::App* const command =
       app.add_subcommand("stream", "Send the run that goes on to PlotJuggler");
-  command->add_option("log", options->log, "Log of the run; else that of the daemon that runs");
+  command->add_option("log", options->log, "Log of the run; else that of the daemon that runs")
+      ->check(isNamed);
   command->add_option("--plotjuggler", options->to, "HOST:PORT of its UDP server")
       ->expected(0, 1)
       ->capture_default_str();

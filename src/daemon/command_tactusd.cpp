@@ -11,6 +11,7 @@
 #include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/daemon_program.h"
 #include "tactus/daemon/daemon_run.h"
+#include "tactus/daemon/named_file.h"
 #include "tactus/daemon/number_within.h"
 #include "tactus/record/log_size.h"
 #include "tactus/record/run_folder.h"
@@ -66,7 +67,8 @@ int runArguments(int argc, char** argv) {
                "Let the daemon that runs take the gains of its scene file anew, and end")
       ->excludes(scene);
   app.add_option("-o,--output", options.folder,
-                 "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files");
+                 "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files")
+      ->check(isNamed);
   app.add_option("--name", options.name, kNameHelp);
   app.add_option("--duration", options.duration_s, "End after so many seconds of motion")
       ->check(numberWithin(1e-3, 1e9));

@@ -362,6 +362,18 @@ class BadInput(unittest.TestCase):
         fcntl.flock(held, fcntl.LOCK_UN)
         self.assertEqual(self.run_tactus("simulate", GOOD, *SHORT, "-o", "out").returncode, 0)
 
+    def test_files_without_a_name(self):
+        self.assertEqual(self.run_tactus("simulate", GOOD, *SHORT, "-o", "out").returncode, 0)
+        log = f"out/{GOOD.stem}/run.ulg"
+        for command in (["replay", log, "-o", ""], ["scope", log, "-o", ""], ["scope", ""], ["contacts", ""],
+                        ["stream", ""]):
+            result = self.run_tactus(*command)
+            self.assertEqual(result.returncode, 2, result)
+            self.assertIn("no name, expected a path", result.stderr)
+        result = subprocess.run([TACTUS.with_name("tactusd"), GOOD, "-o", ""], capture_output=True, text=True)
+        self.assertEqual((result.returncode, "no name, expected a path" in result.stderr), (2, True), result)
+        self.expect_all_refuse([["init", GOOD, "-o", ""]], "-:1:1: -o: no folder, expected a path")
+
     def test_full_standard_output(self):
         commands = (
             ["simulate", "--json", GOOD, *SHORT, "-o", "out"],
