@@ -130,6 +130,17 @@ Json draftJson(const RobotDraft& draft, const std::vector<SourceFile>& files) {
           {"unknown", unknown}};
 }
 
+/// To be pasted into a shell.
+std::string asWord(const std::string& path) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+,:@%";
+  const std::string shown = escaped(path);
+  if (shown != path || shown.find_first_not_of(kPlain) == std::string::npos) return shown;
+  std::string quoted = "'";
+  for (const char c : shown) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
 std::string draftSummary(const RobotDraft& draft, const std::vector<SourceFile>& files) {
   const Vector3& tool = draft.X_BaseTool.p_AB;
   std::string text;
@@ -147,7 +158,7 @@ std::string draftSummary(const RobotDraft& draft, const std::vector<SourceFile>&
     text += fmt::format("warning   {}\n", escaped(warning));
   for (const UnknownPart& part : unknownParts())
     text += fmt::format("unknown   {}: {}\n", part.what, part.how);
-  const std::string scene = escaped(files.back().path);
+  const std::string scene = asWord(files.back().path);
   return text + fmt::format("next      tactus check {0}; tactus simulate {0} -o runs\n", scene);
 }
 

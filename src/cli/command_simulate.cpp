@@ -79,9 +79,9 @@ void printHeading() {
 void printRow(const std::string& name, const Scene& scene, const SimulationResult& result) {
   const RunFigures& figures = result.figures;
   fmt::print(
-      "{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", name, figures.peak_force_N,
-      figures.final_force_N, 1e3 * figures.tcp_error_max_m, 1e3 * figures.tcp_error_final_m,
-      result.real_time_factor,
+      "{:<28} {:9.3f} {:9.3f} {:10.3f} {:10.3f} {:7.0f}x  {}\n", escaped(name),
+      figures.peak_force_N, figures.final_force_N, 1e3 * figures.tcp_error_max_m,
+      1e3 * figures.tcp_error_final_m, result.real_time_factor,
       figures.end.fault == Fault::kNone ? "completed" : escaped(faultEvent(figures.end, scene)));
   if (figures.unsensed && figures.unsensed->force_N > 0.0)
     fmt::print("{:<28} {}\n", "", escaped(unsensedText(*figures.unsensed, scene)));

@@ -90,11 +90,12 @@ std::string ofCollisions(const UrdfTree& tree, const Scene& scene) {
       if (!is_of_arm) continue;
       const auto capsule = capsuleOf({tree, child, "link." + name + ".collision"});
       if (!capsule) {
-        text += fmt::format("  # {}: a mesh, of which no capsule is made: measure it\n", name);
+        text +=
+            fmt::format("  # {}: a mesh, of which no capsule is made: measure it\n", escaped(name));
       } else if (has_module) {
         text +=
             fmt::format("  # {} has a tactile module: of this keep what its cover leaves free\n",
-                        name) +
+                        escaped(name)) +
             "  #" + lineOf(name, *capsule).substr(1);
       } else {
         text += lineOf(name, *capsule);

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -373,6 +374,32 @@ class BadInput(unittest.TestCase):
         result = subprocess.run([TACTUS.with_name("tactusd"), GOOD, "-o", ""], capture_output=True, text=True)
         self.assertEqual((result.returncode, "no name, expected a path" in result.stderr), (2, True), result)
         self.expect_all_refuse([["init", GOOD, "-o", ""]], "-:1:1: -o: no folder, expected a path")
+
+    def test_names_of_runs_reach_no_terminal_as_commands(self):
+        result = self.run_tactus("simulate", GOOD, *SHORT, "-o", "out", "--name", "a\x1b[31m\nb")
+        self.assertEqual(result.returncode, 0, result)
+        self.assertNotIn("\x1b", result.stdout)
+        self.assertIn("a\\x1b[31m\\x0ab ", result.stdout)
+
+    def test_folders_with_a_space_are_words_of_the_next_command(self):
+        urdf = CONFIG / "robots/kuka_iiwa7/kuka_iiwa7.urdf"
+        result = self.run_tactus("init", urdf, "--tip", "flange", "-o", "it's my arm")
+        self.assertEqual(result.returncode, 0, result)
+        check = result.stdout.splitlines()[-1].removeprefix("next ").split(";")[0]
+        self.assertEqual(shlex.split(check), ["tactus", "check", "it's my arm/scene.yaml"])
+
+    def test_names_of_links_break_no_line_of_capsules(self):
+        name, link = "b&#10;c: 1&#27;[31m", '<link name="{}">{}</link>'
+        mesh = '<collision><geometry><mesh filename="a.stl"/></geometry></collision>'
+        joint = ('<joint name="j{0}" type="revolute"><parent link="{1}"/><child link="{2}"/><origin xyz="0.3 0 0"/>'
+                 '<axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/></joint>')
+        (self.folder / "arm.urdf").write_text(
+            '<robot name="arm">' + link.format("a", "") + link.format(name, mesh) + link.format("d", "")
+            + joint.format(1, "a", name) + joint.format(2, name, "d") + "</robot>")
+        self.assertEqual(self.run_tactus("init", "arm.urdf", "-o", "arm").returncode, 0)
+        result = self.run_tactus("check", "arm/scene.yaml", "--capsules")
+        self.assertEqual(result.returncode, 0, result)
+        self.assertIn("  # b\\x0ac: 1\\x1b[31m: a mesh, of which no capsule is made", result.stdout)
 
     def test_full_standard_output(self):
         commands = (
