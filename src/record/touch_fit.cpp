@@ -64,7 +64,8 @@ Touch wayOf(const ControllerConfig& config, int module, const std::deque<TouchSa
     }
     touch.t_s.push_back(sample.t_s);
     touch.way_m.push_back(way_m);
-    touch.force_N.push_back(sample.force_N);
+    const bool points_away = !is_felt && sample.way.dot(felt->direction) < 0.0;
+    touch.force_N.push_back(points_away ? -sample.force_N : sample.force_N);
     touch.counts.push_back(before && sample.sequence != sequence);
     sequence = sample.sequence;
     before = X_BaseModule;
@@ -182,6 +183,15 @@ void addTouch(const Touch& touch, double x0_m, double felt_s, TouchFit& result) 
   if (time_s > 0.0) result.speed_m_per_s = (touch.way_m[i] - touch.way_m[k]) / time_s;
 }
 
+/// F^ of so small a force is that of an earlier sample. This one tells where it points itself,
+/// unless a cover was taken out of it.
+Vector3 wayOfForce(const CycleRecord& record, int module, const TouchSample& sample) noexcept {
+  if (sample.force_N > kMinForceForDirection_N) return sample.direction;
+  const Vector3 F(0.0, record.tactile_force_y_N[module], record.tactile_force_z_N[module]);
+  const bool is_whole = std::abs(F.norm() - sample.force_N) <= 1e-9 * sample.force_N;
+  return is_whole ? F : Vector3(Vector3::Zero());
+}
+
 }  // namespace
 
 TouchSample touchSample(const CycleRecord& record, int module) noexcept {
@@ -192,6 +202,7 @@ TouchSample touchSample(const CycleRecord& record, int module) noexcept {
       .direction = Vector3(record.contact_dir_x[module], record.contact_dir_y[module],
                            record.contact_dir_z[module]),
       .sequence = record.tactile_sequence[module]};
+  sample.way = wayOfForce(record, module, sample);
   std::copy_n(record.q_measured, kMaxJoints, sample.q);
   return sample;
 }

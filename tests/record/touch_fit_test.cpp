@@ -24,6 +24,7 @@ struct SpringTouch {
   double speed_m_per_s = 0.03;
   double noise_N = 0.0;
   double position_m = 0.5;
+  double noise_across_N = 0.0;  ///< to both sides of the force, and along it
 };
 
 ControllerConfig fitConfig() {
@@ -47,6 +48,7 @@ FitRun touchRun(const SpringTouch& touch, std::uint64_t seed) {
   ButterworthLowPass filter(15.0, 1.0 / kFitCycle_s);
   FitRun run;
   double held_N = 0.0;
+  Vector3 held = Vector3::Zero();
   std::uint64_t sequence = 0;
   for (int i = 0; i < 3500; ++i) {
     const double t_s = kFitCycle_s * i - 1.0;
@@ -61,6 +63,14 @@ FitRun touchRun(const SpringTouch& touch, std::uint64_t seed) {
     }
     TouchSample sample{.t_s = kFitCycle_s * i, .force_N = held_N, .position_m = touch.position_m};
     sample.direction = held_N > 0.05 ? Vector3(-Vector3::UnitY()) : Vector3(Vector3::Zero());
+    if (touch.noise_across_N > 0.0) {
+      if (i % kSampleCycles == 0)
+        held = Vector3(0.0, -filtered_N + touch.noise_across_N * noise(engine),
+                       touch.noise_across_N * noise(engine));
+      held_N = sample.force_N = held.norm();
+      sample.way = held;
+      sample.direction = held / held_N;
+    }
     sample.sequence = sequence;
     sample.q[0] = way_m;
     run.samples.push_back(sample);
@@ -111,6 +121,38 @@ TEST(TouchFit, HasTheStiffnessInItsIntervalWhereTheSensorIsNoisy) {
   EXPECT_GT(known, 190);
   EXPECT_GT(inside, 0.9 * known);
   EXPECT_LT(width / known, 0.3);
+}
+
+/// A size is no less than 0: taken for a force along F^, noise before the touch would be one, and
+/// the contact 6 % softer in the mean than it is.
+TEST(TouchFit, TakesNoNoiseOfAFreeModuleForAForce) {
+  double sum = 0.0;
+  int known = 0;
+  for (int i = 0; i < 200; ++i) {
+    const SpringTouch touch{
+        .stiffness_N_per_m = 300.0, .speed_m_per_s = 0.015, .noise_across_N = 0.2};
+    const TouchFit fit = fitOf(touch, static_cast<std::uint64_t>(3000 + i));
+    if (!fit.is_known) continue;
+    ++known;
+    sum += fit.stiffness_N_per_m / touch.stiffness_N_per_m;
+  }
+  EXPECT_GT(known, 190);
+  EXPECT_NEAR(sum / known, 1.0, 0.02);
+}
+
+TEST(TouchFit, KnowsWhereASmallForcePointsByItsOwnSample) {
+  CycleRecord record;
+  record.contact_dir_y[1] = 1.0;
+  const auto wayOf = [&record](double sensor_N, double y_N, double z_N) {
+    record.force_sensor_N[1] = sensor_N;
+    record.tactile_force_y_N[1] = y_N;
+    record.tactile_force_z_N[1] = z_N;
+    return touchSample(record, 1).way;
+  };
+  EXPECT_EQ(wayOf(2.0, -2.0, 0.0), Vector3::UnitY());
+  EXPECT_EQ(wayOf(0.04, -0.04, 0.0), Vector3(0.0, -0.04, 0.0));  // F^ is of an earlier sample
+  EXPECT_EQ(wayOf(0.04, -1.0, 3.0), Vector3::Zero());            // with the weight of a cover
+  EXPECT_EQ(wayOf(0.0, 0.0, 0.0), Vector3::Zero());
 }
 
 /// As the second part of a long log: what the force does then is the law's, and no touch.
