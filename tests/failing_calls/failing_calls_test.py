@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """A call of the C library that fails once, at start or end: the program says so in a line and ends with an exit
 code of its own, or goes on as if nothing had been. Arguments: tactus, tactusd, the library that makes calls
-fail, virtual_daemon. TACTUS_FAILING_CALLS in the environment says how many calls of each kind (0: all); few by
-default.
+fail, virtual_daemon. TACTUS_FAILING_CALLS in the environment says how many calls of each kind (0: all), and
+TACTUS_FAILING_CALLS_RUNNING how many of those of a running daemon, which takes a second each; few by default. With
+--table behind the arguments it prints what each came to, for docs/failing_calls.md.
 tactusd ends here where it looks for its buses, unless the machine has them. What comes after that is looked at
 where its cycle, log and socket run in virtual time (virtual_daemon): a call fails once while it runs."""
+import collections
 import json
 import os
 import pathlib
@@ -19,8 +21,9 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENE = str(ROOT / "config" / "scenes" / "scenario1_null_space.yaml")
 TACTUS, TACTUSD, LIBRARY, VIRTUAL = (str(pathlib.Path(sys.argv.pop(1)).resolve()) for _ in range(4))
+IS_TABLE = "--table" in sys.argv
 MOST = int(os.environ.get("TACTUS_FAILING_CALLS", "12"))
-MOST_RUNNING = int(os.environ.get("TACTUS_FAILING_CALLS", "4"))  # a daemon each
+MOST_RUNNING = int(os.environ.get("TACTUS_FAILING_CALLS_RUNNING", "4"))  # a daemon each
 CALLS = ["malloc", "open", "read", "write", "close", "fsync", "rename", "mkdir", "stat", "unlink", "mmap",
          "socket", "mlockall"]
 RUNS = {"check": [TACTUS, "check", SCENE],
@@ -67,11 +70,30 @@ def trouble_of(done, whole, folder, whole_files):
     return None
 
 
-def is_known(name, call, number, count, done):
-    """nlohmann-json 3.11 takes memory in its destructor, which may not throw: where there is none while the
-    summary is made, simulate says std::bad_alloc and aborts. The log is whole then, no summary is there."""
-    is_summary = name == "simulate" and call == "malloc" and number > count - 40
-    return is_summary and done.returncode == -6 and "std::bad_alloc" in done.stderr
+def calls_of(command, call, folder):
+    """How many there are."""
+    path = pathlib.Path(folder) / "count"
+    environment = {**os.environ, "LD_PRELOAD": LIBRARY, "FAIL_CALL": call, "FAIL_COUNT": str(path)}
+    subprocess.run(command, cwd=folder, env=environment, capture_output=True, timeout=120, check=False)
+    return int(path.read_text())
+
+
+LATE = 160  # allocations before the end, of summary and of the list of system calls
+
+
+def known_outcome(name, number, count, returncode, said):
+    """What libraries do that ask for memory where they may not throw, or do not look whether there was any; None if
+    it is none of these. Before a file is read: constants before main(), and CLI11's search for an option, of which
+    all programs have done theirs when they tell their version. Later: nlohmann-json 3.11's destructor, while
+    simulate makes the summary, when the log is whole; and libseccomp 2.5, while tactusd makes the list of system
+    calls of its loop, before it looks for its buses. returncode: None if it did not end."""
+    if returncode == -6 and "std::bad_alloc" in said:
+        with tempfile.TemporaryDirectory() as folder:
+            if number <= calls_of([RUNS[name][0], "--version"], "malloc", folder):
+                return "aborts before it has read a file"
+        return "aborts with the log written" if name == "simulate" and number > count - LATE else None
+    is_filter = name == "daemon" and returncode in (-11, None) and number > count - LATE
+    return "ends by a signal, or not at all, before it has its buses" if is_filter else None
 
 
 RUNNING_CALLS = ["malloc", "open", "write", "close", "rename", "poll", "accept", "send", "recv"]
@@ -136,30 +158,79 @@ def may_be_a_destructor(call, done):
     return call == "malloc" and done.returncode == -6 and "std::bad_alloc" in done.stderr
 
 
+def outcome_of(name, call, number, count, whole, whole_files):
+    """What one failing call comes to, and what is wrong with that, or None."""
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            done = run(name, folder, FAIL_CALL=call, FAIL_AT=str(number))
+        except subprocess.TimeoutExpired:
+            done = None
+        known = known_outcome(name, number, count, done and done.returncode, done.stderr if done else "") \
+            if call == "malloc" else None
+        if known or not done:
+            return known or "hangs", None if known else "hangs"
+        if done.returncode != whole.returncode:
+            outcome = f"ends with a line and {done.returncode}"
+        else:
+            outcome = "as without" if done.stderr == whole.stderr else "the same, or less, with a line"
+        return outcome, trouble_of(done, whole, folder, whole_files)
+
+
+def outcomes(name):
+    """(call, how many there are, number of one that failed, what it came to, what is wrong with that) of each."""
+    with tempfile.TemporaryDirectory() as folder:
+        whole = run(name, folder)
+        whole_files = files(folder)
+    for call in CALLS:
+        with tempfile.TemporaryDirectory() as folder:
+            count = calls_of(RUNS[name], call, folder)
+        for number in spread(count):
+            yield call, count, number, *outcome_of(name, call, number, count, whole, whole_files)
+
+
+def running_outcome_of(call, number):
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            done, answers = run_daemon(folder, FAIL_CALL=call, FAIL_AT=str(number))
+        except subprocess.TimeoutExpired:
+            return "hangs", "hangs"
+        if may_be_a_destructor(call, done):
+            return "aborts", None
+        is_whole = all(answer and answer["done"] for answer in answers)
+        outcome = "ends with a line and 3" if done.returncode == 3 else \
+            "goes on" if is_whole else "goes on, a request is not done"
+        return outcome, running_trouble(call, done, answers, folder)
+
+
+def running_outcomes():
+    """As outcomes(), of a daemon in virtual time that is asked; how many calls there are is a matter of time."""
+    for call in RUNNING_CALLS:
+        with tempfile.TemporaryDirectory() as folder:
+            run_daemon(folder, FAIL_CALL=call, FAIL_COUNT=f"{folder}/count")
+            count = int(pathlib.Path(folder, "count").read_text())
+        for number in spread(max(1, 3 * count // 4), MOST_RUNNING):
+            yield call, count, number, *running_outcome_of(call, number)
+
+
+def print_table():
+    print("| Program | Call | There are | Failed | Comes to |\n|---|---|---|---|---|", flush=True)
+    for name in [*RUNS, "running"]:
+        rows = {}
+        for call, count, _, outcome, trouble in outcomes(name) if name in RUNS else running_outcomes():
+            _, seen = rows.setdefault(call, (count, collections.Counter()))
+            seen[f"**{trouble}**" if trouble else outcome] += 1
+        for call, (count, seen) in rows.items():
+            said = "; ".join(f"{' '.join(text.split())}: {times}" for text, times in seen.most_common())
+            print(f"| {name} | {call} | {count} | {sum(seen.values())} | {said} |", flush=True)
+
+
 class FailingCallsTest(unittest.TestCase):
     def look_at(self, name):
         found, looked_at = [], 0
-        with tempfile.TemporaryDirectory() as folder:
-            whole = run(name, folder)
-            whole_files = files(folder)
-        for call in CALLS:
-            with tempfile.TemporaryDirectory() as folder:
-                count = pathlib.Path(folder) / "count"
-                run(name, folder, FAIL_CALL=call, FAIL_COUNT=str(count))
-                numbers = spread(int(count.read_text()))
-            for number in numbers:
-                looked_at += 1
-                with tempfile.TemporaryDirectory() as folder:
-                    try:
-                        done = run(name, folder, FAIL_CALL=call, FAIL_AT=str(number))
-                    except subprocess.TimeoutExpired:
-                        found.append(f"{call} {number}: hangs")
-                        continue
-                    if is_known(name, call, number, numbers[-1], done):
-                        continue
-                    trouble = trouble_of(done, whole, folder, whole_files)
-                    if trouble:
-                        found.append(f"{call} {number}: {name} {trouble}")
+        for call, _, number, _, trouble in outcomes(name):
+            looked_at += 1
+            if trouble:
+                found.append(f"{call} {number}: {name} {trouble}")
         self.assertGreater(looked_at, len(CALLS))
         self.assertEqual(found, [], "\n".join(found))
 
@@ -223,4 +294,7 @@ class FailingCallsTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    if IS_TABLE:
+        print_table()
+    else:
+        unittest.main()
