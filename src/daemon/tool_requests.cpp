@@ -92,6 +92,22 @@ void ToolRequests::requireArm() {
     throw InputError("the arm does not run, expected mode running; `tactus status` says why");
 }
 
+/// By the loop's clock.
+bool ToolRequests::isStreamAlive() const {
+  const std::int64_t cycles = link_.pulse.cycles.load(std::memory_order_relaxed) - streamed_cycle_;
+  return static_cast<double>(cycles) * scene_.period_s <=
+         scene_.controller.task.commands->stream_timeout_s;
+}
+
+void ToolRequests::requireNoHold() {
+  is_stream_held_ = is_stream_held_ && isStreamAlive();
+  streamed_cycle_ = link_.pulse.cycles.load(std::memory_order_relaxed);
+  if (is_stream_held_)
+    throw InputError(
+        fmt::format("a hold has ended this stream, expected it to pause for {} s first",
+                    scene_.controller.task.commands->stream_timeout_s));
+}
+
 ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from, Kind kind) const {
   const TaskConfig& task = scene_.controller.task;
   const bool is_relative = flagOf(request, "relative");
@@ -157,7 +173,10 @@ Json ToolRequests::move(const Json& request) {
   const bool is_stream = request.at("do") == "stream";
   const Target goal = target(request, poseOf(sight_), is_stream ? Kind::kStream : Kind::kGo);
   double duration_s = 0.0;
-  if (!is_stream) duration_s = reach("move", jointsOf(sight_), goal).duration_s;
+  if (is_stream)
+    requireNoHold();
+  else
+    duration_s = reach("move", jointsOf(sight_), goal).duration_s;
   return order(goal.order, duration_s);
 }
 
@@ -208,9 +227,12 @@ Json ToolRequests::follow(const Json& request) {
 Json ToolRequests::hold(const Json& request) {
   refuseUnknown(request, {"do"});
   requireArm();
+  const bool is_stream_held = is_stream_held_ || (is_streaming_ && isStreamAlive());
   ToolOrder hold;
   hold.limits = scene_.controller.task.commands->limits;
-  return order(hold, 0.0);
+  Json json = order(hold, 0.0);
+  is_stream_held_ = is_stream_held;
+  return json;
 }
 
 /// All of a stream has one number.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "support/random.h"
@@ -240,8 +241,37 @@ TEST_F(ToolRequestsTest, AStreamHasOneNumber) {
   const Json target = {{"do", "stream"}, {"to_m", {0.95, 0.3, 0.25}}};
   const Json first = ask(target).at("task").at("number");
   EXPECT_EQ(ask(target).at("task").at("number"), first);
-  EXPECT_NE(ask({{"do", "hold"}}).at("task").at("number"), first);
+  EXPECT_NE(ask({{"do", "move"}, {"to_m", {0.95, 0.3, 0.25}}}).at("task").at("number"), first);
   EXPECT_NE(ask(target).at("task").at("number"), first);
+}
+
+/// Whoever holds the tool need not be faster than who streams.
+TEST_F(ToolRequestsTest, AHoldHoldsUntilAStreamHasPaused) {
+  const Json target = {{"do", "stream"}, {"to_m", {0.95, 0.3, 0.25}}};
+  const auto orders = [&] {
+    int count = 0;
+    for (ToolOrder order; link.tool_orders.pop(order);) ++count;
+    return count;
+  };
+  const auto pause = [&](double s) { link.pulse.cycles += std::lround(s / scene.period_s); };
+  const double timeout_s = scene.controller.task.commands->stream_timeout_s;
+  EXPECT_EQ(ask(target).at("done"), true);
+  EXPECT_EQ(ask({{"do", "hold"}}).at("done"), true);
+  orders();
+  for (int i = 0; i < 5; ++i) {
+    pause(0.9 * timeout_s);
+    EXPECT_NE(refusal(target).find("a hold has ended this stream"), std::string::npos);
+  }
+  EXPECT_EQ(ask({{"do", "hold"}}).at("done"), true);
+  EXPECT_EQ(ask({{"do", "move"}, {"to_m", {0.95, 0.3, 0.25}}}).at("done"), true);
+  EXPECT_EQ(orders(), 2);
+  EXPECT_NE(refusal(target).find("pause for"), std::string::npos) << "after a move, too";
+  pause(1.1 * timeout_s);
+  EXPECT_EQ(ask(target).at("done"), true);
+  EXPECT_EQ(ask(target).at("done"), true);
+  pause(1.1 * timeout_s);  // it is late
+  EXPECT_EQ(ask({{"do", "hold"}}).at("done"), true);
+  EXPECT_EQ(ask(target).at("done"), true) << "another one, that began after the hold";
 }
 
 TEST(ToolRequestsOfAPath, AreRefused) {

@@ -18,6 +18,8 @@ class ToolRequests {
 
   Json move(const Json& request);  ///< also for `stream`
   Json follow(const Json& request);
+  /// A stream that is under way is refused from then on, until it has paused for its timeout: else
+  /// its next target would lead the tool on a moment later.
   Json hold(const Json& request);
 
   /// The member "task" of `show`: null for a task that nobody tells.
@@ -34,6 +36,8 @@ class ToolRequests {
   };
 
   void requireArm();
+  void requireNoHold();
+  bool isStreamAlive() const;
   Target target(const Json& request, const Pose& from, ToolOrder::Kind kind) const;
   Target asked(const std::string& what, const Json& waypoint, const Pose& from,
                ToolOrder::Kind kind) const;
@@ -49,8 +53,10 @@ class ToolRequests {
   ToolSight sight_;
   std::uint32_t number_ = 0;
   bool is_streaming_ = false;
-  ToolReport told_;    ///< to whoever asks, until the loop has reported
-  ToolReport looked_;  ///< as told to the journal
+  std::int64_t streamed_cycle_ = 0;  ///< of the loop, when a stream's last target came
+  bool is_stream_held_ = false;      ///< a hold came in the midst of a stream
+  ToolReport told_;                  ///< to whoever asks, until the loop has reported
+  ToolReport looked_;                ///< as told to the journal
 };
 
 }  // namespace tactus
