@@ -4,6 +4,7 @@
 
 #include "support/controller_run.h"
 #include "support/expanded_pseudoinverse.h"
+#include "support/rail_robot.h"
 
 /// The correction of (2) is capped as a whole, position and rotation each by its own key.
 namespace tactus {
@@ -303,6 +304,24 @@ TEST(ReturnSpeed, LeavesWhatIsMetDeeperInTheZoneAlone) {
     softenWayOut(share, before, added, where_it_stood);
     softenWayOut(share, before, added, where_it_is);
     EXPECT_LT((where_it_is - where_it_stood - deeper).norm(), 1e-14);
+  }
+}
+
+/// An encoder's rounding is no jump; more makes the arm return gently, in whichever joint it is.
+TEST(ReturnSpeed, GrowsFromZeroWhereAnArmBeginsBesideItsStart) {
+  ControllerConfig config = test::railController(Variant::kNone);
+  config.q_start = JointVector{{0.3, -0.2}};
+  const Controller controller(config);
+  const auto shareFrom = [&](double beside_0, double beside_1) {
+    ControllerState state = controller.initialState();
+    controller.place(config.q_start + JointVector{{beside_0, beside_1}}, config.gains, state);
+    controller.begin(state);
+    return state.return_share;
+  };
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(shareFrom(sign * 0.9e-4, -sign * 0.9e-4), 1.0);
+    EXPECT_EQ(shareFrom(sign * 1.1e-4, 0.0), 0.0);
+    EXPECT_EQ(shareFrom(0.0, sign * 1.1e-4), 0.0);
   }
 }
 
