@@ -85,12 +85,19 @@ PacketSocket PacketSocket::accept() const noexcept {
 }
 
 long PacketSocket::receive(std::span<char> room) const noexcept {
-  return ::recv(fd_, room.data(), room.size(), MSG_TRUNC);
+  long size;
+  do {
+    size = ::recv(fd_, room.data(), room.size(), MSG_TRUNC);
+  } while (size < 0 && errno == EINTR);  // that a signal came says nothing of the other side
+  return size;
 }
 
 bool PacketSocket::send(std::string_view packet) const noexcept {
-  return ::send(fd_, packet.data(), packet.size(), MSG_NOSIGNAL) ==
-         static_cast<ssize_t>(packet.size());
+  ssize_t size;
+  do {
+    size = ::send(fd_, packet.data(), packet.size(), MSG_NOSIGNAL);
+  } while (size < 0 && errno == EINTR);
+  return size == static_cast<ssize_t>(packet.size());
 }
 
 }  // namespace tactus

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <pthread.h>
 
 #include <array>
+#include <chrono>
+#include <csignal>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -50,6 +53,29 @@ TEST(ControlClient, WaitsNoLongerForARampThanItIsTold) {
     EXPECT_EQ(answer.at("trouble"), "");
   }
   daemon.join();
+}
+
+/// As of Ctrl-Z and fg, or of a program that notes its Ctrl-C: what was asked is done all the same.
+TEST(ControlClient, WaitsForItsAnswerThroughSignals) {
+  const auto before = std::signal(SIGUSR1, [](int) {});
+  test::WrittenScene file(0.7);
+  const std::string path = file.folder().path() + "/asked";
+  const PacketSocket listening = PacketSocket::listenAt(path, 1);
+  std::thread daemon([&listening, asker = ::pthread_self()] {
+    pollfd waiting{listening.fd(), POLLIN, 0};
+    ASSERT_GT(::poll(&waiting, 1, 10000), 0);
+    const PacketSocket client = listening.accept();
+    waiting.fd = client.fd();
+    ASSERT_GT(::poll(&waiting, 1, 10000), 0);
+    for (int i = 0; i < 5; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      ::pthread_kill(asker, SIGUSR1);
+    }
+    client.send(R"({"done":true})");
+  });
+  EXPECT_EQ(ControlClient(path).ask({{"do", "show"}}).at("done"), true);
+  daemon.join();
+  std::signal(SIGUSR1, before);
 }
 
 }  // namespace
