@@ -45,28 +45,6 @@ const char* stateName(ToolState state) noexcept {
   return "holding";
 }
 
-double numberOf(const Json& value, const std::string& name, double least, double most) {
-  if (!value.is_number()) refuseRequest(name + " is no number", "one");
-  const double number = value.get<double>();
-  if (number >= least && number <= most) return number;
-  refuseRequest(fmt::format("{} is {}", name, value.dump()),
-                fmt::format("{:g} to {:g}", least, most));
-}
-
-/// Three entries; null: as it is.
-std::optional<std::array<std::optional<double>, 3>> vectorOf(const Json& request, const char* name,
-                                                             double most) {
-  const auto found = request.find(name);
-  if (found == request.end()) return std::nullopt;
-  if (!found->is_array() || found->size() != 3)
-    refuseRequest(fmt::format("{} is no vector", name), "three numbers");
-  std::array<std::optional<double>, 3> vector;
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!found->at(i).is_null())
-      vector[i] = numberOf(found->at(i), fmt::format("{}[{}]", name, i), -most, most);
-  return vector;
-}
-
 void setSpeed(const Json& request, const char* name, MotionLimits& limits) {
   const auto found = request.find(name);
   if (found == request.end()) return;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "support/orders_rig.h"
 #include "support/shipped_scene.h"
 #include "support/virtual_robot_cell.h"
 #include "tactus/control/module_loss.h"
@@ -148,13 +149,9 @@ TEST(LostModule, DoesNotHoldTheToolOffItsTarget) {
   ASSERT_EQ(run.last().modules_lost, kLink6);
   ToolSight sight;
   run.cell.cycle.fill(sight);
-  ToolOrder order;
-  order.number = 1;
-  order.kind = ToolOrder::Kind::kGo;
+  ToolOrder order = test::orderTo(Vector3(sight.p_BaseTool_m) + 0.1 * Vector3::UnitY(), 1);
   order.run = sight.run;
-  std::copy_n(sight.p_BaseTool_m, 3, order.p_BaseTool_m);
   std::copy_n(sight.R_BaseTool, 9, order.R_BaseTool);
-  order.p_BaseTool_m[1] += 0.1;
   run.cell.cycle.order(order);
   for (int i = 0; i < 20000 && run.cell.cycle.toolReport()->state != ToolState::kArrived; ++i) {
     run.step(1);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <initializer_list>
+#include <optional>
 #include <string>
 
 #include "tactus/scene/json.h"
@@ -16,5 +18,12 @@ void refuseUnknown(const Json& request, std::initializer_list<const char*> known
 
 /// True or false; absent: false. Refuses anything else.
 bool flagOf(const Json& request, const char* name);
+
+/// Refuses what is no number from least to most; name: what it is called then.
+double numberOf(const Json& value, const std::string& name, double least, double most);
+
+/// Three entries up to most, either sign; null: as it is. Absent: none.
+std::optional<std::array<std::optional<double>, 3>> vectorOf(const Json& request, const char* name,
+                                                             double most);
 
 }  // namespace tactus
