@@ -83,10 +83,11 @@ void DriveSetup::judgeAbort() noexcept {
   const std::uint32_t code = sdo_.abortCode();
   const bool is_missing = code == sdo_abort::kObjectMissing || code == sdo_abort::kSubindexMissing;
   const bool is_read_only = code == sdo_abort::kReadOnly || code == sdo_abort::kAccessUnsupported;
-  const SetupStep& step = steps_[step_];
-  const bool is_forgiven =
-      (is_missing && step.is_optional) || (is_read_only && step.may_be_read_only);
-  if (!is_forgiven) return fail(code);
+  using Need = SetupStep::Need;
+  const Need least = is_missing     ? Need::kIfThere
+                     : is_read_only ? Need::kIfWritable
+                                    : Need::kIfTaken;
+  if (steps_[step_].need < least) return fail(code);
   nextStep();
 }
 

@@ -10,6 +10,7 @@ namespace tactus {
 namespace {
 
 using Kind = SetupStep::Kind;
+using Need = SetupStep::Need;
 
 /// COB-id of a TPDO: no remote frames (CiA 301, 7.5.2.37, bit 30).
 constexpr std::uint32_t kNoRemote = 0x40000000;
@@ -28,15 +29,13 @@ SetupStep expect(const ObjectEntry& entry, std::uint32_t value, std::uint32_t ma
   return {Kind::kExpect, entry, value, mask};
 }
 
-SetupStep ifThere(SetupStep step) {
-  step.is_optional = true;
+SetupStep only(Need need, SetupStep step) {
+  step.need = need;
   return step;
 }
 
-SetupStep ifWritable(SetupStep step) {
-  step.may_be_read_only = true;
-  return ifThere(step);
-}
+SetupStep ifThere(const SetupStep& step) { return only(Need::kIfThere, step); }
+SetupStep ifWritable(const SetupStep& step) { return only(Need::kIfWritable, step); }
 
 std::uint32_t milliseconds(double duration_s, const char* key) {
   const double ms = std::round(duration_s * 1e3);
@@ -51,6 +50,11 @@ InterpolationPeriod representablePeriod(double period_s) {
   throw std::invalid_argument(
       "period: drives cannot be told it (object 60C2 holds 1 to 255 times a power of ten of "
       "seconds); choose one as 0.001 or 0.00125 s");
+}
+
+/// Counts/s that 60FF never exceeds: VelocityCounts carries at most a half over.
+std::uint32_t largestCounts(const DriveConfig& drive) {
+  return static_cast<std::uint32_t>(std::floor(drive.max_velocity * drive.counts_per_unit)) + 1;
 }
 
 /// A drive of CiA 402, and the one that was meant.
@@ -122,6 +126,10 @@ SetupSteps setupSteps(const DriveConfig& drive, const CanopenConfig& canopen, do
   });
   // Drives that know units mostly come with turns a minute, and so fast 60FF would be.
   if (drive.has_velocity_unit) add({ifThere(expect({0x60A9, 0, 4}, kCountsPerSecond, kUnitBits))});
+  // Max profile velocity: a drive that heeds it here does not follow what on its way to it became
+  // faster than the joint may be. One that knows less, or limits itself further, is no worse.
+  if (drive.has_speed_limit && std::isfinite(drive.max_velocity))
+    steps.push_back(only(Need::kIfTaken, write(0x607F, 0, 4, largestCounts(drive))));
   // Quick stop: its own ramp, then disabled.
   if (drive.has_quick_stop_option) add({write(0x605A, 0, 2, 2)});
   add({

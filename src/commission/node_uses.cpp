@@ -64,6 +64,7 @@ DriveConfig NodeUses::entryFor(int joint, const FoundNode& node) const noexcept 
   if (const DriveConfig* const there = inFile(node)) {
     entry.has_velocity_unit = entry.has_velocity_unit || there->has_velocity_unit;
     entry.has_quick_stop_option = entry.has_quick_stop_option && there->has_quick_stop_option;
+    entry.has_speed_limit = entry.has_speed_limit && there->has_speed_limit;
   }
   return entry;
 }

@@ -61,6 +61,7 @@ constexpr auto kObjects = std::to_array<ObjectDescription>({
     {0x6061, 0, 1, kRo, kTransmitted, 0},      // mode of operation, display
     {0x6064, 0, 4, kRo, kTransmitted, 0},      // position, counts
     {0x606C, 0, 4, kRo, kTransmitted, 0},      // velocity, counts/s
+    {0x607F, 0, 4, kRw, kNever, 0xFFFF'FFFF},  // largest speed in the mode, counts/s
     {0x6085, 0, 4, kRw, kNever, 10'000'000},   // quick stop deceleration, counts/s^2
     {0x60C2, 0, 1, kRo, kNever, 2},            // interpolation time
     {0x60C2, 1, 1, kRw, kNever, 10},           // value

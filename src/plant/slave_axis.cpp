@@ -16,6 +16,12 @@ std::uint32_t toCounts(double counts) {
       static_cast<std::int32_t>(std::clamp(std::round(counts), -2147483648.0, 2147483647.0)));
 }
 
+/// In counts/s: 60FF within 607F.
+double followedVelocity(const ObjectDictionary& objects) noexcept {
+  const double largest = objects.get(0x607F);
+  return std::clamp<double>(objects.getSigned(0x60FF), -largest, largest);
+}
+
 }  // namespace
 
 void SlaveAxis::setPowered(bool is_on, ObjectDictionary& objects) noexcept {
@@ -46,7 +52,7 @@ bool SlaveAxis::fail(ObjectDictionary& objects) noexcept {
 
 void SlaveAxis::move(double dt_s, ObjectDictionary& objects) noexcept {
   if (follows(objects)) {
-    velocity_ = config_.sign * objects.getSigned(0x60FF) / config_.counts_per_unit;
+    velocity_ = config_.sign * followedVelocity(objects) / config_.counts_per_unit;
   } else {
     const double slower = std::max(0.0, std::abs(velocity_) - deceleration(objects) * dt_s);
     velocity_ = std::copysign(slower, velocity_);

@@ -14,11 +14,13 @@ bool* switchedOff(const YamlNode& word, DriveProfile& profile) {
   if (word.kind != YamlNode::Kind::kScalar) return nullptr;
   if (word.text == "quick_stop_option") return &profile.has_quick_stop_option;
   if (word.text == "velocity_unit") return &profile.has_velocity_unit;
+  if (word.text == "speed_limit") return &profile.has_speed_limit;
   return nullptr;
 }
 
 void readWithout(const YamlNode& list, DriveProfile& profile) {
-  const char* const expectation = "expected a list of words: quick_stop_option, velocity_unit";
+  const char* const expectation =
+      "expected a list of words: quick_stop_option, velocity_unit, speed_limit";
   if (list.kind != YamlNode::Kind::kList || list.items.empty())
     failAt(list.at, "without", describe(list), expectation);
   for (std::size_t i = 0; i < list.items.size(); ++i) {

@@ -113,6 +113,7 @@ std::vector<DriveSheet> readDriveSheets(const SourceFile& robot, const YamlNode&
 void applySheet(const DriveSheet& sheet, DriveConfig& drive) {
   drive.has_quick_stop_option = sheet.profile.has_quick_stop_option;
   drive.has_velocity_unit = sheet.profile.has_velocity_unit;
+  drive.has_speed_limit = sheet.profile.has_speed_limit;
   if (!sheet.eds) return;
   drive.vendor_id = identityOf(*sheet.eds, 1, "VendorNumber");
   drive.product_code = identityOf(*sheet.eds, 2, "ProductNumber");

@@ -116,7 +116,8 @@ void checkEntryType(const EdsObject& object, const ObjectEntry& entry) {
 void checkAccess(const EdsObject& object, const SetupStep& step) {
   if (step.kind != StepKind::kWrite && !object.isReadable())
     refuseObject(object.access_at, object, "AccessType", "cannot be read", "ro or rw");
-  const bool has_to_write = step.kind != StepKind::kExpect && !step.may_be_read_only;
+  const bool has_to_write =
+      step.kind != StepKind::kExpect && step.need < SetupStep::Need::kIfWritable;
   if (has_to_write && !object.isWritable())
     refuseObject(object.access_at, object, "AccessType", "cannot be written", "rw");
 }
@@ -152,8 +153,10 @@ void checkConstant(const EdsObject& object, const SetupStep& step) {
 }
 
 void checkStep(const EdsFile& eds, const SetupStep& step) {
+  using Need = SetupStep::Need;
   const ObjectEntry& entry = step.entry;
-  if (step.is_optional && !findEdsObject(eds, entry.index, entry.subindex)) return;
+  if (step.need == Need::kIfTaken) return;
+  if (step.need != Need::kRequired && !findEdsObject(eds, entry.index, entry.subindex)) return;
   const EdsObject object =
       requireObject(eds, entry.index, entry.subindex,
                     entry.index == 0x605A ? "it, or a profile without quick_stop_option"

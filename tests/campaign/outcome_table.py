@@ -52,10 +52,9 @@ Every single frame of three short runs (set-up to running; 60 ms in contact; 30 
 doubled, late by a cycle, or with one bit flipped, as no CAN bus lets it pass but a gateway may make it. Bits
 take turns from frame to frame.
 
-A drive of the plant takes any setpoint at once. So a flipped bit may send a joint off at 256 rad/s, from which a
-quick stop takes longer than the time it is given, or leave it where the arm comes back from a little faster than it
-went undisturbed: that is what is violated, here or with *frames_corrupted*. CAN's
-checksum finds such a frame; one that it let pass, or a forged one, a real drive would believe, too.
+A drive of the plant takes any setpoint at once, within the limit of speed that the set-up told it (object 607F).
+Without that limit a flipped bit sent a joint off at up to 256 rad/s, from which a quick stop takes longer than the
+time it is given. CAN's checksum finds such a frame; one that it let pass, or a forged one, a drive believes.
 
 | Run | Stream | Frame is | Comes to | Rest | Violated |
 |---|---|---|---|---|---|

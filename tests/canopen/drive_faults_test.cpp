@@ -242,7 +242,9 @@ TEST(DriveFaults, VelocityThatIsNoNumberStopsTheDrive) {
 }
 
 TEST(DriveFaults, VelocityBeyondTheCountsSaturates) {
-  DriveRig rig;
+  DriveConfig config = test::driveConfig();
+  config.max_velocity = std::numeric_limits<double>::infinity();
+  DriveRig rig(config);
   rig.enable();
   EXPECT_EQ(commandOf(rig.cycle(DriveGoal::kEnabled, 1e300)), (DriveCommand{0x0F, -2147483647}));
 }

@@ -22,16 +22,32 @@ TEST(DriveSetup, WritesTheObjectsOfTheStandardsInOrder) {
   DriveRig rig;
   rig.configure();
   ASSERT_TRUE(rig.report().is_configured);
-  const Writes expected = {
-      {{0x6040, 0}, 0x0002},     {{0x1400, 1}, 0x80000205}, {{0x1600, 0}, 0},
-      {{0x1600, 1}, 0x60400010}, {{0x1600, 2}, 0x60FF0020}, {{0x1600, 0}, 2},
-      {{0x1400, 2}, 1},          {{0x1400, 5}, 60},         {{0x1800, 1}, 0x80000185},
-      {{0x1A00, 0}, 0},          {{0x1A00, 1}, 0x60410010}, {{0x1A00, 2}, 0x60640020},
-      {{0x1A00, 0}, 2},          {{0x1800, 2}, 1},          {{0x1801, 1}, 0x80000285},
-      {{0x1400, 1}, 0x00000205}, {{0x1800, 1}, 0x40000185}, {{0x6060, 0}, 9},
-      {{0x60C2, 1}, 1},          {{0x60C2, 2}, 0xFD},       {{0x605A, 0}, 2},
-      {{0x605E, 0}, 2},          {{0x6007, 0}, 3},          {{0x1016, 1}, 127u << 16 | 60},
-      {{0x1017, 0}, 20}};
+  const Writes expected = {{{0x6040, 0}, 0x0002},
+                           {{0x1400, 1}, 0x80000205},
+                           {{0x1600, 0}, 0},
+                           {{0x1600, 1}, 0x60400010},
+                           {{0x1600, 2}, 0x60FF0020},
+                           {{0x1600, 0}, 2},
+                           {{0x1400, 2}, 1},
+                           {{0x1400, 5}, 60},
+                           {{0x1800, 1}, 0x80000185},
+                           {{0x1A00, 0}, 0},
+                           {{0x1A00, 1}, 0x60410010},
+                           {{0x1A00, 2}, 0x60640020},
+                           {{0x1A00, 0}, 2},
+                           {{0x1800, 2}, 1},
+                           {{0x1801, 1}, 0x80000285},
+                           {{0x1400, 1}, 0x00000205},
+                           {{0x1800, 1}, 0x40000185},
+                           {{0x6060, 0}, 9},
+                           {{0x60C2, 1}, 1},
+                           {{0x60C2, 2}, 0xFD},
+                           {{0x607F, 0}, 4'000'001},
+                           {{0x605A, 0}, 2},
+                           {{0x605E, 0}, 2},
+                           {{0x6007, 0}, 3},
+                           {{0x1016, 1}, 127u << 16 | 60},
+                           {{0x1017, 0}, 20}};
   EXPECT_EQ(rig.slave.writes, expected);
   EXPECT_EQ(rig.slave.nmt, 5);
   EXPECT_EQ(rig.slave.aborts_heard, 0);
@@ -60,7 +76,7 @@ TEST(DriveSetup, LeavesAPdoThatIsOffAsItIs) {
   EXPECT_TRUE(rig.report().is_configured);
   EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1801, 1})], 0xC0000285u);
   EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1400, 1})], 0x205u);
-  EXPECT_EQ(rig.slave.writes.size(), 23u);
+  EXPECT_EQ(rig.slave.writes.size(), 24u);
 }
 
 class DriveSetupStep : public testing::TestWithParam<SetupStep> {
@@ -84,7 +100,7 @@ class DriveSetupStep : public testing::TestWithParam<SetupStep> {
 TEST_P(DriveSetupStep, RefusedEndsTheSetUpAndARestartMendsIt) {
   DriveRig rig;
   rig.slave.refused[entry()] = 0x08000022;
-  expectRefused(rig, 0x08000022);
+  if (GetParam().need < SetupStep::Need::kIfTaken) expectRefused(rig, 0x08000022);
   rig.slave.refused.clear();
   rig.configure();
   EXPECT_TRUE(rig.report().is_configured);
@@ -95,7 +111,7 @@ TEST_P(DriveSetupStep, MissingIsAcceptedOnlyWhereItMayBe) {
   for (std::uint32_t code : {0x06020000u, 0x06090011u}) {
     DriveRig rig;
     rig.slave.refused[entry()] = code;
-    if (!GetParam().is_optional) {
+    if (GetParam().need < SetupStep::Need::kIfThere) {
       expectRefused(rig, code);
     } else {
       rig.configure();
@@ -108,7 +124,7 @@ TEST_P(DriveSetupStep, ReadOnlyIsAcceptedOnlyWhereItMayBe) {
   for (std::uint32_t code : {0x06010000u, 0x06010002u}) {
     DriveRig rig;
     rig.slave.refused[entry()] = code;
-    if (!GetParam().may_be_read_only) {
+    if (GetParam().need < SetupStep::Need::kIfWritable) {
       expectRefused(rig, code);
     } else {
       rig.configure();
@@ -139,7 +155,7 @@ TEST_P(DriveSetupStep, BeginsAnewAfterABootUpThere) {
   rig.slave.powerUp();
   rig.slave.writes.clear();
   rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
-  EXPECT_EQ(rig.slave.writes.size(), 25u) << "all of it";
+  EXPECT_EQ(rig.slave.writes.size(), 26u) << "all of it";
   EXPECT_EQ(rig.report().fault, Fault::kNone);
 }
 
@@ -260,7 +276,7 @@ TEST(DriveSetup, SwitchesOffTheReceivePdosThatItDoesNotUse) {
   EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1400, 1})], 0x205u);
   EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1401, 1})], 0x80000305u);
   EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x1403, 1})], 0x80000505u);
-  EXPECT_EQ(rig.slave.writes.size(), 27u) << "one is off already";
+  EXPECT_EQ(rig.slave.writes.size(), 28u) << "one is off already";
 }
 
 TEST(DriveSetup, LeavesOutAQuickStopOptionThatThereIsNot) {
@@ -270,7 +286,19 @@ TEST(DriveSetup, LeavesOutAQuickStopOptionThatThereIsNot) {
   rig.slave.refused[{0x605A, 0}] = 0x06020000;
   rig.configure();
   EXPECT_TRUE(rig.report().is_configured);
-  EXPECT_EQ(rig.slave.writes.size(), 24u);
+  EXPECT_EQ(rig.slave.writes.size(), 25u);
+}
+
+/// Its own limit may be lower than the joint's, or it may not take one now.
+TEST(DriveSetup, GoesOnWhereADriveTakesNoLimitOfSpeed) {
+  for (const std::uint32_t code : {0x06020000u, 0x06010002u, 0x06090030u, 0x06090031u, 0x06070010u,
+                                   0x08000022u, 0x08000000u}) {
+    DriveRig rig;
+    rig.slave.refused[{0x607F, 0}] = code;
+    rig.configure();
+    EXPECT_TRUE(rig.report().is_configured) << std::hex << code;
+    EXPECT_EQ(rig.report().fault, Fault::kNone);
+  }
 }
 
 TEST(DriveSetup, RefusesADriveThatDoesNotTakeTheMode) {
@@ -370,7 +398,7 @@ TEST(DriveSetup, BeginsAnewAfterABootUpAtTheEnd) {
   rig.slave.powerUp();
   rig.slave.writes.clear();
   rig.cycles(150, DriveGoal::kConfigure);
-  EXPECT_EQ(rig.slave.writes.size(), 25u);
+  EXPECT_EQ(rig.slave.writes.size(), 26u);
   EXPECT_FALSE(rig.report().is_configured) << "its feedback was that of before";
   rig.slave.sends_feedback = true;
   rig.cycles(2, DriveGoal::kConfigure);

@@ -6,7 +6,9 @@
 #include <set>
 #include <stdexcept>
 
+#include "support/random.h"
 #include "tactus/canopen/drive_setup.h"
+#include "tactus/canopen/velocity_counts.h"
 
 namespace tactus {
 namespace {
@@ -58,7 +60,7 @@ TEST(SetupSteps, GiveSetpointsADeadlineBeforeTheyAreValid) {
     EXPECT_FALSE(is_valid);
     EXPECT_EQ(step.value, 123u);
     EXPECT_EQ(step.entry.size, 2);
-    EXPECT_TRUE(step.is_optional && step.may_be_read_only);
+    EXPECT_EQ(step.need, SetupStep::Need::kIfWritable);
   }
   EXPECT_EQ(found, 1);
 }
@@ -72,6 +74,7 @@ int bytesOf(const ObjectEntry& entry) {
   switch (entry.index) {
     case 0x1000:  // device type, consumer heartbeat time, unit of velocities
     case 0x1016:
+    case 0x607F:  // max profile velocity
     case 0x60A9:
       return 4;
     case 0x6060:  // modes of operation, and its display
@@ -101,7 +104,7 @@ TEST(SetupSteps, StopTheOtherPdosThatADriveMayHave) {
     for (const SetupStep& step : setupSteps({}, {}, 0.001)) {
       if (step.entry.index != index) continue;
       EXPECT_EQ(step.kind, SetupStep::Kind::kStopPdo);
-      EXPECT_TRUE(step.is_optional);
+      EXPECT_GE(step.need, SetupStep::Need::kIfThere);
       ++stops;
     }
     EXPECT_EQ(stops, 1) << std::hex << index;
@@ -123,6 +126,39 @@ TEST(SetupSteps, TellHeartbeatsOfAnyLengthThatDrivesCanHold) {
     }
     EXPECT_EQ(told, 2);
   }
+}
+
+/// All that 60FF is ever told passes, with what rounding carried over, and hardly more.
+TEST(SetupSteps, LimitTheDriveToTheFastestThatItIsTold) {
+  test::Random random(607);
+  for (int i = 0; i < 2000; ++i) {
+    DriveConfig drive;
+    drive.counts_per_unit = std::exp(random.uniform(0.0, 15.0));
+    drive.max_velocity = random.chance(0.3) ? random.index(9) + 1.0 : random.uniform(0.001, 10.0);
+    std::int64_t limit = -1;
+    for (const SetupStep& step : setupSteps(drive, {}, 0.001)) {
+      if (step.entry.index != 0x607F) continue;
+      limit = step.value;
+      EXPECT_EQ(step.need, SetupStep::Need::kIfTaken);
+    }
+    VelocityCounts counts(drive.counts_per_unit);
+    for (int cycle = 0; cycle < 50; ++cycle) {
+      const bool is_fastest = random.chance(0.7);
+      const std::int64_t told =
+          counts.next(is_fastest ? drive.max_velocity : random.uniform(0.0, drive.max_velocity));
+      ASSERT_LE(told, limit);
+    }
+    ASSERT_LE(static_cast<double>(limit), drive.max_velocity * drive.counts_per_unit + 1.0);
+  }
+}
+
+TEST(SetupSteps, LimitNoDriveWhoseJointOrProfileHasNoLimit) {
+  DriveConfig endless;
+  DriveConfig otherwise;
+  otherwise.max_velocity = 1.0;
+  otherwise.has_speed_limit = false;
+  for (const DriveConfig& drive : {endless, otherwise})
+    for (const SetupStep& step : setupSteps(drive, {}, 0.001)) EXPECT_NE(step.entry.index, 0x607F);
 }
 
 TEST(SetupSteps, StopEachPdoOnce) {

@@ -68,13 +68,14 @@ TEST(JointCommission, AtThePlaceOfAnotherJointTheUnitOfVelocitiesIsLookedAt) {
   config.hardware.drives[1].has_velocity_unit = false;
   config.hardware.drives[1].product_code = 7;
   config.hardware.drives[2].has_quick_stop_option = false;
+  config.hardware.drives[2].has_speed_limit = false;
   const NodeUses uses(config, {{0, 2, 402, {}, {}, {}, {}}, {0, 3, 402, {}, {}, {}, {}}});
   const DriveConfig own = uses.entryFor(1, uses.nodes()[0]);
   EXPECT_FALSE(own.has_velocity_unit);
-  EXPECT_TRUE(own.has_quick_stop_option);
+  EXPECT_TRUE(own.has_quick_stop_option && own.has_speed_limit);
   const DriveConfig others = uses.entryFor(1, uses.nodes()[1]);
   EXPECT_TRUE(others.has_velocity_unit);
-  EXPECT_FALSE(others.has_quick_stop_option);
+  EXPECT_FALSE(others.has_quick_stop_option || others.has_speed_limit);
   EXPECT_EQ(others.product_code, 7u);
 }
 

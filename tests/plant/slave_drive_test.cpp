@@ -276,6 +276,16 @@ TEST_F(DriveOfNode5, FollowsOnlyInVelocityMode) {
   EXPECT_EQ(drive_.velocity(), -1.0);
 }
 
+TEST_F(DriveOfNode5, FollowsNoSetpointFasterThanItsLimit) {
+  configure();
+  write(0x607F, 0, 700, 4);
+  enable();
+  for (const int counts : {1000, -1000, 0x7FFF'FFFF, -0x7FFF'FFFF, 600}) {
+    cycle(0x0F, counts);
+    EXPECT_NEAR(drive_.velocity(), -0.001 * std::clamp(counts, -700, 700), 1e-12) << counts;
+  }
+}
+
 TEST_F(DriveOfNode5, StopsQuicklyByItsOwnRampWhateverTheSetpointSays) {
   configure();
   enable();

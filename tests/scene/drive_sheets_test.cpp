@@ -47,14 +47,15 @@ TEST(DriveSheets, AreOneADriveWhereItHasItsOwn) {
       test::withEdsLine(test::edsText(), "1018sub2", "DefaultValue", "DefaultValue=7");
   other = test::withEdsLine(other, "DeviceInfo", "ProductNumber", "ProductNumber=7");
   robot.sheets.push_back({"other.eds", other});
-  robot.sheets.push_back({"odd.yaml", "source: here\nwithout: [quick_stop_option]\n"});
+  robot.sheets.push_back({"odd.yaml", "source: here\nwithout: [quick_stop_option, speed_limit]\n"});
   robot.give("  eds: drive.eds\n  profile: odd.yaml\n");
   robot.files.robot =
       test::replaced(robot.files.robot, "counts_per_m: 1e7", "counts_per_m: 1e7, eds: other.eds");
   const std::vector<DriveConfig> drives = robot.load().drives;
   EXPECT_EQ(drives[0].product_code, 7u);
   EXPECT_EQ(drives[1].product_code, 1u);
-  for (const DriveConfig& drive : drives) EXPECT_FALSE(drive.has_quick_stop_option);
+  for (const DriveConfig& drive : drives)
+    EXPECT_FALSE(drive.has_quick_stop_option || drive.has_speed_limit);
 }
 
 TEST(DriveSheets, AreAmongTheSourcesOnceEach) {
@@ -129,6 +130,7 @@ TEST(DriveProfile, IsASourceAndAListOfWords) {
   const DriveProfile both = parseDriveProfile(
       {"odd.yaml", "source: its manual\nwithout: [velocity_unit, quick_stop_option]\n"});
   EXPECT_FALSE(both.has_velocity_unit || both.has_quick_stop_option);
+  EXPECT_TRUE(both.has_speed_limit);
   EXPECT_TRUE(parse("source: its manual\nwithout: [velocity_unit]\n"));
   const auto error = [&](const std::string& text) -> std::string {
     try {

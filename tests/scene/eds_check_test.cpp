@@ -117,6 +117,18 @@ TEST(EdsCheck, LeavesOutWhatTheProfileLeavesOut) {
   EXPECT_EQ(sheet.error(test::withoutEdsSection(test::edsText(), "605A")), "");
 }
 
+/// Object 607F is written for what it may be good for: a drive may refuse it.
+TEST(EdsCheck, LeavesOutWhatADriveMayRefuse) {
+  SheetCase sheet;
+  sheet.drive.max_velocity = 1e3;
+  const std::string with_limit =
+      test::edsText() +
+      "\n[607F]\nParameterName=Max profile velocity\nObjectType=7\nDataType=5\n"
+      "AccessType=ro\nDefaultValue=9\nLowLimit=0\nHighLimit=9\nPDOMapping=0\n";
+  EXPECT_EQ(sheet.error(test::edsText()), "");
+  EXPECT_EQ(sheet.error(with_limit), "");
+}
+
 TEST(EdsCheck, LooksAtBitRateAndCycleOfThisRobot) {
   SheetCase sheet;
   sheet.bus.bit_rate_per_s = 5e5;

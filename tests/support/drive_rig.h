@@ -19,6 +19,7 @@ inline DriveConfig driveConfig() {
   config.counts_per_unit = 2e5;
   config.offset = 0.25;
   config.sign = -1;
+  config.max_velocity = 20.0;
   return config;
 }
 

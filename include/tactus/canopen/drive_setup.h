@@ -42,8 +42,14 @@ struct SetupStep {
   ObjectEntry entry;
   std::uint32_t value = 0;
   std::uint32_t mask = 0xFFFFFFFF;
-  bool is_optional = false;       ///< drives may be without this entry
-  bool may_be_read_only = false;  ///< drives may have it without letting it be written
+  /// What of the drive's refusals is forgiven, each with all before it.
+  enum class Need : std::uint8_t {
+    kRequired,
+    kIfThere,     ///< drives may be without this entry
+    kIfWritable,  ///< they may have it without letting it be written
+    kIfTaken,     ///< they may refuse the value for any reason
+  };
+  Need need = Need::kRequired;
 };
 
 using SetupSteps = std::vector<SetupStep>;

@@ -47,6 +47,7 @@ struct DriveConfig {
   int transmit_pdos = 4;              ///< all but the first are switched off, those that are there
   bool has_quick_stop_option = true;  ///< entry 605A; else its quick stop is its own affair
   bool has_velocity_unit = true;      ///< entry 60A9, if it is there, says what 60FF is in
+  bool has_speed_limit = true;        ///< entry 607F, if it is there, is in counts/s as 60FF is
 };
 
 /// CANopen settings common to all drives.

@@ -45,8 +45,8 @@ class NodeUses {
   const FoundNode* candidate(int joint) const noexcept;
   /// What the set-up of a drive that may move the joint has to know: the joint's entry, as for the
   /// daemon. Where the file has an entry of another joint for that place, the unit of velocities is
-  /// looked at unless both do without, for a wrong one makes the joint fast; and 605A is written
-  /// only if both have it.
+  /// looked at unless both do without, for a wrong one makes the joint fast; and 605A and 607F are
+  /// written only if both have them.
   DriveConfig entryFor(int joint, const FoundNode& node) const noexcept;
 
  private:

@@ -218,7 +218,8 @@ class Drive:
     def _set_velocity(self):
         if self.power.state == cia402.OPERATION_ENABLED:
             follows = self.value(0x6060) == CYCLIC_SYNCHRONOUS_VELOCITY
-            self.velocity = float(self.value(0x60FF)) if follows else 0.0
+            largest = self.value(0x607F)
+            self.velocity = float(max(-largest, min(largest, self.value(0x60FF)))) if follows else 0.0
         elif self.power.state != cia402.QUICK_STOP_ACTIVE:
             self.velocity = 0.0
 

@@ -42,6 +42,7 @@ VARIABLES = [
     (0x6065, "Following error window", UNSIGNED32, "rw", 0xFFFFFFFF),
     (0x6066, "Following error time out", UNSIGNED16, "rw", 0),
     (0x606C, "Velocity actual value", INTEGER32, "ro", 0),
+    (0x607F, "Max profile velocity", UNSIGNED32, "rw", 0xFFFFFFFF),
     (0x6080, "Max motor speed", UNSIGNED32, "rw", 0xFFFFFFFF),
     (0x6083, "Profile acceleration", UNSIGNED32, "rw", 10_000_000),
     (0x6084, "Profile deceleration", UNSIGNED32, "rw", 10_000_000),
