@@ -46,10 +46,11 @@ std::uint32_t milliseconds(double duration_s, const char* key) {
 
 InterpolationPeriod representablePeriod(double period_s) {
   const auto period = interpolationPeriod(period_s);
-  if (period) return *period;
-  throw std::invalid_argument(
-      "period: drives cannot be told it (object 60C2 holds 1 to 255 times a power of ten of "
-      "seconds); choose one as 0.001 or 0.00125 s");
+  if (!period)
+    throw std::invalid_argument(
+        "period: drives cannot be told it (object 60C2 holds 1 to 255 times a power of ten of "
+        "seconds); choose one as 0.001 or 0.00125 s");
+  return *period;
 }
 
 /// Counts/s that 60FF never exceeds: VelocityCounts carries at most a half over.
