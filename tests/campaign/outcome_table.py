@@ -13,8 +13,8 @@ drives and module on buses of bit time, scene `scenario1_null_space` with e-stop
 It may be stopped and started again, and goes on where it was; all cases take some 20 minutes of one
 core. A test (`python.campaign_table`) repeats a sample of these runs and compares it with this page.
 
-**{ran} of {count} cases** were run for this page, in mixed order; a row that is missing has had none of them. In
-{bad} of them something was violated.
+**{ran} of {count} cases** were run for this page, in mixed order; a row that is missing has had none of them.
+{verdict}
 
 Each run goes on after what the tables show: when the arm should be at rest the user switches the enable line off
 and on, the arm runs for 0.7 s if it may, and is stopped. Judges look at every cycle of all that
@@ -117,7 +117,8 @@ def order_of(key):
 def page(cases, count):
     rows = rows_of(cases)
     bad = sum(violation != "-" for *_, violation in cases)
-    text = HEAD.format(ran=len(cases), count=count, bad=bad)
+    verdict = f"In {bad} of them something was violated." if bad else "Nothing was violated."
+    text = HEAD.format(ran=len(cases), count=count, verdict=verdict)
     for group, head in (("mode", MODE_HEAD), ("pair", PAIR_HEAD), ("frame", FRAME_HEAD)):
         text += head
         for key in sorted((key for key in rows if key[0] == group), key=order_of):
