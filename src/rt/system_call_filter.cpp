@@ -1,14 +1,15 @@
 #include "tactus/rt/system_call_filter.h"
 
 #include <errno.h>
+#include <linux/audit.h>
 #include <linux/seccomp.h>
 #include <pthread.h>
 #include <seccomp.h>
 #include <signal.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <memory>
 #include <system_error>
@@ -31,6 +32,12 @@ constexpr int kSanitizerCalls[] = {SYS_mmap,        SYS_munmap,    SYS_mprotect,
 constexpr std::array<int, 0> kSanitizerCalls{};
 #endif
 
+#if defined(__x86_64__)
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
+#elif defined(__aarch64__)
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
+#endif
+
 void failWithEnosys(ucontext_t& context) noexcept {
 #if defined(__x86_64__)
   context.uc_mcontext.gregs[REG_RAX] = -ENOSYS;
@@ -45,35 +52,23 @@ void check(int result, const char* what) {
   if (result < 0) throw std::system_error(-result, std::generic_category(), what);
 }
 
-using Context = std::unique_ptr<void, decltype(&seccomp_release)>;
-
-void allow(const Context& context, int number) {
-  check(seccomp_rule_add(context.get(), SCMP_ACT_ALLOW, number, 0),
-        "allowing a system call in the loop's filter");
-}
-
-Context makeContext(std::span<const int> allowed) {
-  Context context(seccomp_init(SCMP_ACT_TRAP), seccomp_release);
-  if (!context) check(-ENOMEM, "making the loop's system call filter");
-  check(seccomp_attr_set(context.get(), SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_TRAP),
-        "making the loop's system call filter");
-  for (const int number : allowed) allow(context, number);
-  for (const int number : kSanitizerCalls) allow(context, number);
-  allow(context, SYS_rt_sigreturn);  // the way out of the handler
-  return context;
-}
-
-/// libseccomp 2.5 writes a program only into a file.
-std::vector<sock_filter> exportProgram(const Context& context) {
-  const int file = memfd_create("filter", MFD_CLOEXEC);
-  if (file < 0) check(-errno, "making a file for the loop's system call filter");
-  const int error = seccomp_export_bpf(context.get(), file);
-  const off_t size = lseek(file, 0, SEEK_END);
-  std::vector<sock_filter> program(size > 0 ? size / sizeof(sock_filter) : 0);
-  const ssize_t read = pread(file, program.data(), program.size() * sizeof(sock_filter), 0);
-  close(file);
-  check(error, "exporting the loop's system call filter");
-  if (size <= 0 || read != size) check(-EIO, "reading the loop's system call filter");
+/// Made here, as libseccomp 2.5 does not look whether it got the memory for it.
+std::vector<sock_filter> makeProgram(std::span<const int> allowed) {
+  std::vector<sock_filter> program = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kArchitecture, 1, 0),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP),
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+  };
+  const auto allow = [&program](int number) {
+    if (number < 0) check(-EINVAL, "allowing a system call in the loop's filter");
+    program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<unsigned>(number), 0, 1));
+    program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
+  };
+  for (const int number : allowed) allow(number);
+  for (const int number : kSanitizerCalls) allow(number);
+  allow(SYS_rt_sigreturn);  // the way out of the handler
+  program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP));
   return program;
 }
 
@@ -86,8 +81,7 @@ void unblockSigsys() noexcept {
 
 }  // namespace
 
-SystemCallFilter::SystemCallFilter(std::span<const int> allowed)
-    : program_(exportProgram(makeContext(allowed))) {
+SystemCallFilter::SystemCallFilter(std::span<const int> allowed) : program_(makeProgram(allowed)) {
   struct sigaction action {};
   action.sa_sigaction = onForbiddenCall;
   action.sa_flags = SA_SIGINFO | SA_RESTART;

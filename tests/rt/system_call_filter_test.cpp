@@ -213,6 +213,15 @@ TEST(SystemCallFilter, refusesANumberThatIsNoSystemCall) {
   EXPECT_THROW(SystemCallFilter{none}, std::system_error);
 }
 
+/// libseccomp, which writes its program into a file, crashes where memory is short.
+TEST(SystemCallFilter, needsNoFile) {
+  EXPECT_TRUE(holdsInChild([] {
+    if (!test::setLimit(RLIMIT_NOFILE, 0)) return false;
+    const SystemCallFilter filter(kLoopSystemCalls);
+    return true;
+  }));
+}
+
 TEST(SystemCallFilter, takesACallTwice) {
   const int twice[] = {SYS_exit, SYS_exit, SYS_rt_sigreturn};
   EXPECT_NO_THROW(SystemCallFilter{twice});
