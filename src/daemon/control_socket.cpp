@@ -12,6 +12,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -50,7 +51,11 @@ ControlSocket::ControlSocket(const Scene& scene, LoopLink& link)
     listening_ = PacketSocket::listenAt(made_path_, kMaxClients);
   }
   if (!listening_.isOpen()) return;
-  thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
+  try {
+    thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
+  } catch (const std::system_error& error) {
+    throw std::system_error(error.code(), "starting the thread of the control socket");
+  }
 }
 
 ControlSocket::~ControlSocket() {

@@ -2,6 +2,8 @@
 
 #include <systemd/sd-daemon.h>
 
+#include <system_error>
+
 namespace tactus {
 namespace {
 
@@ -23,7 +25,11 @@ ServiceWatchdog::ServiceWatchdog(const LoopPulse& pulse, int max_late_cycles)
   std::uint64_t timeout_us = 0;
   if (sd_watchdog_enabled(0, &timeout_us) <= 0) return;
   const std::chrono::microseconds period(timeout_us / kLooks);
-  thread_ = std::jthread([this, period](const std::stop_token& stop) { watch(stop, period); });
+  try {
+    thread_ = std::jthread([this, period](const std::stop_token& stop) { watch(stop, period); });
+  } catch (const std::system_error& error) {
+    throw std::system_error(error.code(), "starting the thread of the service's watchdog");
+  }
 }
 
 void ServiceWatchdog::watch(const std::stop_token& stop, std::chrono::microseconds period) {

@@ -56,6 +56,7 @@ ifreq requestFor(const std::string& interface) {
 ifreq ask(const std::string& interface, unsigned long what) {
   ifreq request = requestFor(interface);
   const Descriptor any(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (any.get() < 0) failOnInterface(errno, interface, "cannot open a socket to ask for it");
   if (ioctl(any.get(), what, &request) != 0)
     failOnInterface(errno, interface,
                     "no such network interface; `ip link` lists them, and `ip link set " +
