@@ -43,6 +43,10 @@ void takeNote(const ControlClient& daemon, const std::string& path, const std::s
     replaceWithoutCopy(path, before);
     throw RunError(fmt::format("{}: is as it was, for what runs was changed meanwhile: {}",
                                escaped(path), refused.what()));
+  } catch (const RunError& error) {
+    throw RunError(fmt::format(
+        "{}: is written, but the daemon may not have read it: {}; `tactus reload` lets it",
+        escaped(path), error.what()));
   }
 }
 

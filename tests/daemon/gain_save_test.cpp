@@ -23,15 +23,16 @@ namespace {
 constexpr const char* kSet = R"({"do": "set", "values": {"controller.damping": 0.8}})";
 
 /// Answers two requests, show and the reload behind what was written, and lets something happen
-/// between them.
+/// between them; or the first alone.
 class Daemon {
  public:
-  Daemon(const std::string& path, ControlRequests& requests, std::function<void()> between)
-      : listening_(PacketSocket::listenAt(path, 1)), thread_([this, &requests, between] {
+  Daemon(const std::string& path, ControlRequests& requests, std::function<void()> between,
+         bool ends)
+      : listening_(PacketSocket::listenAt(path, 1)), thread_([this, &requests, between, ends] {
           const PacketSocket client = accepted();
           answer(client, requests);
           between();
-          answer(client, requests);
+          if (!ends) answer(client, requests);
         }) {}
   ~Daemon() { thread_.join(); }
 
@@ -60,9 +61,9 @@ class SavedGainsTest : public testing::Test {
   explicit SavedGainsTest(const std::vector<Override>& settings = {})
       : requests_(loadScene(file_.path(), settings), *link_) {}
 
-  SavedGains save(std::function<void()> between) {
+  SavedGains save(std::function<void()> between, bool ends = false) {
     const std::string socket = file_.folder().path() + "/asked";
-    const Daemon daemon(socket, requests_, std::move(between));
+    const Daemon daemon(socket, requests_, std::move(between), ends);
     return saveGains(ControlClient(socket));
   }
 
@@ -101,6 +102,19 @@ TEST_F(SavedGainsTest, ThatWentBackMeanwhileNeitherReturnNorStayInTheFile) {
   EXPECT_EQ(shown.at("scene_hash"), file_.hash());
   EXPECT_EQ(shown.at("ordered").at("controller.damping"), 0.7);
   EXPECT_EQ(shown.at("number"), 1);
+}
+
+TEST_F(SavedGainsTest, AreInTheFileOfADaemonThatEndsBeforeItReadsIt) {
+  requests_.answer(kSet);
+  try {
+    save([] {}, true);
+    ADD_FAILURE() << "did not look whether the daemon reads it";
+  } catch (const RunError& error) {
+    EXPECT_NE(std::string(error.what()).find(": is written, but the daemon may not have read it"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_NE(file_.text().find("damping: 0.8"), std::string::npos);
 }
 
 /// A daemon that was started with --set controller.damping=0.9.
