@@ -5,33 +5,51 @@ fail, virtual_daemon. Programs that start and end: the n-th call of a function f
 time (virtual_daemon), while it is asked: which call is the n-th is a matter of time there, so the first of those
 fails that come to the function by the same way, the same return addresses.
 TACTUS_FAILING_CALLS in the environment says how many calls of each function, or ways to each; 0: all; few by
-default. With --table [PROGRAM...] behind the arguments it prints what each came to, for docs/failing_calls.md."""
+default. With --table [PROGRAM...] behind the arguments it prints what each came to, for docs/failing_calls.md. What
+was found stands in the file TACTUS_FAILING_CALLS_FOUND, if that is given, and the next run goes on there; with
+TACTUS_FAILING_CALLS_S nothing new is begun after so many seconds."""
 import bisect
 import collections
+import contextlib
 import functools
 import json
 import os
 import pathlib
+import random
 import re
-import shutil
 import signal
 import socket
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENE = str(ROOT / "config" / "scenes" / "scenario1_null_space.yaml")
+COMMANDS = str(ROOT / "config" / "scenes" / "commands.yaml")
 TACTUS, TACTUSD, LIBRARY, VIRTUAL = (str(pathlib.Path(sys.argv.pop(1)).resolve()) for _ in range(4))
 IS_TABLE = "--table" in sys.argv
+FOUND = os.environ.get("TACTUS_FAILING_CALLS_FOUND")
+END_S = time.monotonic() + float(os.environ.get("TACTUS_FAILING_CALLS_S", "inf"))
 MOST = int(os.environ.get("TACTUS_FAILING_CALLS", "4"))
 PATIENCE_S = 20
 RUNS = {"check": [TACTUS, "check", SCENE],
         "simulate": [TACTUS, "simulate", SCENE, "--set", "simulation.duration_s=0.05", "-o", "out"],
         "daemon": [TACTUSD, "scene.yaml", "-o", "out"]}
-REQUESTS = [{"do": "show"}, {"do": "set", "values": {"controller.damping": 0.7}}, {"do": "undo"},
-            {"do": "move", "to_m": [0, 0.02, 0], "relative": True}, {"do": "hold"}, {"do": "reload"}]
+# What a daemon that runs is asked, together; of the last it does nothing. Then whether it still does.
+REQUESTS = {
+    "gains": [{"do": "show"}, {"do": "set", "values": {"controller.damping": 0.7}}, {"do": "undo"}],
+    "gains for a time": [{"do": "set", "values": {"controller.damping": 0.7}, "for_s": 60}, {"do": "undo"}],
+    "file": [{"do": "reload"}, {"do": "reload", "only_read": True}],
+    "tool": [{"do": "move", "to_m": [0, 0.02, 0], "relative": True},
+             {"do": "follow", "waypoints": [{"to_m": [0, -0.01, 0], "relative": True, "pause_s": 0.1},
+                                            {"to_m": [0, -0.01, None], "relative": True}]},
+             {"do": "hold"}, {"do": "stream", "to_m": [0.001, 0, 0], "relative": True}],
+    "refused": [{"do": "jump"}, {"do": "set", "values": {"controller.dampin": 1}},
+                {"do": "set", "values": {"controller.damping": -1}}, {"do": "move"}, {"do": "move", "to_m": [9, 9, 9]},
+                "no object"]}
+AFTER = [{"do": "show"}, {"do": "move", "to_m": [0, -0.001, 0], "relative": True}, {"do": "hold"}]
 REST_MS = 2000  # of virtual time
 
 
@@ -47,10 +65,32 @@ def run(name, folder, **failure):
 
 
 def spread(those, most=MOST):
-    """Which of them fail: all, or as many as may be, the first and the last among them."""
-    if most == 0 or len(those) <= most:
+    """Which of them fail: all, in an order in which the first are a sample, or as many as may be, the first and the
+    last among them."""
+    if most == 0:
+        return random.Random(1).sample(those, len(those))
+    if len(those) <= most:
         return list(those)
     return [those[i] for i in sorted({i * (len(those) - 1) // (most - 1) for i in range(most)})]
+
+
+@functools.lru_cache
+def found_before():
+    lines = pathlib.Path(FOUND).read_text().splitlines() if FOUND and os.path.exists(FOUND) else []
+    return {key: found for key, *found in map(json.loads, lines)}
+
+
+def tried(key, try_it):
+    """[(outcome, trouble)], as it was found before, or now; [] if there is no time left."""
+    if key in found_before():
+        return [found_before()[key]]
+    if time.monotonic() > END_S:
+        return []
+    found = try_it()
+    if FOUND:
+        with open(FOUND, "a") as file:
+            file.write(json.dumps([key, *found]) + "\n")
+    return [found]
 
 
 def files(folder):
@@ -160,14 +200,17 @@ def lines_beyond(done, whole):
 
 
 def outcomes(name, most=MOST):
-    """(function, how many calls there are, the one that failed, what it came to, what is wrong with that) of each."""
+    """(function, how many calls there are, how many to try, the one that failed, what it came to, what is wrong with
+    that) of each."""
     with tempfile.TemporaryDirectory() as folder:
         whole = run(name, folder, FAIL_COUNT=f"{folder}/count")
         whole_files = files(folder)
         counts = [line.split() for line in pathlib.Path(folder, "count").read_text().splitlines()]
-    for call, count in counts:
+    for call, count in sorted(counts, key=lambda one: int(one[1])):
         for number in spread(range(1, int(count) + 1), most):
-            yield call, int(count), number, *outcome_of(name, call, number, whole, whole_files)
+            for found in tried(f"{name} {call} {number}",
+                               lambda: outcome_of(name, call, number, whole, whole_files)):
+                yield call, int(count), int(count), number, *found
 
 
 def ask(path, request):
@@ -182,27 +225,41 @@ def ask(path, request):
         return None
 
 
-def run_daemon(folder, **failure):
-    """A daemon that is asked, twice for all, until it is told to end: (process, answers)."""
+@contextlib.contextmanager
+def virtual_daemon(folder, scene, **environment):
+    """One that runs: (process, path of its control socket)."""
     pathlib.Path(folder, "log").mkdir()
-    shutil.copytree(ROOT / "config", pathlib.Path(folder, "config"))
-    environment = {**os.environ, "LD_PRELOAD": LIBRARY, "FAIL_SIGNAL": "1", "RUNTIME_DIRECTORY": folder, **failure}
-    process = subprocess.Popen([VIRTUAL, "--log", "log", "20", "config/scenes/commands.yaml"], cwd=folder,
-                               env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen([VIRTUAL, "--log", "log", "20", scene], cwd=folder,
+                               env={**os.environ, "RUNTIME_DIRECTORY": folder, **environment},
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         assert process.stdout.readline() == "running\n"
-        process.send_signal(signal.SIGUSR2)
         path = str(pathlib.Path(folder, "control"))
-        answers = [ask(path, request) for request in REQUESTS * 2]
-        process.terminate()
-        said, errors = process.communicate(timeout=PATIENCE_S)
-        return subprocess.CompletedProcess([], process.returncode, said, errors), answers
+        while not ask(path, {"do": "show"})["task"]["is_running"]:
+            pass
+        yield process, path
     finally:
         process.kill()
         process.communicate()
 
 
-def running_trouble(done, answers, folder):
+def run_daemon(folder, asked, **failure):
+    """A daemon that is asked until it is told to end: (process, requests that did not end as they should)."""
+    lost = []
+    with virtual_daemon(folder, COMMANDS, LD_PRELOAD=LIBRARY, FAIL_SIGNAL="1", **failure) as (process, path):
+        process.send_signal(signal.SIGUSR2)
+        for request in REQUESTS[asked] + AFTER:
+            answer = ask(path, request)
+            if not answer or answer["done"] != (request in AFTER or asked != "refused"):
+                lost.append((request, answer and answer.get("error")))
+        if "FAIL_WAYS" in failure:
+            time.sleep(0.6)  # until the status is due again
+        process.terminate()
+        said, errors = process.communicate(timeout=PATIENCE_S)
+        return subprocess.CompletedProcess([], process.returncode, said, errors), lost
+
+
+def running_trouble(done, lost, folder):
     """What is wrong with a daemon that ran while a call failed, or None. Without memory for what it writes, and
     without a summary, it says so and ends, as tactusd does."""
     rests = [re.fullmatch(r"(stopped|aborted): at rest after (\d+) ms", line) for line in done.stdout.splitlines()]
@@ -216,83 +273,159 @@ def running_trouble(done, answers, folder):
         return None
     if done.returncode != 0:
         return f"ends ({done.returncode}) in {place}: {done.stderr[-300:]}"
-    lost = [(request, answer and answer.get("error")) for request, answer in zip(REQUESTS * 2, answers)
-            if not answer or not answer["done"]]
-    if lost and lost[0][0]["do"] == "set" and lost[-1][1] == "undo: nothing was changed before":
-        lost.pop()
-    if len(lost) > 1:
+    of_set = [error for _, error in lost[1:] if error == "undo: nothing was changed before"]
+    if len(lost) - len(of_set) > 1:
         return f"does not do {lost} in {place}: {done.stderr[-300:]}"
     if not is_read(f"{folder}/log/run.ulg") and "log stopped" not in done.stderr:
         return f"leaves a log that is not whole, and says nothing, in {place}"
     return None
 
 
-def running_outcome(done, answers, folder):
+def running_outcome(done, lost, folder):
     known = known_outcome(done.returncode, done.stderr, place_of(folder, VIRTUAL)) if done.returncode < 0 else None
     if known:
         return known + (", at rest before" if "stopped" in done.stdout else ", at rest by the drives")
     if done.returncode != 0:
         return f"ends with a line and {done.returncode}"
-    return "goes on" if all(answer and answer["done"] for answer in answers) else "goes on, a request is not done"
+    return "goes on, a request is not done" if lost else "goes on"
 
 
-def running_outcome_of(call, way):
+def running_outcome_of(asked, call, way):
     """Of a daemon in which the first call by that way fails; not all come by it each time, and some only in one
     that is as slow as when ways are looked for."""
     for is_slow in (False, True, True, True):
         with tempfile.TemporaryDirectory() as folder:
             slow = {"FAIL_WAYS": f"{folder}/ways"} if is_slow else {}
             try:
-                done, answers = run_daemon(folder, FAIL_CALL=call, FAIL_WAY=way, FAIL_PLACE=f"{folder}/place",
-                                           **slow)
+                done, lost = run_daemon(folder, asked, FAIL_CALL=call, FAIL_WAY=way,
+                                        FAIL_PLACE=f"{folder}/place", **slow)
             except subprocess.TimeoutExpired:
                 return "hangs", f"hangs in {place_of(folder, VIRTUAL)}"
-            outcome, trouble = running_outcome(done, answers, folder), \
-                running_trouble(done, answers, folder)
+            outcome, trouble = running_outcome(done, lost, folder), running_trouble(done, lost, folder)
             if trouble or place_of(folder, VIRTUAL):
                 return outcome, trouble
     return "did not come by that way again", None
 
 
 def ways(runs):
-    """Of each function, the ways to it in so many runs."""
-    found = {}
-    for _ in range(runs):
+    """Of each function, the ways to it in so many runs of all requests: (what is asked first that comes by it, way);
+    and how many calls there are in a run."""
+    found, counts = {}, collections.Counter()
+    for asked in [*REQUESTS] * runs:
         with tempfile.TemporaryDirectory() as folder:
-            done, answers = run_daemon(folder, FAIL_WAYS=f"{folder}/ways", FAIL_PLACE=f"{folder}/place")
-            trouble = running_trouble(done, answers, folder)
-            assert not trouble and all(answer["done"] for answer in answers), trouble
+            done, lost = run_daemon(folder, asked, FAIL_WAYS=f"{folder}/ways", FAIL_PLACE=f"{folder}/place")
+            trouble = running_trouble(done, lost, folder)
+            assert not trouble and not lost, (trouble, lost)
             for line in pathlib.Path(folder, "ways").read_text().splitlines():
-                call, way, _ = line.split()
-                found.setdefault(call, {})[way.split(":")[0]] = way
-    return {call: sorted(those.values()) for call, those in found.items()}
+                call, way, count = line.split()
+                counts[call] += int(count)
+                found.setdefault(call, {}).setdefault(way.split(":")[0], (asked, way))
+    return {call: (counts[call] // runs, list(those.values())) for call, those in found.items()}
 
 
-def running_outcomes(most=MOST, runs=4):
+def running_outcomes(most=MOST, runs=3):
     """As outcomes(), of a daemon in virtual time that is asked."""
-    for call, those in ways(runs).items():
-        for way in spread(those, most):
-            yield call, len(those), way, *running_outcome_of(call, way)
+    for call, (count, those) in sorted(ways(runs).items(), key=lambda one: len(one[1][1])):
+        for asked, way in spread(those, most):
+            for found in tried(f"running {call} {way.split(':')[0]}", lambda: running_outcome_of(asked, call, way)):
+                yield call, count, len(those), way, *found
+
+
+class Saves:
+    """`tactus save` of a gain of a daemon that runs, again and again."""
+    BEFORE = f"extends: {COMMANDS}\ncontroller:\n  damping: 1  # of the engineer\n"
+
+    def __init__(self, folder, path):
+        self.folder, self.path, self.scene = folder, path, pathlib.Path(folder, "scene.yaml")
+        self.after = ""
+
+    def run(self, **failure):
+        self.scene.write_text(self.BEFORE)
+        for request in [{"do": "reload"}, {"do": "set", "values": {"controller.damping": 0.7}}]:
+            assert ask(self.path, request)["done"]
+        pathlib.Path(self.folder, "place").unlink(missing_ok=True)
+        environment = {**os.environ, "LD_PRELOAD": LIBRARY, "RUNTIME_DIRECTORY": self.folder,
+                       "FAIL_PLACE": f"{self.folder}/place", **failure}
+        return subprocess.run([TACTUS, "save"], env=environment, capture_output=True, text=True,
+                              timeout=PATIENCE_S, check=False)
+
+    def outcome_of(self, call, way):
+        """The scene's file is as it was, or as it is to be, whatever fails."""
+        done = self.run(FAIL_CALL=call, FAIL_WAY=way)
+        place, text = place_of(self.folder, TACTUS), self.scene.read_text()
+        left = [path for path in pathlib.Path(self.folder).glob("scene.yaml.??????")]
+        for path in left:
+            path.unlink()
+        known = known_outcome(done.returncode, done.stderr, place)
+        outcome = known or f"ends with a line and {done.returncode}" if done.returncode else "as without"
+        trouble = None
+        if text not in (self.BEFORE, self.after) or done.returncode == 0 and text != self.after:
+            trouble = f"leaves {text} in {place}"
+        elif done.returncode < 0 and not known or done.returncode > 0 and not done.stderr:
+            trouble = f"ends ({done.returncode}) in {place}: {done.stderr}"
+        elif left and not known and call != "unlink":
+            trouble = f"leaves {left} in {place}: {done.stderr}"
+        elif text == self.after and done.returncode > 0 and call != "malloc" and \
+                not re.search("is written|standard output", done.stderr):
+            trouble = f"saves, and does not say so: {done.stderr}"
+        elif not place:
+            outcome = "did not come by that way again"
+        if done.returncode > 0:
+            outcome += ", saved" if text == self.after else ", not saved"
+        return outcome, trouble
+
+
+def save_outcomes(most=MOST):
+    """As running_outcomes(), of a save."""
+    with tempfile.TemporaryDirectory() as folder:
+        pathlib.Path(folder, "scene.yaml").write_text(Saves.BEFORE)
+        with virtual_daemon(folder, "scene.yaml") as (_, path):
+            saves = Saves(folder, path)
+            done = saves.run(FAIL_WAYS=f"{folder}/ways")
+            saves.after = saves.scene.read_text()
+            assert done.returncode == 0 and "damping: 0.7  # of" in saves.after, done.stderr
+            found = {}
+            for line in pathlib.Path(folder, "ways").read_text().splitlines():
+                call, way, count = line.split()
+                found.setdefault(call, []).append((way, int(count)))
+            for call, those in sorted(found.items(), key=lambda one: len(one[1])):
+                for way, _ in spread(those, most):
+                    for outcome in tried(f"save {call} {way.split(':')[0]}", lambda: saves.outcome_of(call, way)):
+                        yield call, sum(count for _, count in those), len(those), way, *outcome
+
+
+def print_rows(name, rows):
+    """Functions whose calls come to the same share a row."""
+    shared = {}
+    for call, (calls, those, seen) in rows.items():
+        key = call if call == "malloc" else tuple(sorted(seen))
+        same = shared.setdefault(key, ([], collections.Counter(), [0] * 2))
+        same[0].append(call)
+        same[1].update(seen)
+        same[2][:] = same[2][0] + calls, same[2][1] + those
+    for functions, seen, (calls, those) in shared.values():
+        said = "; ".join(f"{' '.join(text.split())}: {times}" for text, times in seen.most_common())
+        print(f"| {name} | {', '.join(sorted(functions))} | {calls} | {those} | {sum(seen.values())} | {said} |",
+              flush=True)
 
 
 def print_table(names):
-    print("| Program | Call | There are | Failed | Comes to |\n|---|---|---|---|---|", flush=True)
+    print("| Program | Function | Calls | To try | Tried | Come to |\n|---|---|---|---|---|---|", flush=True)
     for name in names:
         rows = {}
-        for call, count, number, outcome, trouble in outcomes(name) if name in RUNS else running_outcomes():
-            _, seen = rows.setdefault(call, (count, collections.Counter()))
-            seen[f"**{outcome}**" if trouble else outcome] += 1
+        them = outcomes(name) if name in RUNS else save_outcomes() if name == "save" else running_outcomes()
+        for call, calls, those, number, outcome, trouble in them:
+            rows.setdefault(call, (calls, those, collections.Counter()))[2][
+                f"**{outcome}**" if trouble else outcome] += 1
             if trouble:
                 print(f"{name} {call} {number}: {trouble}", file=sys.stderr, flush=True)
-        for call, (count, seen) in rows.items():
-            said = "; ".join(f"{' '.join(text.split())}: {times}" for text, times in seen.most_common())
-            print(f"| {name} | {call} | {count} | {sum(seen.values())} | {said} |", flush=True)
+        print_rows(name, rows)
 
 
 class FailingCallsTest(unittest.TestCase):
     def look_at(self, outcomes_of_all):
         found, looked_at = [], 0
-        for call, _, number, _, trouble in outcomes_of_all:
+        for call, _, _, number, _, trouble in outcomes_of_all:
             looked_at += 1
             if trouble:
                 found.append(f"{call} {number}: {trouble}")
@@ -320,13 +453,16 @@ class FailingCallsTest(unittest.TestCase):
     def test_running(self):
         self.look_at(running_outcomes(runs=1))
 
+    def test_save(self):
+        self.look_at(save_outcomes())
+
     def test_a_look_without_memory_does_not_end_it(self):
         """The first calls of the thread of the control socket are those of its looks, between requests."""
         for number in range(1, 5):
             with tempfile.TemporaryDirectory() as folder:
-                done, answers = run_daemon(folder, FAIL_CALL="malloc", FAIL_AT=str(number), FAIL_THREADS="1",
-                                           FAIL_PLACE=f"{folder}/place")
-                self.assertIsNone(running_trouble(done, answers, folder))
+                done, lost = run_daemon(folder, "gains", FAIL_CALL="malloc", FAIL_AT=str(number), FAIL_THREADS="1",
+                                        FAIL_PLACE=f"{folder}/place")
+                self.assertIsNone(running_trouble(done, lost, folder))
 
     def test_a_crash_and_a_cut_log_are_seen(self):
         whole = subprocess.CompletedProcess([], 0, "", "")
@@ -341,6 +477,6 @@ class FailingCallsTest(unittest.TestCase):
 
 if __name__ == "__main__":
     if IS_TABLE:
-        print_table(sys.argv[sys.argv.index("--table") + 1:] or [*RUNS, "running"])
+        print_table(sys.argv[sys.argv.index("--table") + 1:] or [*RUNS, "running", "save"])
     else:
         unittest.main()
