@@ -11,7 +11,6 @@
 namespace tactus {
 namespace {
 
-constexpr int kMaxPdos = 512;  // CiA 301, 7.5.2.37
 constexpr std::int64_t kMaxUnsigned32 = 0xFFFFFFFF;
 
 /// A file by the key that names it.
@@ -64,9 +63,11 @@ std::optional<std::uint32_t> identityOf(const EdsFile& eds, std::uint8_t subinde
   const auto entry = findEdsObject(eds, 0x1018, subindex);
   const std::int64_t in_entry = entry && entry->initial ? entry->initial->value : 0;
   const std::int64_t in_device = numberOfDevice(eds, key);
-  if (in_entry < 0 || in_entry > kMaxUnsigned32)
+  const bool is_of_node = entry && entry->initial && entry->initial->plus_node_id;
+  if (is_of_node || in_entry < 0 || in_entry > kMaxUnsigned32)
     failAt(entry->initial_at, entry->name + ".DefaultValue",
-           fmt::format("{} does not fit", in_entry), "expected 32 bits");
+           is_of_node ? "differs with the node id" : fmt::format("{} does not fit", in_entry),
+           "expected one number of 32 bits");
   if (in_entry != 0 && in_device != 0 && in_entry != in_device) {
     failAt(entry->initial_at, entry->name + ".DefaultValue",
            fmt::format("{:#x} is not DeviceInfo.{} = {:#x}", in_entry, key, in_device),
@@ -75,13 +76,6 @@ std::optional<std::uint32_t> identityOf(const EdsFile& eds, std::uint8_t subinde
   // Without the entry the drive cannot be asked.
   if (!entry || (in_entry == 0 && in_device == 0)) return std::nullopt;
   return static_cast<std::uint32_t>(in_entry != 0 ? in_entry : in_device);
-}
-
-int transmitPdosOf(const EdsFile& eds, int least) {
-  int pdos = least;
-  for (int pdo = least; pdo < kMaxPdos; ++pdo)
-    if (eds.find(fmt::format("{:x}", 0x1800 + pdo))) pdos = pdo + 1;
-  return pdos;
 }
 
 }  // namespace
@@ -117,7 +111,7 @@ void applySheet(const DriveSheet& sheet, DriveConfig& drive) {
   if (!sheet.eds) return;
   drive.vendor_id = identityOf(*sheet.eds, 1, "VendorNumber");
   drive.product_code = identityOf(*sheet.eds, 2, "ProductNumber");
-  drive.transmit_pdos = transmitPdosOf(*sheet.eds, drive.transmit_pdos);
+  drive.transmit_pdos = edsPdos(*sheet.eds, 0x1800, drive.transmit_pdos);
 }
 
 }  // namespace tactus

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "tactus/canopen/cia402.h"
 #include "tactus/canopen/drive_setup.h"
 #include "tactus/scene/eds_object.h"
 
@@ -13,6 +14,8 @@ namespace tactus {
 namespace {
 
 using StepKind = SetupStep::Kind;
+
+constexpr std::int64_t kPdoNotValid = 0x80000000;  // bit 31 of a PDO's COB-ID
 
 [[noreturn]] void refuseObject(const SourcePosition& at, const EdsObject& object, const char* key,
                                const std::string& problem, const std::string& expectation) {
@@ -66,15 +69,26 @@ void checkBitRate(const EdsFile& eds, const BusConfig& bus) {
          "expected 10, 20, 50, 125, 250, 500, 800 or 1000 kbit/s");
 }
 
+/// PDOs that a sheet counts and does not describe may be on the bus by default, where nothing has
+/// switched them off. Up to the fourth the set-up does so, whether they are described or not.
+void checkPdos(const EdsFile& eds, const std::string& key, std::uint16_t first) {
+  constexpr int kPredefined = 4;
+  const DeviceNumber pdos = requiredNumber(eds, key, "1 or more");
+  if (pdos.value < 1)
+    failAt(pdos.at, "DeviceInfo." + key, "the drive has no such PDO", "expected 1 or more");
+  const int described = edsPdos(eds, first, kPredefined);
+  if (pdos.value <= described) return;
+  failAt(pdos.at, "DeviceInfo." + key,
+         fmt::format("{} PDOs, and none is described beyond {:04X}", pdos.value,
+                     first + described - 1),
+         fmt::format("expected at most {}, or a file that is whole", described));
+}
+
 void checkDeviceInfo(const EdsFile& eds, const BusConfig& bus) {
   constexpr int kSmallestMapped_bits = 16;
   checkBitRate(eds, bus);
-  for (const char* const key : {"NrOfRXPDO", "NrOfTXPDO"}) {
-    const DeviceNumber pdos = requiredNumber(eds, key, "1 or more");
-    if (pdos.value < 1)
-      failAt(pdos.at, std::string("DeviceInfo.") + key, "the drive has no such PDO",
-             "expected 1 or more");
-  }
+  checkPdos(eds, "NrOfRXPDO", 0x1400);
+  checkPdos(eds, "NrOfTXPDO", 0x1800);
   const DeviceNumber granularity = requiredNumber(eds, "Granularity", "1 to 16 bits");
   if (granularity.value < 1 || granularity.value > kSmallestMapped_bits)
     failAt(granularity.at, "DeviceInfo.Granularity",
@@ -129,17 +143,16 @@ std::int64_t writtenValue(const SetupStep& step) {
   return as_written.inType(step.value);
 }
 
-/// Limits beside the device's node id are none of ours.
-void checkLimits(const EdsObject& object, const SetupStep& step) {
-  if (step.kind != StepKind::kWrite || !object.isWritable()) return;
-  const std::int64_t value = writtenValue(step);
-  if (object.lowest && !object.lowest->plus_node_id && value < object.inType(object.lowest->value))
-    refuseObject(object.lowest_at, object, "LowLimit", fmt::format("is above the {} needed", value),
-                 fmt::format("at most {}", value));
-  if (object.highest && !object.highest->plus_node_id &&
-      value > object.inType(object.highest->value))
+void checkLimits(const EdsObject& object, std::int64_t needed) {
+  if (!object.isWritable()) return;
+  const auto lowest = object.ofEachNode(object.lowest);
+  const auto highest = object.ofEachNode(object.highest);
+  if (lowest && needed < *lowest)
+    refuseObject(object.lowest_at, object, "LowLimit",
+                 fmt::format("is above the {} needed", needed), fmt::format("at most {}", needed));
+  if (highest && needed > *highest)
     refuseObject(object.highest_at, object, "HighLimit",
-                 fmt::format("is below the {} needed", value), fmt::format("at least {}", value));
+                 fmt::format("is below the {} needed", needed), fmt::format("at least {}", needed));
 }
 
 /// What is constant has to be what the set-up waits for. Sheets say 0 where they say nothing.
@@ -163,12 +176,13 @@ void checkStep(const EdsFile& eds, const SetupStep& step) {
                                           : "it, which the set-up needs");
   checkEntryType(object, entry);
   checkAccess(object, step);
-  checkLimits(object, step);
+  if (step.kind == StepKind::kWrite) checkLimits(object, writtenValue(step));
+  if (step.kind == StepKind::kStopPdo) checkLimits(object, kPdoNotValid);
   checkConstant(object, step);
 }
 
 /// Access rw is mapped either way.
-void checkMapped(const EdsFile& eds, const ObjectEntry& entry, bool is_received) {
+EdsObject checkMapped(const EdsFile& eds, const ObjectEntry& entry, bool is_received) {
   const EdsObject object =
       requireObject(eds, entry.index, entry.subindex,
                     is_received ? "it, which RPDO1 carries" : "it, which TPDO1 carries");
@@ -183,6 +197,15 @@ void checkMapped(const EdsFile& eds, const ObjectEntry& entry, bool is_received)
     refuseObject(object.access_at, object, "AccessType",
                  is_received ? "cannot be received by a PDO" : "cannot be sent by a PDO",
                  is_received ? "rw, rww or wo" : "ro, rw or rwr");
+  return object;
+}
+
+/// With what each cycle may send, whatever the joint: the commands, and a velocity of 0.
+void checkReceived(const EdsFile& eds) {
+  const EdsObject control = checkMapped(eds, {0x6040, 0, 2}, true);
+  checkLimits(control, control_word::kDisableVoltage);
+  checkLimits(control, control_word::kFaultReset);
+  checkLimits(checkMapped(eds, {0x60FF, 0, 4}, true), 0);
 }
 
 }  // namespace
@@ -191,8 +214,7 @@ void checkEds(const EdsFile& eds, const DriveConfig& drive, const BusConfig& bus
               const CanopenConfig& canopen, double period_s) {
   checkDeviceInfo(eds, bus);
   checkModes(eds);
-  checkMapped(eds, {0x6040, 0, 2}, true);
-  checkMapped(eds, {0x60FF, 0, 4}, true);
+  checkReceived(eds);
   checkMapped(eds, {0x6041, 0, 2}, false);
   checkMapped(eds, {0x6064, 0, 4}, false);
   for (const SetupStep& step : setupSteps(drive, canopen, period_s)) checkStep(eds, step);

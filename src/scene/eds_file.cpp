@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cstddef>
-#include <set>
 
 namespace tactus {
 namespace {
@@ -95,12 +94,19 @@ EdsSection& beginEdsSection(EdsFile& eds, std::string_view line, const SourcePos
   return found->second;
 }
 
+/// A value ends where a comment begins: at a semicolon in front, or behind a blank.
+std::string_view withoutComment(std::string_view text) {
+  for (std::size_t at = text.find(';'); at != std::string_view::npos; at = text.find(';', at + 1))
+    if (at == 0 || kBlank.find(text[at - 1]) != std::string_view::npos) return text.substr(0, at);
+  return text;
+}
+
 void addEdsValue(EdsSection& section, std::string_view line, const SourcePosition& at) {
   const std::size_t equals = line.find('=');
   const std::string key = lowerCase(withoutBlanks(line.substr(0, std::min(equals, line.size()))));
   if (equals == std::string_view::npos || key.empty())
     failAt(at, section.name, inQuotes(line) + " is no value", "expected key=value, or [section]");
-  const EdsValue value{std::string(withoutBlanks(line.substr(equals + 1))), at};
+  const EdsValue value{std::string(withoutBlanks(withoutComment(line.substr(equals + 1)))), at};
   const auto [found, is_new] = section.values.try_emplace(key, value);
   if (is_new) return;
   failAt(at, section.name + "." + key,
@@ -109,7 +115,7 @@ void addEdsValue(EdsSection& section, std::string_view line, const SourcePositio
 }
 
 /// A list of objects: as many as it says, each there once in all lists.
-void checkObjectList(const EdsSection& list, std::set<std::int64_t>& objects) {
+void readObjectList(const EdsSection& list, std::map<std::int64_t, SourcePosition>& objects) {
   constexpr const char* kCount = "SupportedObjects";
   const EdsValue* count = list.find(kCount);
   const std::string key = list.name + "." + kCount;
@@ -123,7 +129,7 @@ void checkObjectList(const EdsSection& list, std::set<std::int64_t>& objects) {
     const std::string place = list.name + "." + name;
     if (!object || object->plus_node_id || object->value < 0 || object->value > 0xFFFF)
       failAt(value.at, place, inQuotes(value.text) + " is no object", "expected one as 0x6040");
-    if (!objects.insert(object->value).second)
+    if (!objects.try_emplace(object->value, value.at).second)
       failAt(value.at, place, fmt::format("object {:04X} is listed twice", object->value),
              "expected each once");
   }
@@ -174,7 +180,7 @@ const EdsSection* EdsFile::find(std::string_view key) const {
 
 EdsFile parseEds(const SourceFile& file) {
   EdsLines lines(file);
-  EdsFile eds{beginOf(file.path), {}};
+  EdsFile eds{beginOf(file.path), {}, {}};
   EdsSection* section = nullptr;
   std::string_view line;
   while (lines.next(line)) {
@@ -187,10 +193,9 @@ EdsFile parseEds(const SourceFile& file) {
       failAt(lines.at(), "-", inQuotes(line) + " is in no section", "expected [FileInfo] before");
     addEdsValue(*section, line, lines.at());
   }
-  std::set<std::int64_t> objects;
   for (const char* const list : kEdsObjectLists)
-    if (const EdsSection* const found = eds.find(list)) checkObjectList(*found, objects);
-  if (objects.empty())
+    if (const EdsSection* const found = eds.find(list)) readObjectList(*found, eds.objects);
+  if (eds.objects.empty())
     failAt(eds.begin, "MandatoryObjects", "no list of objects", "expected an EDS of CiA 306");
   return eds;
 }

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kVariable = 7, kArray = 8, kRecord = 9;  // ObjectType
 constexpr int kMaxSubindex = 254;
+constexpr int kMaxPdos = 512;  // CiA 301, 7.5.2.35 and 7.5.2.37
 
 [[noreturn]] void refuseEntry(const SourcePosition& at, const std::string& section, const char* key,
                               const std::string& problem, const std::string& expectation) {
@@ -33,16 +34,19 @@ std::int64_t objectType(const EdsSection& section) {
                                                                                   : kVariable);
 }
 
-void requireListed(const EdsFile& eds, const EdsSection& section, std::uint16_t index) {
-  for (const char* const name : kEdsObjectLists) {
-    const EdsSection* const list = eds.find(name);
-    if (!list) continue;
-    for (const auto& [key, value] : list->values)
-      if (key != "supportedobjects" && parseEdsNumber(value.text) == EdsNumber{index, false})
-        return;
+/// The section of an object. It and the lists have to agree whether the object is there.
+const EdsSection* sectionOf(const EdsFile& eds, std::uint16_t index) {
+  const EdsSection* const section = eds.find(fmt::format("{:x}", index));
+  const auto listed = eds.objects.find(index);
+  if (section && listed == eds.objects.end()) {
+    failAt(section->at, section->name, "the object is in no list of objects",
+           "expected it in MandatoryObjects, OptionalObjects or ManufacturerObjects");
   }
-  failAt(section.at, section.name, "the object is in no list of objects",
-         "expected it in MandatoryObjects, OptionalObjects or ManufacturerObjects");
+  if (!section && listed != eds.objects.end()) {
+    failAt(listed->second, edsName(index, 0), "the object is listed and has no section",
+           fmt::format("expected [{:04X}], or a file that is whole", index));
+  }
+  return section;
 }
 
 /// Sections of sub-entries are as many as SubNumber says.
@@ -101,25 +105,50 @@ SourcePosition placeOfKey(const EdsSection& section, const char* key) {
 
 std::optional<EdsNumber> numberOf(const EdsSection& section, const char* key) {
   const EdsValue* const value = section.find(key);
-  return value ? parseEdsNumber(value->text) : std::nullopt;
+  if (!value || value->text.empty()) return std::nullopt;
+  const auto number = parseEdsNumber(value->text);
+  if (!number)
+    refuseEntry(value->at, section.name, key, inQuotes(value->text) + " is no number",
+                "a whole number, or nothing");
+  return number;
+}
+
+/// Limits leave values between them, of which the default value is one. Sheets say 0 where they
+/// say nothing.
+void checkRange(const EdsObject& object, const std::string& section) {
+  const auto lowest = object.ofEachNode(object.lowest);
+  const auto highest = object.ofEachNode(object.highest);
+  const auto initial = object.ofEachNode(object.initial);
+  if (lowest && highest && *lowest > *highest)
+    refuseEntry(object.lowest_at, section, "LowLimit",
+                fmt::format("{} is above HighLimit = {}", *lowest, *highest), "at most that");
+  if (!initial || *initial == 0) return;
+  if (lowest && *initial < *lowest)
+    refuseEntry(object.initial_at, section, "DefaultValue",
+                fmt::format("{} is below LowLimit = {}", *initial, *lowest), "at least that");
+  if (highest && *initial > *highest)
+    refuseEntry(object.initial_at, section, "DefaultValue",
+                fmt::format("{} is above HighLimit = {}", *initial, *highest), "at most that");
 }
 
 EdsObject describedBy(const EdsSection& section, std::string name) {
   const auto mapping = wholeNumber(section, "PDOMapping", "0 or 1");
-  return {.name = std::move(name),
-          .at = section.at,
-          .type = dataTypeOf(section),
-          .type_at = placeOfKey(section, "DataType"),
-          .access = accessOf(section),
-          .access_at = placeOfKey(section, "AccessType"),
-          .is_mappable = mapping.value_or(0) != 0,
-          .mapping_at = placeOfKey(section, "PDOMapping"),
-          .initial = numberOf(section, "DefaultValue"),
-          .lowest = numberOf(section, "LowLimit"),
-          .highest = numberOf(section, "HighLimit"),
-          .initial_at = placeOfKey(section, "DefaultValue"),
-          .lowest_at = placeOfKey(section, "LowLimit"),
-          .highest_at = placeOfKey(section, "HighLimit")};
+  EdsObject object{.name = std::move(name),
+                   .at = section.at,
+                   .type = dataTypeOf(section),
+                   .type_at = placeOfKey(section, "DataType"),
+                   .access = accessOf(section),
+                   .access_at = placeOfKey(section, "AccessType"),
+                   .is_mappable = mapping.value_or(0) != 0,
+                   .mapping_at = placeOfKey(section, "PDOMapping"),
+                   .initial = numberOf(section, "DefaultValue"),
+                   .lowest = numberOf(section, "LowLimit"),
+                   .highest = numberOf(section, "HighLimit"),
+                   .initial_at = placeOfKey(section, "DefaultValue"),
+                   .lowest_at = placeOfKey(section, "LowLimit"),
+                   .highest_at = placeOfKey(section, "HighLimit")};
+  checkRange(object, section.name);
+  return object;
 }
 
 /// Sub-entries without sections (CompactSubObj): all alike, behind their number.
@@ -144,6 +173,20 @@ std::int64_t EdsObject::inType(std::int64_t value) const noexcept {
   return value >= range / 2 && value < range ? value - range : value;
 }
 
+int edsPdos(const EdsFile& eds, std::uint16_t first, int least) {
+  int pdos = least;
+  for (int pdo = least; pdo < kMaxPdos; ++pdo)
+    if (eds.objects.contains(first + pdo) || eds.find(fmt::format("{:x}", first + pdo)))
+      pdos = pdo + 1;
+  return pdos;
+}
+
+std::optional<std::int64_t> EdsObject::ofEachNode(
+    const std::optional<EdsNumber>& number) const noexcept {
+  if (!number || number->plus_node_id) return std::nullopt;
+  return inType(number->value);
+}
+
 std::string edsName(std::uint16_t index, std::uint8_t subindex) {
   return subindex == 0 ? fmt::format("{:04X}", index)
                        : fmt::format("{:04X}sub{:X}", index, subindex);
@@ -151,9 +194,8 @@ std::string edsName(std::uint16_t index, std::uint8_t subindex) {
 
 std::optional<EdsObject> findEdsObject(const EdsFile& eds, std::uint16_t index,
                                        std::uint8_t subindex) {
-  const EdsSection* const section = eds.find(fmt::format("{:x}", index));
+  const EdsSection* const section = sectionOf(eds, index);
   if (!section) return std::nullopt;
-  requireListed(eds, *section, index);
   const std::int64_t type = objectType(*section);
   if (type == kVariable) {
     if (subindex > 0) return std::nullopt;

@@ -119,6 +119,16 @@ TEST(DriveSheets, ContradictNeitherThemselves) {
                 .find("DeviceInfo.VendorNumber: '0x100000000' is no number"),
             std::string::npos);
   EXPECT_EQ(errorWith("1018sub2", "DefaultValue", "DefaultValue=0"), "") << "which says nothing";
+  EXPECT_NE(errorWith("1018sub1", "DefaultValue", "DefaultValue=0x7AG")
+                .find("1018sub1.DefaultValue: '0x7AG' is no number, expected a whole number, or"),
+            std::string::npos);
+  EXPECT_NE(errorWith("1018sub2", "DefaultValue", "DefaultValue=$NODEID+1")
+                .find("1018sub2.DefaultValue: differs with the node id, expected one number"),
+            std::string::npos);
+  EXPECT_NE(errorWith("OptionalObjects", "1", "1=0x1806")
+                .find(": 1806: the object is listed and has no section"),
+            std::string::npos)
+      << "and its frames would be in no bus's load";
 }
 
 TEST(DriveProfile, IsASourceAndAListOfWords) {

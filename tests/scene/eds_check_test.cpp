@@ -56,6 +56,12 @@ INSTANTIATE_TEST_SUITE_P(
         WrongLine{"DeviceInfo", "BaudRate_1000", "BaudRate_1000=x", "'x' is no number", "0 or 1"},
         WrongLine{"DeviceInfo", "NrOfRXPDO", "NrOfRXPDO=0", "no such PDO", "1 or more"},
         WrongLine{"DeviceInfo", "NrOfTXPDO", "NrOfTXPDO=0", "no such PDO", "1 or more"},
+        WrongLine{"DeviceInfo", "NrOfRXPDO", "NrOfRXPDO=5", "none is described beyond 1403",
+                  "most 4"},
+        WrongLine{"DeviceInfo", "NrOfRXPDO", "NrOfRXPDO=200", "200 PDOs, and none", "most 4"},
+        WrongLine{"DeviceInfo", "NrOfTXPDO", "NrOfTXPDO=7", "none is described beyond 1805",
+                  "most 6"},
+        WrongLine{"DeviceInfo", "NrOfTXPDO", "NrOfTXPDO=513", "513 PDOs", "at most 6"},
         WrongLine{"DeviceInfo", "Granularity", "Granularity=0", "cannot be changed", "1 to 16"},
         WrongLine{"DeviceInfo", "Granularity", "Granularity=64", "maps no 16 bits", "1 to 16"},
         WrongLine{"6502", "DefaultValue", "DefaultValue=0xA5", "mode 9", "bit 8 set"},
@@ -83,10 +89,75 @@ INSTANTIATE_TEST_SUITE_P(
         WrongLine{"605E", "AccessType", "AccessType=ro", "cannot be written", "rw"},
         WrongLine{"6061", "AccessType", "AccessType=wo", "cannot be read", "ro or rw"},
         WrongLine{"6060", "HighLimit", "HighLimit=6", "below the 9", "at least 9"},
-        WrongLine{"605A", "LowLimit", "LowLimit=5", "above the 2", "at most 2"},
         WrongLine{"1017", "HighLimit", "HighLimit=10", "below the 20", "at least 20"},
+        WrongLine{"6060", "HighLimit", "HighLimit=0xG", "'0xG' is no number", "or nothing"},
+        WrongLine{"6060", "LowLimit", "LowLimit=1.5", "'1.5' is no number", "or nothing"},
+        WrongLine{"60C2sub1", "DefaultValue", "DefaultValue=1 ms", "'1 ms' is no number",
+                  "whole"}));
+
+/// A limit of an entry whose default value is not said.
+class WrongLimit : public testing::TestWithParam<WrongLine> {};
+
+TEST_P(WrongLimit, IsRefusedAtItsLine) {
+  const WrongLine& wrong = GetParam();
+  std::string eds =
+      test::withEdsLine(test::edsText(), wrong.section, "DefaultValue", "DefaultValue=");
+  const bool is_there = test::hasEdsLine(eds, wrong.section, wrong.key);
+  eds = test::withEdsLine(eds, wrong.section, is_there ? wrong.key : "DefaultValue", wrong.line);
+  const std::string place =
+      fmt::format("drive.eds:{}:1: {}.{}: ", test::edsLineOf(eds, wrong.section, wrong.key),
+                  wrong.section, wrong.key);
+  test::expectError(SheetCase{}.error(eds), {"", "", place, wrong.problem, wrong.expectation});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Entries, WrongLimit,
+    testing::Values(
+        WrongLine{"60FF", "LowLimit", "LowLimit=1", "above the 0 needed", "at most 0"},
+        WrongLine{"60FF", "HighLimit", "HighLimit=-1", "below the 0 needed", "at least 0"},
+        WrongLine{"60FF", "LowLimit", "LowLimit=100\nHighLimit=-100", "above HighLimit = -100",
+                  "at most that"},
+        WrongLine{"6064", "LowLimit", "LowLimit=0\nHighLimit=0xFFFFFFFF", "above HighLimit = -1",
+                  "at most that"},
+        WrongLine{"6040", "HighLimit", "HighLimit=15", "below the 128 needed", "at least 128"},
+        WrongLine{"6040", "LowLimit", "LowLimit=2", "above the 0 needed", "at most 0"},
+        WrongLine{"1401sub1", "HighLimit", "HighLimit=0x7FF", "below the 2147483648", "at least"},
+        WrongLine{"605A", "LowLimit", "LowLimit=5", "above the 2", "at most 2"},
         WrongLine{"60C2sub2", "HighLimit", "HighLimit=0xFC", "below the -3", "at least -3"},
         WrongLine{"60C2sub2", "LowLimit", "LowLimit=-2", "above the -3", "at most -3"}));
+
+TEST(EdsCheck, WantsADefaultValueWithinItsLimits) {
+  const std::string sheet = test::edsText();
+  const auto errorOf = [&](const char* lines) {
+    return SheetCase{}.error(test::withEdsLine(sheet, "60FF", "DefaultValue", lines));
+  };
+  EXPECT_NE(errorOf("DefaultValue=11\nLowLimit=-10\nHighLimit=10")
+                .find("60FF.DefaultValue: 11 is above HighLimit = 10, expected at most that"),
+            std::string::npos);
+  EXPECT_NE(errorOf("DefaultValue=0xFFFFFFF5\nLowLimit=-10\nHighLimit=10")
+                .find("60FF.DefaultValue: -11 is below LowLimit = -10, expected at least that"),
+            std::string::npos);
+  EXPECT_EQ(errorOf("DefaultValue=-10\nLowLimit=-10\nHighLimit=10"), "");
+  EXPECT_EQ(errorOf("DefaultValue=$NODEID+11\nHighLimit=10"), "") << "which is not known here";
+  const std::string off =
+      test::withEdsLine(sheet, "1400sub2", "DefaultValue", "DefaultValue=0\nLowLimit=1");
+  EXPECT_EQ(SheetCase{}.error(off), "") << "0 says nothing";
+}
+
+/// Wherever its end is lost: at the object that is not there any more, or in a line that is half.
+TEST(EdsCheck, RefusesASheetThatIsCutOff) {
+  const std::string eds = test::edsText();
+  const std::size_t last = eds.find("\n[6502]\n");
+  ASSERT_NE(last, std::string::npos);
+  for (std::size_t end = eds.find('\n'); end <= last; end = eds.find('\n', end + 1))
+    EXPECT_NE(SheetCase{}.error(eds.substr(0, end + 1)), "") << eds.substr(0, end).size();
+  const std::string error = SheetCase{}.error(eds.substr(0, last + 1));
+  const std::string place =
+      fmt::format("drive.eds:{}:1: 6502: ", test::edsLineOf(eds, "OptionalObjects", "22"));
+  EXPECT_EQ(error, place +
+                       "the object is listed and has no section, expected [6502], or a file "
+                       "that is whole");
+}
 
 TEST(EdsCheck, AcceptsADriveThatFits) {
   EXPECT_EQ(SheetCase{}.error(test::edsText()), "");
@@ -102,12 +173,17 @@ TEST(EdsCheck, MissesWhatTheSetUpNeedsAndNothingElse) {
   };
   for (const char* const needed : {"1000", "1016", "1017", "1400", "1600", "1800", "1A00", "6040",
                                    "6041", "605A", "6060", "6061", "6064", "60C2", "60FF"}) {
-    const std::string error = errorWithout(needed);
+    const std::string error = SheetCase{}.error(test::withoutEdsObject(eds, needed));
     EXPECT_NE(error.find(": " + std::string(needed)), std::string::npos) << needed << error;
     EXPECT_NE(error.find("the drive does not have it, expected it"), std::string::npos) << error;
   }
-  for (const char* const optional : {"6007", "605E", "6502", "1018", "1401", "1801", "1005"})
-    EXPECT_EQ(errorWithout(optional), "") << optional;
+  // What is not in the list either is not there; what is in it alone is half a file.
+  for (const char* const optional : {"6007", "605E", "6502", "1401", "1801"}) {
+    EXPECT_EQ(SheetCase{}.error(test::withoutEdsObject(eds, optional)), "") << optional;
+    EXPECT_NE(errorWithout(optional).find("is listed and has no section"), std::string::npos);
+  }
+  for (const char* const unused : {"1001", "1018", "1005"})
+    EXPECT_EQ(errorWithout(unused), "") << unused;
   EXPECT_NE(errorWithout("DeviceInfo").find("the section is missing"), std::string::npos);
 }
 
@@ -153,6 +229,13 @@ TEST(EdsCheck, AsksForNoMoreThanTheSheetSays) {
   eds = test::withEdsLine(eds, "6060", "HighLimit", "HighLimit=");
   eds = test::withEdsLine(eds, "605A", "HighLimit", "HighLimit=$NODEID+1");
   eds = test::withEdsLine(eds, "1400sub5", "AccessType", "AccessType=ro");
+  // Where it says what is not so, and nothing comes of it.
+  eds = test::withEdsLine(eds, "60FF", "ParameterName", ";");
+  eds = test::withEdsLine(eds, "DeviceInfo", "NrOfRXPDO", "NrOfRXPDO=1");
+  eds = test::withEdsLine(eds, "1018sub3", "DefaultValue", "DefaultValue=9\nHighLimit=8");
+  eds = test::withEdsLine(eds, "1600sub2", "DefaultValue", "DefaultValue=0x20000040");
+  eds = test::withEdsLine(eds, "1600sub0", "DefaultValue", "DefaultValue=0\nLowLimit=-128");
+  eds = test::withEdsLine(eds, "60C2sub1", "DefaultValue", "DefaultValue=1 ; ms\nLowLimit=;none");
   EXPECT_EQ(SheetCase{}.error(eds), "");
 }
 

@@ -89,6 +89,8 @@ TEST(EdsFile, LeavesOutWhatIsNoSection) {
       parseEds({"drive.eds",
                 "\xEF\xBB\xBF; made by\r\n# hand\r\n\r\n[MandatoryObjects]\r\n"
                 "SupportedObjects=0x1\r\n1=0x1000\r\n  [Comments]  \r\n Line1=a;b=c\r\n"});
+  ASSERT_EQ(eds.objects.size(), 1u);
+  EXPECT_EQ(eds.objects.at(0x1000).line, 6);
   ASSERT_NE(eds.find("comments"), nullptr);
   EXPECT_EQ(eds.find("comments")->find("line1")->text, "a;b=c");
   EXPECT_EQ(eds.find("comments")->at.line, 7);

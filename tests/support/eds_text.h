@@ -27,6 +27,11 @@ inline std::pair<std::size_t, std::size_t> edsSectionSpan(const std::string& eds
   return {begin, (end == std::string::npos ? eds.size() : end + 1) - begin};
 }
 
+inline bool hasEdsLine(const std::string& eds, std::string_view section, std::string_view key) {
+  const auto [begin, size] = edsSectionSpan(eds, section);
+  return eds.substr(begin, size).find("\n" + std::string(key) + "=") != std::string::npos;
+}
+
 /// With a line of a section replaced; `line` with its key alone stands for the whole line.
 inline std::string withEdsLine(std::string eds, std::string_view section, std::string_view key,
                                std::string_view line) {
@@ -39,6 +44,19 @@ inline std::string withEdsLine(std::string eds, std::string_view section, std::s
 inline std::string withoutEdsSection(std::string eds, std::string_view section) {
   const auto [begin, size] = edsSectionSpan(eds, section);
   return eds.erase(begin, size);
+}
+
+/// Without the object in the list that has it, either.
+inline std::string withoutEdsObject(std::string eds, const std::string& index) {
+  std::size_t at = eds.find("=0x" + index + "\n");
+  if (at == std::string::npos) throw std::out_of_range(index);
+  at = eds.rfind('\n', at) + 1;
+  eds.erase(at, eds.find('\n', at) + 1 - at);
+  constexpr std::string_view kCount = "SupportedObjects=";
+  at = eds.rfind(kCount, at) + kCount.size();
+  const std::size_t digits = eds.find('\n', at) - at;
+  eds.replace(at, digits, std::to_string(std::stoi(eds.substr(at, digits)) - 1));
+  return withoutEdsSection(std::move(eds), index);
 }
 
 /// The line, from 1, of a key in a section, or of the section's name for an empty key.

@@ -28,7 +28,7 @@ struct EdsNumber {
 std::optional<EdsNumber> parseEdsNumber(std::string_view text) noexcept;
 
 struct EdsValue {
-  std::string text;   ///< without white space around it; may be empty
+  std::string text;   ///< without white space around it and a comment behind it; may be empty
   SourcePosition at;  ///< of the line's key
 };
 
@@ -50,7 +50,8 @@ inline constexpr std::array<const char*, 3> kEdsObjectLists = {
 
 struct EdsFile {
   SourcePosition begin;
-  std::map<std::string, EdsSection> sections;  ///< by edsSectionKey()
+  std::map<std::string, EdsSection> sections;      ///< by edsSectionKey()
+  std::map<std::int64_t, SourcePosition> objects;  ///< that the lists name, and where
 
   const EdsSection* find(std::string_view key) const;
 };
