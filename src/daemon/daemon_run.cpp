@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "tactus/daemon/control_socket.h"
@@ -118,10 +119,6 @@ std::unique_ptr<HardwareLoop> openHardware(const Scene& scene, double duration_s
   }
 }
 
-std::string runFolder(const DaemonOptions& options) {
-  return options.folder.empty() ? "" : prepareRunFolder(options.folder, options.name).string();
-}
-
 void nameForbiddenCall(const SystemCallFilter& filter) {
   const ForbiddenCalls calls = filter.forbiddenCalls();
   if (calls.count == 0) return;
@@ -177,7 +174,9 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   refusals.insert(refusals.end(), thread.refusals().begin(), thread.refusals().end());
   judgeRefusals(refusals, real_time.required);
   // A run that is refused leaves no files.
-  Telemetry telemetry(scene, runFolder(options), link);
+  std::optional<RunFolder> folder;
+  if (!options.folder.empty()) folder.emplace(options.folder, options.name);
+  Telemetry telemetry(scene, folder ? folder->path().string() : "", link);
 
   // While stop signals are blocked, so that their threads never get one.
   const ControlSocket control(scene, link);

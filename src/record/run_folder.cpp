@@ -63,12 +63,6 @@ void removeEarlierFrom(const fs::path& folder) {
 
 }  // namespace
 
-fs::path prepareRunFolder(const std::string& directory, const std::string& name) {
-  fs::path folder = makeFolder(directory, name);
-  removeEarlierFrom(folder);
-  return folder;
-}
-
 FolderHold::FolderHold(const std::string& folder) noexcept
     : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (fd_ >= 0) is_elsewhere_ = ::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;

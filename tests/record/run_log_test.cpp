@@ -1,10 +1,8 @@
 #include "tactus/record/run_log.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <stdlib.h>
-#include <sys/file.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -148,19 +146,6 @@ TEST_F(RunLogFiles, WithoutALimitThereIsOne) {
 }
 
 /// systemd-tmpfiles leaves out a folder that is locked, with all that is in it.
-TEST_F(RunLogFiles, AreLockedWhileTheRunGoesOn) {
-  const auto isLocked = [this] {
-    const int fd = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    const bool is_locked = ::flock(fd, LOCK_SH | LOCK_NB) != 0;
-    ::close(fd);
-    return is_locked;
-  };
-  auto log = std::make_unique<RunLog>(scene_, folder_);
-  EXPECT_TRUE(isLocked());
-  log.reset();
-  EXPECT_FALSE(isLocked());
-}
-
 TEST_F(RunLogFiles, WhatIsFlushedIsInTheFile) {
   RunLog log(scene_, folder_);
   EXPECT_EQ(read("run.ulg").records.size(), 0u) << "its definitions are there at once";
@@ -268,7 +253,7 @@ TEST_F(RunLogFiles, AnEarlierRunLeavesNoOlderFilesToANewOne) {
   for (const char* name : {"run.1.ulg", "run.7.ulg", "run.next.ulg", "summary.json", "notes.ulg"})
     std::ofstream(path(name)) << "old";
   const std::filesystem::path folder(folder_);
-  prepareRunFolder(folder.parent_path().string(), folder.filename().string());
+  const RunFolder run(folder.parent_path().string(), folder.filename().string());
   EXPECT_EQ(filesInFolder(), 1u);
   EXPECT_TRUE(std::filesystem::exists(path("notes.ulg")));
 }

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "campaign/going_on.h"
-#include "tactus/record/run_folder.h"
 #include "tactus/scene/scene_loader.h"
 
 namespace tactus::soak {
@@ -96,7 +95,7 @@ Life::Life(std::uint64_t seed, int number, const std::string& folder, Tally& tal
 
 void Life::start() {
   writeScene(folder_ + "/soak.yaml", scene_);
-  prepareRunFolder(folder_, "log");
+  run_folder_.emplace(folder_, "log");
   if (std::filesystem::exists(log_folder_ + "/run.next.ulg"))
     complain("a file that a lost daemon had begun is still there");
   daemon_.emplace(stage_.scene, log_folder_, seed_);

@@ -15,6 +15,7 @@
 #include "soak/daemon.h"
 #include "soak/operator.h"
 #include "soak/replay_sample.h"
+#include "tactus/record/run_folder.h"
 
 namespace tactus::soak {
 
@@ -85,6 +86,7 @@ class Life {
   SoakScene scene_;
   campaign::Stage stage_;
   std::optional<VirtualRobotCell> cell_;
+  std::optional<RunFolder> run_folder_;
   std::optional<Daemon> daemon_;
   std::optional<Client> client_;
   double began_s_, next_ask_s_ = 0.0, next_replay_s_ = 0.0, next_minute_s_ = 0.0;

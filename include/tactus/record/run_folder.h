@@ -11,13 +11,8 @@ inline constexpr const char* kNameHelp =
 /// Throws InputError, as an error of the option --name, unless it names one folder.
 void checkRunName(const std::string& name);
 
-/// Makes the folder of a run, which has the scene's name or its own, and removes what an earlier
-/// run left that this one may not replace: its summary, for one that fails leaves none, and its
-/// older logs. Throws InputError, as an error of the option -o.
-std::filesystem::path prepareRunFolder(const std::string& directory, const std::string& name);
-
-/// Holds a folder as long as it lives, by flock(), as systemd-tmpfiles does, which then keeps old
-/// logs there.
+/// Holds a folder as long as it lives, by flock(), which ends with the process, however that ends,
+/// and which systemd-tmpfiles heeds: it then keeps old logs there.
 class FolderHold {
  public:
   explicit FolderHold(const std::string& folder) noexcept;
@@ -33,8 +28,11 @@ class FolderHold {
   bool is_elsewhere_ = false;
 };
 
-/// A folder that prepareRunFolder() has prepared, and that is held. Throws InputError where another
-/// run still writes, too, and leaves what is there.
+/// The folder of a run, which has the scene's name or its own, made and held: also while a run that
+/// waits long for its enable line writes nothing. Of an earlier run it has no more what this one
+/// may not replace: its summary, for one that fails leaves none, and its older logs. Throws
+/// InputError, as an error of the option -o; where another run still writes, too, and then leaves
+/// what is there.
 class RunFolder {
  public:
   RunFolder(const std::string& directory, const std::string& name);

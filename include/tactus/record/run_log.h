@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 
-#include "tactus/record/run_folder.h"
 #include "tactus/record/ulog_writer.h"
 #include "tactus/scene/json.h"
 #include "tactus/scene/scene.h"
@@ -52,7 +51,6 @@ class RunLog {
 
   LogConfig config_;
   std::string folder_;
-  FolderHold hold_;  ///< also while a run that waits long for its enable line writes nothing
   LogDescription description_;
   int part_ = 0;
   double t_s_ = 0.0;       ///< of the last cycle
