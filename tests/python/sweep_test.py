@@ -231,6 +231,8 @@ class BadStudies(Sweeps):
                 (begin + "grid: {controller.damping: [0.5, 0.7, 0.50]}", r"'0.50' is there twice"),
                 (begin + "grid: {controller.dampin: [1]}", r":2:8: controller.dampin: unknown key, .*'damping'"),
                 (begin + "grid:\n  controller.damping: [1, -2]", r":3:3: controller.damping: '-2' is out of "),
+                (begin + "set: {nowhere.a: 1, nowhere.b: 2}", r":2:7: nowhere: unknown key, "),
+                (begin + "grid: {nowhere.a: [1, 2], nowhere.b: [1, 2]}", r":2:8: nowhere: unknown key, "),
                 (begin + "set: {controller.variant: 3}", r":2:7: controller.variant: '3', expected one of"),
                 (begin + "grid: {controller.damping: {from: 1, to: 11, count: 2}}", r"'11.0' is out of range"),
                 (begin + "grid: {controller.damping: {from: 1, to: 1, count: 2}}", r"1 is not above from, 1"),

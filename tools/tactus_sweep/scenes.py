@@ -38,10 +38,10 @@ def check_keys(study, plan):
 
 
 def try_setting(files, settings, setting, places, scene):
+    """In the order of a run: of several wrong keys one is the first that is seen, and it is tried, too."""
     key = setting.split("=")[0]
-    others = [other for other in settings if other.split("=")[0] != key]
     try:
-        load(files, [*others, setting])
+        load(files, [setting if other.split("=")[0] == key else other for other in settings])
     except tactus.ConfigError as error:
         mark = f"--set {key}"
         if error.file != mark:
