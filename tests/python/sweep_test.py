@@ -14,13 +14,14 @@ import subprocess
 import tempfile
 import types
 import unittest
+from unittest import mock
 
 import numpy as np
-from common import ROOT, SCENES, TACTUS, tactus
+from common import ROOT, SCENES, TACTUS, Scratch, tactus
 from scipy import stats
 from sweep_common import RUNS, SCENE, Sweeps, rows_of, runs_in, table_of
 
-from tactus_sweep import judge, progress, scenes, study
+from tactus_sweep import judge, pool, progress, scenes, study
 
 
 class Results(Sweeps):
@@ -281,6 +282,19 @@ class Shipped(unittest.TestCase):
         plan = study.make_plan(read, scenes.load_files(read))
         scenes.check_keys(read, plan)
         return plan
+
+
+class Workers(Scratch):
+    def test_that_read_nothing_are_given_up(self):
+        """A plan with its scenes is more than a pipe takes."""
+        hung = self.file("python", "#!/bin/sh\nexec sleep 1000\n")
+        hung.chmod(0o755)
+        plan = mock.Mock(as_json=lambda: {"scenes": "x" * 1_000_000})
+        with mock.patch.object(pool.sys, "executable", str(hung)), mock.patch.multiple(pool, START_S=1, LOOK_S=0.1):
+            workers = pool.Pool(plan, 2, {})
+            self.addCleanup(workers.close)
+            with self.assertRaisesRegex(pool.PoolError, "a worker process has not begun within 1 s"):
+                list(workers.rows([0, 1]))
 
 
 class Judgement(unittest.TestCase):

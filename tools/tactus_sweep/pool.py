@@ -4,17 +4,21 @@ import contextlib
 import json
 import os
 import pathlib
+import queue
 import selectors
 import subprocess
 import sys
+import threading
 import time
 
 import tactus
 
 BATCH_S = 0.25  # of one worker: short enough to show progress, long enough to cost nothing
-MAX_BATCH = 500  # a pipe takes this many numbers, even when nobody reads
+MAX_BATCH = 500
 BATCHES_AHEAD = 2
 GATHER_S = 0.02  # for rows that come one by one are a tenth of what short runs take
+START_S = 300  # of a worker: machines that are busy, or far from their disk, take a minute
+LOOK_S = 5  # whether one is over
 DEATHS = 2  # a run that ends its worker that often has failed
 
 
@@ -34,14 +38,24 @@ class Worker:
         self.batches = []  # lists of runs that it has not answered yet
         self.rest = b""
         self.identity = None  # until it has started
+        self.begun_s = time.monotonic()
+        self.lines = queue.SimpleQueue()
+        self.writer = threading.Thread(target=self.write_lines, daemon=True)
+        self.writer.start()
         self.send(plan_line)
 
     def send(self, line):
-        try:
-            self.process.stdin.write(line)
-            self.process.stdin.flush()
-        except BrokenPipeError:
-            pass  # its end is seen where its answers are read
+        self.lines.put(line)
+
+    def write_lines(self):
+        """A pipe does not take a plan with all its scenes where nobody reads."""
+        with contextlib.suppress(BrokenPipeError):  # its end is seen where its answers are read
+            while line := self.lines.get():
+                self.process.stdin.write(line)
+                self.process.stdin.flush()
+
+    def is_silent(self):
+        return self.identity is None and time.monotonic() - self.begun_s > START_S
 
     def give(self, numbers):
         self.batches.append(list(numbers))
@@ -67,6 +81,8 @@ class Worker:
         """Ends the run that it is at, too."""
         self.process.kill()
         self.process.wait()
+        self.send(b"")
+        self.writer.join()
         with contextlib.suppress(BrokenPipeError):  # what it has not read any more
             self.process.stdin.close()
         self.process.stdout.close()
@@ -96,9 +112,11 @@ class Pool:
             for worker in self.workers:
                 self.feed(worker, waiting)
             rows = []
-            self.selector.select()
+            self.selector.select(LOOK_S)
+            if any(worker.is_silent() for worker in self.workers):
+                raise PoolError(f"a worker process has not begun within {START_S} s, as if it hung", 3)
             time.sleep(GATHER_S)
-            for key, _ in self.selector.select():
+            for key, _ in self.selector.select(0):
                 rows += self.serve(key.data, waiting)
             done += len(rows)
             self.rate = done / max(time.monotonic() - begin, 1e-3) / len(self.workers)
