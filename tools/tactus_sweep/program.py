@@ -7,6 +7,7 @@ import signal
 import sys
 
 from tactus._sweep import identity
+from tactus_report.whole_file import write_whole
 
 from . import judge, results, scenes, stopped_text, table
 from .pool import Pool, PoolError
@@ -78,10 +79,10 @@ def sweep(study, plan, arguments):
         kept.close()
     rows = [kept.rows[run] for run in range(plan.runs)]
     judge.judge(study, rows)
-    table.write_whole(arguments.output / table.NAME, table.table_text(study, plan, rows))
+    write_whole(arguments.output / table.NAME, table.table_text(study, plan, rows))
     from . import study_page  # takes a second
 
-    table.write_whole(arguments.output / study_page.NAME, study_page.build_page(study, plan, rows))
+    write_whole(arguments.output / study_page.NAME, study_page.build_page(study, plan, rows))
     return answer_of(study, plan, rows, plan.runs - before, arguments.output)
 
 

@@ -3,7 +3,6 @@
 import csv
 import io
 import math
-import os
 
 from tactus._sweep import ALL_FIGURES
 
@@ -33,17 +32,3 @@ def cell(value):
     if value is None or value == math.inf:
         return ""
     return repr(value)
-
-
-def write_whole(path, text):
-    """All of it or nothing: whoever reads it never finds a half. Raises OSError."""
-    beside = path.with_name(path.name + ".new")
-    try:
-        with open(beside, "w", encoding="utf-8", errors="surrogateescape", newline="") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(beside, path)
-    except OSError:
-        beside.unlink(missing_ok=True)
-        raise
