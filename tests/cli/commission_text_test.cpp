@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include "tactus/cli/commission_report.h"
 #include "tactus/cli/commission_run.h"
 #include "tactus/daemon/number_within.h"
+#include "tactus/record/run_error.h"
 
 /// What commissioning says, and makes of what is typed and of files.
 namespace tactus {
@@ -45,6 +47,19 @@ TEST(CommissionText, StateOfAnotherProgramIsRefused) {
     folder.put("robot.yaml.commission.json", text);
     EXPECT_FALSE(isFinished(folder.scene(), readState(path), kLiftJoint)) << text;
   }
+}
+
+/// What was found so far is one of what was there and what is new, also where the power goes
+/// between the two: a text that cannot be brought to the disk, here as its name leads elsewhere,
+/// takes no place.
+TEST(CommissionText, StateIsOnTheDiskBeforeItTakesItsPlace) {
+  const CommissionFolder folder;
+  const std::string path = statePath(robotFile(folder.scene()));
+  const Json before = {{"joints", Json::object()}};
+  writeState(path, before);
+  std::filesystem::create_symlink("/dev/null", path + ".next");
+  EXPECT_THROW(writeState(path, {{"joints", {{"lift", Json::object()}}}}), RunError);
+  EXPECT_EQ(readState(path), before);
 }
 
 TEST(CommissionText, WhatIsTypedIsUnderstoodOrNot) {
