@@ -39,14 +39,7 @@ std::vector<Override> settingsOf(const Json& request) {
 
 double duration_s(const Json& request) {
   const auto found = request.find("for_s");
-  if (found == request.end()) return kNoLimit;
-  if (!found->is_number()) refuseRequest("for_s is no number", "seconds");
-  const double value_s = found->get<double>();
-  if (!(value_s >= kMinFor_s && value_s <= kMaxFor_s)) {
-    refuseRequest("for_s is out of range",
-                  fmt::format("a number from {} to {} s", kMinFor_s, kMaxFor_s));
-  }
-  return value_s;
+  return found == request.end() ? kNoLimit : numberOf(*found, "for_s", kMinFor_s, kMaxFor_s);
 }
 
 Json gainsJson(const Gains& gains) {
