@@ -65,17 +65,16 @@ struct MissingParts {
 
 [[noreturn]] void failFor(const MissingParts& missing) {
   const int last = missing.first + missing.count - 1;
-  ErrorPlace place;
-  place.file = escaped(missing.path);
-  place.key = kPartKey;
-  place.problem = missing.count == 1
+  throw MissingPartsError(
+      {.file = escaped(missing.path),
+       .key = kPartKey,
+       .problem = missing.count == 1
                       ? fmt::format("part {} of the run, just before it, is missing", last)
                       : fmt::format("parts {} to {} of the run, just before it, are missing",
-                                    missing.first, last);
-  place.expected =
-      "expected all logs of the run, the oldest first; behind missing ones replay begins where the "
-      "drives have stopped the arm by themselves, which none of these logs holds";
-  throw MissingPartsError(place);
+                                    missing.first, last),
+       .expected = "expected all logs of the run, the oldest first; behind missing ones replay "
+                   "begins where the drives have stopped the arm by themselves, which none of "
+                   "these logs holds"});
 }
 
 /// A replay without a single cycle of an arm under command would say nothing, and must not look as

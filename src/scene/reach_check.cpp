@@ -99,12 +99,10 @@ Reach followTo(const ControllerConfig& config, const JointVector& q, const Pose&
     if (hasArrived(*task.commands, missing)) return {"", duration_s, state.q_desired};
     if (time > 0 && !isNearer(missing, before)) break;
   }
-  Reach reach{"", duration_s, state.q_desired};
-  reach.problem =
-      fmt::format("out of reach: the way there ends {:.3g} mm and {:.3g} mrad off{}",
-                  1e3 * missing.position_m, 1e3 * missing.rotation_rad,
-                  isAtItsLimit(config, state.q_desired) ? ", with a joint at its limit" : "");
-  return reach;
+  return {fmt::format("out of reach: the way there ends {:.3g} mm and {:.3g} mrad off{}",
+                      1e3 * missing.position_m, 1e3 * missing.rotation_rad,
+                      isAtItsLimit(config, state.q_desired) ? ", with a joint at its limit" : ""),
+          duration_s, state.q_desired};
 }
 
 }  // namespace tactus
