@@ -42,10 +42,14 @@ Matrix3 rotationOf(const Vector3& rpy) {
       .toRotationMatrix();
 }
 
-/// `count` numbers from -bound to bound.
-bool parseBounded(const char* text, std::size_t count, double bound, std::vector<double>& numbers) {
-  return parseNumbers(text, numbers) && numbers.size() == count &&
-         std::ranges::all_of(numbers, [bound](double x) { return std::abs(x) <= bound; });
+/// What is wrong with `count` numbers from -bound to bound; empty if nothing is.
+std::string problemOf(const char* text, std::size_t count, double bound,
+                      std::vector<double>& numbers) {
+  if (!parseNumbers(text, numbers) || numbers.size() != count)
+    return inQuotes(text) + (count == 1 ? " is no number" : " is no vector");
+  const bool is_within =
+      std::ranges::all_of(numbers, [bound](double x) { return std::abs(x) <= bound; });
+  return is_within ? "" : inQuotes(text) + " is out of range";
 }
 
 }  // namespace
@@ -63,10 +67,10 @@ Vector3 UrdfNode::vector(const char* child_name, const char* attribute, double b
   const pugi::xml_attribute given = onlyAttribute(tree, at, attribute, key + "." + child_name);
   if (!given) return absent;
   std::vector<double> numbers;
-  if (!parseBounded(given.value(), 3, bound, numbers)) {
-    fail(at, std::string(child_name) + "." + attribute, inQuotes(given.value()) + " is no vector",
+  const std::string problem = problemOf(given.value(), 3, bound, numbers);
+  if (!problem.empty())
+    fail(at, std::string(child_name) + "." + attribute, problem,
          fmt::format("three numbers from {} to {}", -bound, bound));
-  }
   return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -80,10 +84,9 @@ double UrdfNode::number(const char* child_name, const char* attribute, double bo
     fail(at ? at : node, part, "is missing", "a number");
   }
   std::vector<double> numbers;
-  if (!parseBounded(given.value(), 1, bound, numbers)) {
-    fail(at, part, inQuotes(given.value()) + " is no number",
-         fmt::format("a number from {} to {}", -bound, bound));
-  }
+  const std::string problem = problemOf(given.value(), 1, bound, numbers);
+  if (!problem.empty())
+    fail(at, part, problem, fmt::format("a number from {} to {}", -bound, bound));
   return numbers[0];
 }
 
