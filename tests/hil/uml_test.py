@@ -1,18 +1,21 @@
 #!/usr/bin/env python3
-"""The runner for User Mode Linux: what a script does in there comes out, and nothing else does.
+"""The runner for User Mode Linux: what a script does in there comes out, and nothing else does. And two
+daemons on buses of their own.
 
-usage: uml_test.py
+usage: uml_test.py TACTUSD
 """
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
+TACTUSD = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-class Runner(unittest.TestCase):
+class Scripts(unittest.TestCase):
     def setUp(self):
         build = HERE.parents[1] / "build/hil"
         build.mkdir(parents=True, exist_ok=True)
@@ -31,6 +34,8 @@ class Runner(unittest.TestCase):
             [*command, "--", *arguments], capture_output=True, text=True, timeout=400
         )
 
+
+class Runner(Scripts):
     def test_script_finds_what_it_needs(self):
         victim = self.folder / "victim"
         victim.write_text("mine")
@@ -64,6 +69,48 @@ class Runner(unittest.TestCase):
         result = self.run_script("echo o >/proc/sysrq-trigger; sleep 60")
         self.assertEqual(result.returncode, 125, result)
         self.assertIn("did not end", result.stderr)
+
+
+# Without drives that answer, a daemon waits for them.
+TWO_DAEMONS = """
+for i in 0 1 2 3; do ip link add bus$i type vcan; ip link set bus$i up; done
+mkdir config
+cp -r "$1/config/robots" "$1/config/scenes" config
+robots=$PWD/config/robots/crops9
+sed 's/interface: can/interface: bus/' "$robots/robot.yaml" >"$robots/other.yaml"
+for robot in robot other; do
+  printf 'extends: config/scenes/free_motion.yaml\nrobot: %s\nreal_time: {required: false}\n' \
+    "$robots/$robot.yaml" >$robot.yaml
+  mkdir runtime_$robot
+done
+# run ROBOT: says what it comes to.
+run() { RUNTIME_DIRECTORY=$PWD/runtime_$1 exec "$2" $1.yaml --name arm -o out 2>$1.txt; }
+wait_for_boot() {
+  for _ in $(seq 600); do grep -q 'tactusd: boot' $1.txt && return; sleep 0.1; done
+  cat $1.txt; exit 9
+}
+run robot "$2" & first=$!
+wait_for_boot robot
+echo of the first >out/arm/run.1.ulg
+(run other "$2"); echo "second: $?"
+cat other.txt
+cat out/arm/run.1.ulg
+kill -9 $first
+wait $first
+run other "$2" & third=$!
+wait_for_boot other
+ls out/arm
+kill -9 $third
+"""
+
+
+class TwoDaemons(Scripts):
+    def test_do_not_write_into_one_folder(self):
+        result = self.run_script(f"cd /tmp{TWO_DAEMONS}", HERE.parents[1], TACTUSD, timeout_s=200)
+        self.assertEqual(result.returncode, 0, result)
+        self.assertIn("second: 1\n", result.stdout)
+        self.assertIn("out/arm:1:1: -o: another run writes there, expected another folder\n", result.stdout)
+        self.assertTrue(result.stdout.endswith("of the first\nrun.ulg\n"), result.stdout)
 
 
 if __name__ == "__main__":

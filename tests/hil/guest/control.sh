@@ -24,13 +24,6 @@ wait_for running "$out/tactusd.txt"
 start_watching
 sleep 0.5
 
-# Another daemon, on buses of its own, which is told to write where the first one does.
-start_buses bus0 bus1 bus2 bus3
-robots=$ROOT/config/robots/crops9
-sed 's/interface: can/interface: bus/' $robots/robot.yaml >$robots/other.yaml
-printf 'extends: %s\nrobot: %s\n' "$ROOT/config/scenes/free_motion.yaml" $robots/other.yaml >/tmp/other.yaml
-refused 'control:1:1: -o: another run writes there' tactusd /tmp/other.yaml --name control -o "$ROOT/out"
-
 told watched tactus set controller.damping=0.7 task.drift_gain_per_s=4
 told 'damping.*0.7 running' tactus diff
 told '0.7 -> 0.5' tactus undo
