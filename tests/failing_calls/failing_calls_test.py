@@ -50,7 +50,7 @@ REQUESTS = {
                 {"do": "set", "values": {"controller.damping": -1}}, {"do": "move"}, {"do": "move", "to_m": [9, 9, 9]},
                 "no object"]}
 AFTER = [{"do": "show"}, {"do": "move", "to_m": [0, -0.001, 0], "relative": True}, {"do": "hold"}]
-REST_MS = 2000  # of virtual time
+REST_MS = 1000  # of virtual time
 
 
 def run(name, folder, **failure):
