@@ -45,6 +45,8 @@ Json loopJson(const LoopFigures& figures) {
                {"malformed_drive_frames", figures.malformed_drive_frames}};
   for (const LoopFigures::Bus& bus : figures.buses) json["buses"].push_back(busJson(bus));
   if (figures.tactile_modules.empty()) return json;
+  // Not left to emplace_back(): without memory for the array nlohmann-json 3.11 crashes then.
+  json["tactile_modules"] = Json::array();
   TactileCounters all;
   for (const LoopFigures::TactileModule& module : figures.tactile_modules) {
     add(module.counters, all);
