@@ -53,9 +53,11 @@ InterpolationPeriod representablePeriod(double period_s) {
   return *period;
 }
 
-/// Counts/s that 60FF never exceeds: VelocityCounts carries at most a half over.
-std::uint32_t largestCounts(const DriveConfig& drive) {
-  return static_cast<std::uint32_t>(std::floor(drive.max_velocity * drive.counts_per_unit)) + 1;
+/// Counts/s that 60FF never exceeds: VelocityCounts carries at most a half over. A tenth more, as
+/// drives may keep it in whole turns a minute: one that is slower than the joint falls behind.
+std::uint32_t speedLimit(const DriveConfig& drive) {
+  constexpr double kSlack = 1.1;
+  return static_cast<std::uint32_t>(kSlack * drive.max_velocity * drive.counts_per_unit) + 1;
 }
 
 /// A drive of CiA 402, and the one that was meant.
@@ -130,7 +132,7 @@ SetupSteps setupSteps(const DriveConfig& drive, const CanopenConfig& canopen, do
   // Max profile velocity: a drive that heeds it here does not follow what on its way to it became
   // faster than the joint may be. One that knows less, or limits itself further, is no worse.
   if (drive.has_speed_limit && std::isfinite(drive.max_velocity))
-    steps.push_back(only(Need::kIfTaken, write(0x607F, 0, 4, largestCounts(drive))));
+    steps.push_back(only(Need::kIfTaken, write(0x607F, 0, 4, speedLimit(drive))));
   // Quick stop: its own ramp, then disabled.
   if (drive.has_quick_stop_option) add({write(0x605A, 0, 2, 2)});
   add({

@@ -42,7 +42,7 @@ TEST(DriveSetup, WritesTheObjectsOfTheStandardsInOrder) {
                            {{0x6060, 0}, 9},
                            {{0x60C2, 1}, 1},
                            {{0x60C2, 2}, 0xFD},
-                           {{0x607F, 0}, 4'000'001},
+                           {{0x607F, 0}, 4'400'001},
                            {{0x605A, 0}, 2},
                            {{0x605E, 0}, 2},
                            {{0x6007, 0}, 3},

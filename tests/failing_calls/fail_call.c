@@ -394,7 +394,9 @@ int setsockopt(int fd, int level, int option, const void* value, socklen_t size)
 CALL(bind);
 int bind(int fd, const struct sockaddr* to, socklen_t size) {
   if (fails(&bind_call, EADDRINUSE)) return -1;
-  return has_buses && to->sa_family == AF_CAN ? 0 : NEXT(bind)(fd, to, size);
+  /* A name without a file locks an interface, for all of the machine. */
+  const int is_lock = to->sa_family == AF_UNIX && to->sa_data[0] == 0;
+  return has_buses && (to->sa_family == AF_CAN || is_lock) ? 0 : NEXT(bind)(fd, to, size);
 }
 
 CALL(ioctl);

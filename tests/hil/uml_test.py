@@ -71,7 +71,7 @@ class Runner(Scripts):
         self.assertIn("did not end", result.stderr)
 
 
-# Without drives that answer, a daemon waits for them.
+# Without drives that answer, a daemon waits for them, for longer here than another one takes to start.
 TWO_DAEMONS = """
 for i in 0 1 2 3; do ip link add bus$i type vcan; ip link set bus$i up; done
 mkdir config
@@ -84,7 +84,7 @@ for robot in robot other; do
   mkdir runtime_$robot
 done
 # run ROBOT: says what it comes to.
-run() { RUNTIME_DIRECTORY=$PWD/runtime_$1 exec "$2" $1.yaml --name arm -o out 2>$1.txt; }
+run() { RUNTIME_DIRECTORY=$PWD/runtime_$1 exec "$2" $1.yaml --set can.boot_timeout_s=60 --name arm -o out 2>$1.txt; }
 wait_for_boot() {
   for _ in $(seq 600); do grep -q 'tactusd: boot' $1.txt && return; sleep 0.1; done
   cat $1.txt; exit 9
@@ -93,6 +93,7 @@ run robot "$2" & first=$!
 wait_for_boot robot
 echo of the first >out/arm/run.1.ulg
 (run other "$2"); echo "second: $?"
+kill -0 $first || { cat robot.txt; exit 8; }
 cat other.txt
 cat out/arm/run.1.ulg
 kill -9 $first

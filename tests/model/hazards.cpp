@@ -84,9 +84,12 @@ constexpr auto kHazards = std::to_array<Hazard>({
      "the drive, by object 1400:05", "the drive stops by itself", "`heartbeat_timeout_s`",
      "a drive without that object keeps its last velocity", "the drive's emergency"},
     {kStrays, "a setpoint becomes another on its way", Fault::kNone,
-     "`ControlCycleChangedSetpoints.TheDriveHeedsTheJointsLimit`",
-     "the drive, by object 607F; then `following_error`", "quick stop", "2 cycles",
-     "up to the joint's speed limit for that long; of a drive that does not heed 607F, any speed",
+     "`ControlCycleChangedSetpoints.TheDriveHeedsTheJointsLimit`, "
+     "`ControlCycleChangedSetpoints.WhereItLastsTheArmStopsWithinTheFollowingError`",
+     "the drive, by object 607F; `following_error` where it lasts",
+     "none for a single one, else quick stop", "max_following_error / speed",
+     "the joint at a tenth above its speed limit, for as long; where the drive does not heed 607F, "
+     "at any speed",
      "`following_error` (15)"},
     {kStrays, "sign or counts of a joint are wrong in robot.yaml", Fault::kNone,
      "`CommissionTrouble.SignIsJudgedBeforeAnyJog`, `ArmCheck.WarnsOfSizesThatNoRobotHas`",

@@ -145,7 +145,6 @@ TEST_F(RunLogFiles, WithoutALimitThereIsOne) {
   EXPECT_EQ(read("run.ulg").records.size(), 5000u);
 }
 
-/// systemd-tmpfiles leaves out a folder that is locked, with all that is in it.
 TEST_F(RunLogFiles, WhatIsFlushedIsInTheFile) {
   RunLog log(scene_, folder_);
   EXPECT_EQ(read("run.ulg").records.size(), 0u) << "its definitions are there at once";

@@ -20,8 +20,8 @@ using campaign::Plan;
 constexpr int kRestart_ms = 5000;
 constexpr int kLeastAlone_ms = 1500, kMostAlone_ms = 4000;  ///< of the plant without a daemon
 constexpr double kRestVelocity = 1e-3;                      ///< m/s or rad/s
-/// m/s^2 or rad/s^2 of the plant's drives, which take any setpoint: one whose frame was corrupted
-/// may be 256 rad/s.
+/// m/s^2 or rad/s^2 of the plant's drives, which may be as fast as their joints when the power
+/// goes.
 constexpr double kQuickStop = 10.0;
 
 }  // namespace

@@ -113,11 +113,13 @@ class Pool:
                 self.feed(worker, waiting)
             rows = []
             self.selector.select(LOOK_S)
-            if any(worker.is_silent() for worker in self.workers):
-                raise PoolError(f"a worker process has not begun within {START_S} s, as if it hung", 3)
             time.sleep(GATHER_S)
             for key, _ in self.selector.select(0):
                 rows += self.serve(key.data, waiting)
+            for worker in [worker for worker in self.workers if worker.is_silent()]:
+                if not any(other.identity for other in self.workers):
+                    raise PoolError(f"a worker process has not begun within {START_S} s, as if it hung", 3)
+                rows += self.replace(worker, waiting)
             done += len(rows)
             self.rate = done / max(time.monotonic() - begin, 1e-3) / len(self.workers)
             yield rows
