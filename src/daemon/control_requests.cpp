@@ -85,9 +85,7 @@ std::string ControlRequests::answer(std::string_view request) {
 
 Json ControlRequests::dispatch(const Json& request) {
   notice();  // what is planned is laid over what runs now
-  const auto found = request.find("do");
-  const std::string what =
-      found != request.end() && found->is_string() ? found->get<std::string>() : "";
+  const std::string what = wishOf(request);
   if (what == "set") return set(request);
   if (what == "reload") return reload(request);
   if (what == "undo") return undo(request);

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "tactus/daemon/request_refusal.h"
 #include "tactus/daemon/run_status.h"
 
 namespace tactus {
@@ -37,7 +38,7 @@ bool hasLeft(const PacketSocket& socket) noexcept {
 bool isHold(std::span<const char> room, long size) {
   const auto length = std::min(static_cast<std::size_t>(size), room.size());
   const Json request = Json::parse(room.begin(), room.begin() + length, nullptr, false);
-  return request.is_object() && request.value("do", Json()) == "hold";
+  return request.is_object() && wishOf(request) == "hold";
 }
 
 }  // namespace

@@ -22,6 +22,11 @@ void refuseUnknown(const Json& request, std::initializer_list<const char*> known
   }
 }
 
+std::string wishOf(const Json& request) {
+  const auto found = request.find("do");
+  return found != request.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
 bool flagOf(const Json& request, const char* name) {
   const Json value = request.value(name, Json(false));
   if (!value.is_boolean())

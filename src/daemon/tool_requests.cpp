@@ -148,7 +148,7 @@ Json ToolRequests::move(const Json& request) {
   refuseUnknown(request,
                 {"do", "to_m", "rotate_rad", "relative", "speed_m_per_s", "speed_rad_per_s"});
   requireArm();
-  const bool is_stream = request.at("do") == "stream";
+  const bool is_stream = wishOf(request) == "stream";
   const Target goal = target(request, poseOf(sight_), is_stream ? Kind::kStream : Kind::kGo);
   double duration_s = 0.0;
   if (is_stream)

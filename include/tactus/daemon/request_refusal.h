@@ -16,6 +16,10 @@ namespace tactus {
 /// that is silently not met.
 void refuseUnknown(const Json& request, std::initializer_list<const char*> known);
 
+/// What is asked for, `do`; empty where that is no text. Json's own == with a text would make a
+/// Json of it, which aborts where there is no memory.
+std::string wishOf(const Json& request);
+
 /// True or false; absent: false. Refuses anything else.
 bool flagOf(const Json& request, const char* name);
 
