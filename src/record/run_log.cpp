@@ -59,9 +59,7 @@ Json logJson(const LogState& state, const char* unless_stopped) {
 }
 
 RunLog::RunLog(const Scene& scene, std::string folder)
-    : config_(scene.log),
-      folder_(std::move(folder)),
-      description_(describeLog(scene)) {
+    : config_(scene.log), folder_(std::move(folder)), description_(describeLog(scene)) {
   state_.folder = fs::absolute(folder_).string();
   description_.infos.emplace_back(kRunKey, newRunName());
   description_.infos.emplace_back(kPartKey, "0");

@@ -228,12 +228,12 @@ def ask(path, request):
 
 
 @contextlib.contextmanager
-def virtual_daemon(folder, scene, **environment):
+def virtual_daemon(folder, scene, stderr=subprocess.PIPE, **environment):
     """One that runs: (process, path of its control socket)."""
     pathlib.Path(folder, "log").mkdir()
     process = subprocess.Popen([VIRTUAL, "--log", "log", "20", scene], cwd=folder,
                                env={**os.environ, "RUNTIME_DIRECTORY": folder, **environment},
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                               stdout=subprocess.PIPE, stderr=stderr, text=True)
     try:
         assert process.stdout.readline() == "running\n"
         path = str(pathlib.Path(folder, "control"))
@@ -381,7 +381,7 @@ def save_outcomes(most=MOST):
     """As running_outcomes(), of a save."""
     with tempfile.TemporaryDirectory() as folder:
         pathlib.Path(folder, "scene.yaml").write_text(Saves.BEFORE)
-        with virtual_daemon(folder, "scene.yaml") as (_, path):
+        with virtual_daemon(folder, "scene.yaml", subprocess.DEVNULL) as (_, path):  # who reads no pipe fills it
             saves = Saves(folder, path)
             done = saves.run(FAIL_WAYS=f"{folder}/ways")
             saves.after = saves.scene.read_text()
