@@ -1,20 +1,15 @@
 #include "tactus/cli/commission_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "tactus/record/output_file.h"
-#include "tactus/record/run_error.h"
 #include "tactus/scene/located_error.h"
 #include "tactus/scene/scene_loader.h"
 #include "tactus/scene/source_reader.h"
@@ -56,22 +51,14 @@ const DriveConfig& driveOf(const Scene& scene, int joint) {
   return scene.hardware->drives[static_cast<std::size_t>(joint)];
 }
 
-/// The name under which a text was written, to be renamed.
+/// The name under which a text was written, to be renamed: on the disk, so that a loss of power
+/// leaves what was there, or this.
 std::string writtenBeside(const std::string& path, const std::string& text) {
   OutputFile file(path + ".next");
   file.append(text);
+  file.sync();
   file.close();
   return path + ".next";
-}
-
-/// So that a loss of power leaves what was there, or this.
-void keepOnDisk(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool is_kept = descriptor >= 0 && ::fsync(descriptor) == 0;
-  const int error = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!is_kept)
-    throw RunError(fmt::format("{}: cannot be written: {}", escaped(path), std::strerror(error)));
 }
 
 /// bus and node of one joint's entry, where they are others.
@@ -186,9 +173,7 @@ Json readState(const std::string& path) {
 }
 
 void writeState(const std::string& path, const Json& state) {
-  const std::string next = writtenBeside(path, jsonText(state));
-  keepOnDisk(next);
-  fs::rename(next, path);
+  fs::rename(writtenBeside(path, jsonText(state)), path);
 }
 
 Json stateOf(const Scene& scene, const JointFindings& found) {

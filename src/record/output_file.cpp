@@ -132,6 +132,12 @@ void OutputFile::flush() {
   }
 }
 
+void OutputFile::sync() {
+  flush();
+  if (::fsync(descriptor_) != 0)
+    throw RunError(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
+}
+
 void OutputFile::rename(const std::string& from, const std::string& to) {
   if (std::rename(from.c_str(), to.c_str()) != 0)
     throw RunError(fmt::format("{}: cannot be renamed: {}", escaped(to), std::strerror(errno)));

@@ -32,6 +32,12 @@ std::set<std::string> namesIn(const fs::path& folder) {
   return names;
 }
 
+/// A device has nothing on the disk.
+TEST(OutputFile, SaysThatItIsNotOnTheDisk) {
+  OutputFile file("/dev/null");
+  EXPECT_THROW(file.sync(), RunError);
+}
+
 class ReplacedFile : public testing::Test {
  protected:
   ReplacedFile() { put(path_, "old"); }

@@ -10,8 +10,8 @@
 namespace tactus {
 
 /// A file that is written from start to end through one large buffer. Nothing is lost silently:
-/// append(), reserve(), flush() and close() throw RunError when the system refuses a byte (disk
-/// full).
+/// append(), reserve(), flush(), sync() and close() throw RunError when the system refuses a byte
+/// (disk full).
 class OutputFile {
  public:
   /// Fits into a second-level cache: filling it costs less than the system call that empties it.
@@ -37,6 +37,8 @@ class OutputFile {
 
   /// Hands what is in the buffer to the kernel, from where no end of this process takes it away.
   void flush();
+  /// flush(), and to the disk: it outlives a loss of power.
+  void sync();
   /// Gives the file another name, which errors show from then on. Throws RunError.
   void rename(const std::string& from, const std::string& to);
   void close();
