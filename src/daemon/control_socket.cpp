@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <iterator>
@@ -18,6 +17,7 @@
 
 #include "tactus/daemon/request_refusal.h"
 #include "tactus/daemon/run_status.h"
+#include "tactus/record/message.h"
 
 namespace tactus {
 namespace {
@@ -73,7 +73,7 @@ void ControlSocket::serve(const std::stop_token& stop) noexcept {
       look();
     } catch (const std::exception& error) {
       clients_.clear();
-      std::fprintf(stderr, "tactusd: control socket: %s; its clients are closed\n", error.what());
+      say("control socket: {}; its clients are closed", error.what());
       std::this_thread::sleep_for(std::chrono::milliseconds(kLook_ms));
     }
   }
@@ -82,7 +82,7 @@ void ControlSocket::serve(const std::stop_token& stop) noexcept {
 /// What is new, for a while.
 void ControlSocket::look() {
   const std::string news = requests_.look();
-  if (!news.empty()) std::fputs(("tactusd: " + news + "\n").c_str(), stderr);
+  if (!news.empty()) say("{}", news);
   const double now_s = monotonicTime_s();
   std::vector<pollfd> polled(1, {listening_.fd(), POLLIN, 0});
   for (const Client& client : clients_) {

@@ -17,6 +17,7 @@
 #include "tactus/daemon/hardware_loop.h"
 #include "tactus/daemon/service_watchdog.h"
 #include "tactus/daemon/telemetry.h"
+#include "tactus/record/message.h"
 #include "tactus/record/run_error.h"
 #include "tactus/record/run_folder.h"
 #include "tactus/rt/memory.h"
@@ -122,10 +123,8 @@ std::unique_ptr<HardwareLoop> openHardware(const Scene& scene, double duration_s
 void nameForbiddenCall(const SystemCallFilter& filter) {
   const ForbiddenCalls calls = filter.forbiddenCalls();
   if (calls.count == 0) return;
-  const std::string text =
-      fmt::format("tactusd: the loop made {} forbidden system calls, first {}\n", calls.count,
-                  systemCallName(calls.first));
-  std::fputs(text.c_str(), stderr);
+  say("the loop made {} forbidden system calls, first {}", calls.count,
+      systemCallName(calls.first));
 }
 
 LoopFigures loopFigures(const Scene& scene, const HardwareLoop& loop, const LoopLink& link,

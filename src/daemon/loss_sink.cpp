@@ -1,9 +1,6 @@
 #include "tactus/daemon/loss_sink.h"
 
-#include <fmt/format.h>
-
-#include <cstdio>
-
+#include "tactus/record/message.h"
 #include "tactus/record/run_summary.h"
 #include "tactus/scene/located_error.h"
 
@@ -12,15 +9,13 @@ namespace tactus {
 void LossSink::add(const LoopRecord& record) {
   const std::uint64_t now = record.is_in_motion ? record.cycle.modules_lost : 0;
   if (now == modules_lost_) return;
-  const auto say = [&](std::uint64_t modules, const std::string& what) {
+  const auto tell = [&](std::uint64_t modules, const std::string& what) {
     for (const std::string& link : lostModules(scene_, modules))
-      std::fputs(fmt::format("tactusd: tactile module {} {} at {:.9g} s{}\n", escaped(link), what,
-                             record.cycle.t_s, what == "lost" ? ", the arm goes on slowly" : "")
-                     .c_str(),
-                 stderr);
+      say("tactile module {} {} at {:.9g} s{}", escaped(link), what, record.cycle.t_s,
+          what == "lost" ? ", the arm goes on slowly" : "");
   };
-  say(now & ~modules_lost_, "lost");
-  say(modules_lost_ & ~now, "is back");
+  tell(now & ~modules_lost_, "lost");
+  tell(modules_lost_ & ~now, "is back");
   modules_lost_ = now;
 }
 

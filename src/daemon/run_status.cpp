@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tactus/record/message.h"
 #include "tactus/record/output_file.h"
 #include "tactus/record/time_figures.h"
 #include "tactus/rt/periodic_timer.h"
@@ -84,7 +85,7 @@ void StatusFile::write(const RunStatus& status) {
   } catch (const std::exception& error) {
     if (has_complained_) return;
     has_complained_ = true;
-    std::fputs(fmt::format("tactusd: no status: {}\n", error.what()).c_str(), stderr);
+    say("no status: {}", error.what());
   }
 }
 

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "tactus/record/message.h"
 #include "tactus/record/run_error.h"
 #include "tactus/record/ulog_format.h"
 
@@ -104,7 +104,7 @@ void RunLog::attempt(const Step& step) {
 void RunLog::stop(const std::string& reason) {
   state_.stop_reason = reason;
   writer_.reset();
-  std::fputs(fmt::format("tactusd: log stopped, the run goes on: {}\n", reason).c_str(), stderr);
+  say("log stopped, the run goes on: {}", reason);
 }
 
 std::unique_ptr<UlogWriter> RunLog::begin(const std::string& path) {

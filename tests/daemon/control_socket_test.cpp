@@ -14,6 +14,7 @@
 
 #include "support/run_folder.h"
 #include "support/shipped_scene.h"
+#include "support/unread_stderr.h"
 #include "tactus/daemon/control_client.h"
 #include "tactus/io/packet_socket.h"
 #include "tactus/record/run_error.h"
@@ -101,6 +102,31 @@ TEST_F(ControlSocketTest, TakesOfWhoHasLeftNothingButAHold) {
   client.ask(Json::parse(stream));
   ASSERT_TRUE(link_->tool_orders.pop(order));
   EXPECT_EQ(order.kind, ToolOrder::Kind::kStream);
+}
+
+/// What the journal is told of gains must not cost the answer to a hold.
+TEST_F(ControlSocketTest, AnswersThoughNobodyReadsTheJournal) {
+  const Scene scene = test::shippedScene("scenario2_tactus");
+  const ControlSocket socket(scene, *link_);
+  const ControlClient client(controlPath());
+  const test::UnreadStderr pipe;
+  client.ask({{"do", "set"}, {"values", {{"controller.damping", 0.7}}}});
+  GainOrder order;
+  ASSERT_TRUE(link_->gain_orders.take(order));
+  const auto report = [&](GainState state) {
+    GainReport made;
+    made.number = order.number;
+    made.state = state;
+    link_->gain_reports.put(made);
+    // Behind the second answer the socket has looked, and said what it saw.
+    for (int i = 0; i < 2; ++i) client.ask({{"do", "show"}});
+  };
+  report(GainState::kRamping);
+  report(GainState::kOnTrial);
+  pipe.read();
+  report(GainState::kKept);
+  const std::string said = pipe.read();
+  EXPECT_NE(said.find("that are lost: 2\ntactusd: gains: "), std::string::npos) << said;
 }
 
 TEST_F(ControlSocketTest, IsGoneWithTheDaemon) {
