@@ -58,6 +58,10 @@ std::string nodesText(const Scene& scene, const std::vector<FoundNode>& nodes) {
         "{:<22} vendor {} product {}  {}, {}\n", placeText(scene, node.bus, node.node_id),
         hexOf(node.vendor), hexOf(node.product), node.isDrive() ? "drive (402)" : "no 402 device",
         drive ? "in the file of " + jointText(scene, drive->joint) : "not in the file");
+    if (node.isDrive() && !node.has_speed_limit)
+      text +=
+          "    has no limit of speed (607F): a setpoint that is changed on its way may move it at "
+          "any speed\n";
     if (node.has_twin) text += "    two devices answer to this id: one of them needs another\n";
     if (node.node_id == scene.hardware->canopen.master_node_id)
       text += "    has the id of can.master_node_id: one of the two needs another\n";
@@ -84,6 +88,7 @@ Json nodesJson(const Scene& scene, const std::vector<FoundNode>& nodes) {
          {"is_drive", node.isDrive()},
          {"counts_per_turn", orNull(node.counts_per_turn)},
          {"has_twin", node.has_twin},
+         {"has_speed_limit", node.has_speed_limit},
          {"joint",
           drive ? Json(scene.joint_names[static_cast<std::size_t>(drive->joint)]) : Json()}});
   }

@@ -21,12 +21,13 @@ enum Entry : std::size_t {
   kMotorTurns,
   kGearMotorTurns,
   kGearShaftTurns,
+  kSpeedLimit,
 };
 
 const std::vector<ObjectEntry>& scannedEntries() {
   static const std::vector<ObjectEntry> kEntries = {{0x1000, 0, 4}, {0x1018, 1, 4}, {0x1018, 2, 4},
                                                     {0x6041, 0, 2}, {0x608F, 1, 4}, {0x608F, 2, 4},
-                                                    {0x6091, 1, 4}, {0x6091, 2, 4}};
+                                                    {0x6091, 1, 4}, {0x6091, 2, 4}, {0x607F, 0, 4}};
   return kEntries;
 }
 
@@ -49,6 +50,7 @@ FoundNode foundNode(int bus, const ObjectReader& node) {
     found.status_word = static_cast<std::uint16_t>(*word);
   const auto encoder = ratio(node, kIncrements, kMotorTurns);
   const auto gear = ratio(node, kGearMotorTurns, kGearShaftTurns);
+  found.has_speed_limit = node.value(kSpeedLimit).has_value();
   if (encoder && gear) found.counts_per_turn = *encoder * *gear;
   return found;
 }

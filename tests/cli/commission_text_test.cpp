@@ -35,6 +35,19 @@ TEST(CommissionText, NamesNodesOfNobodyAndThoseThatAreMissing) {
   EXPECT_NE(text.find("does not answer, in the file of roll"), std::string::npos);
 }
 
+TEST(CommissionText, NamesDrivesThatCannotBeToldALimitOfSpeed) {
+  const CommissionFolder folder;
+  const Scene scene = folder.scene();
+  FoundNode node{0, 1, 0x20192, {}, {}, {}, {}};
+  const auto says = [&] { return nodesText(scene, {node}).find("607F") != std::string::npos; };
+  EXPECT_TRUE(says());
+  node.device_type = 0x191;  // no drive
+  EXPECT_FALSE(says());
+  node.device_type = 0x20192;
+  node.has_speed_limit = true;
+  EXPECT_FALSE(says());
+}
+
 TEST(CommissionText, StateOfAnotherProgramIsRefused) {
   const CommissionFolder folder;
   const std::string path = statePath(robotFile(folder.scene()));

@@ -27,6 +27,7 @@ TEST(CommissionCycle, ScanNamesWhoAnswers) {
     EXPECT_EQ(node.vendor, 0x7acu);
     EXPECT_EQ(node.product, 1u);
     EXPECT_FALSE(node.counts_per_turn);
+    EXPECT_TRUE(node.has_speed_limit);
   }
   EXPECT_EQ(found, (std::vector<std::pair<int, int>>{{0, 1}, {0, 90}, {1, 1}}));
 }

@@ -21,7 +21,8 @@ struct FoundNode {
   /// Counts a turn of the drive's shaft, by its own objects 608F (increments a turn of the motor)
   /// and 6091 (turns of the motor a turn of the shaft), CiA 402-2.
   std::optional<double> counts_per_turn;
-  bool has_twin = false;  ///< two devices answer to this id
+  bool has_twin = false;         ///< two devices answer to this id
+  bool has_speed_limit = false;  ///< object 607F: it may heed the joint's limit of speed
 
   /// A device of CiA 402, by its device type.
   bool isDrive() const noexcept { return device_type && (*device_type & 0xFFFF) == 402; }
