@@ -209,6 +209,25 @@ bool isOnPath(const Scene& scene, const PathContacts& contacts, const ObstacleCo
   });
 }
 
+/// Friction tilts the force that is felt, so that the way back slides along the cover, which tilts
+/// it anew; see docs/approach_speed_limit.md. A module that feels M_x knows the normal.
+void checkFriction(const Scene& scene, std::vector<std::string>& warnings) {
+  const std::optional<ForceControlConfig>& law = scene.controller.force_control;
+  const auto feelsNormal = [](const TactileModuleConfig& module) { return module.feels_moment_x; };
+  if (!law || std::ranges::all_of(scene.controller.tactile_modules, feelsNormal)) return;
+  const std::vector<ObstacleConfig>& obstacles = scene.plant.obstacles;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const double mu = obstacles[i].friction_coefficient;
+    if (mu == 0.0 || mu < law->friction_coefficient) continue;
+    warnings.push_back(fmt::format(
+        "obstacle {} has a friction of {:g}, the law bears {}: a stiff contact may swing and push "
+        "many times as hard; it takes null_limit with a controller.friction_coefficient above that",
+        i, mu,
+        law->friction_coefficient > 0.0 ? fmt::format("less than {:g}", law->friction_coefficient)
+                                        : "none"));
+  }
+}
+
 std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& contacts,
                                     const std::optional<PeakReport>& peak) {
   std::vector<std::string> warnings;
@@ -225,6 +244,7 @@ std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& cont
                       1e3 * touch->depth_m, scene.module_links[touch->module]));
     }
   }
+  checkFriction(scene, warnings);
   for (const CapsuleTouch& touch : contacts.unsensed)
     if (!isFeltBefore(scene, contacts, touch)) warnings.push_back(unsensedWarning(scene, touch));
   if (peak && peak->peak_N() > peak->max_force_N) {

@@ -202,6 +202,22 @@ TEST(TouchCheck, WarnsOfObstaclesInTheArmAtItsStart) {
       << warnings[0];
 }
 
+TEST(TouchCheck, WarnsOfMoreFrictionThanTheLawBears) {
+  const auto warns = [](const std::string& name, const std::string& of_obstacle,
+                        const std::string& of_law) {
+    const Override there{"simulation.obstacles[0].friction_coefficient", of_obstacle};
+    const auto warnings =
+        expectedOf(name, {there, {"controller.friction_coefficient", of_law}}).warnings;
+    return hasWarning(warnings, "obstacle 0 has a friction of " + of_obstacle);
+  };
+  EXPECT_TRUE(warns("scenario3_tactus", "0.3", "0"));
+  EXPECT_TRUE(warns("scenario3_tactus", "0.3", "0.3"));
+  EXPECT_FALSE(warns("scenario3_tactus", "0.3", "0.31"));
+  EXPECT_FALSE(warns("scenario3_tactus", "0", "0"));
+  EXPECT_TRUE(warns("scenario3_estimated", "0.1", "0")) << "no law of the paper bears any";
+  EXPECT_FALSE(warns("real/real_scenario3_mx", "0.3", "0")) << "the module tells the normal";
+}
+
 TEST(TouchCheck, WarnsOfAPeakThatTheSensorCannotShow) {
   EXPECT_TRUE(hasWarning(
       expectedOf("scenario1_null_space", {{"robot.tactile_module.max_force_N", "3"}}).warnings,
