@@ -218,8 +218,9 @@ std::string pushProblem(const ChannelWindow& held, const ChannelFigures& zero) {
   const ChannelVector moved = now.mean - zero.mean;
   const double sigmas = moved.cwiseAbs().cwiseQuotient(zero.sigma.cwiseMax(kLeastSigma)).maxCoeff();
   if (sigmas < kFeltSigmas)
-    return fmt::format("no channel moved by more than {:.1f} sigma: push more, or is it on?",
-                       sigmas);
+    return fmt::format(
+        "no channel moved by more than {:.1f} times its noise: push more, or is the module on?",
+        sigmas);
   const double change = (now.drift_per_s * now.duration_s).norm() / moved.norm();
   if (change > kMaxChange)
     return fmt::format("the push changed by {:.0f} % while it was measured: hold it still",

@@ -45,7 +45,11 @@ Scene calibratedScene(const std::string& path, const CalibrateOptions& options, 
   Scene scene = loadScene(path, settings, use);
   if (scene.controller.tactile_modules.empty()) {
     settings.push_back({"controller.variant", "none"});
-    scene = loadScene(path, settings, use);
+    try {
+      scene = loadScene(path, settings, use);
+    } catch (const LocatedError& error) {
+      if (error.place.key != "controller") throw;
+    }
   }
   const std::size_t modules = scene.controller.tactile_modules.size();
   if (modules == 0) refuseScene(path, "robot", "has no tactile module", "one in robot.yaml");

@@ -134,7 +134,8 @@ void judge(const IdentifyOptions& options, const Identified& found) {
     refuse(options, fmt::format("{:.3g} N of the readings are of no cover", estimate.residual_N),
            fmt::format("no contact, and at most contact_threshold_N = {:g} N", found.threshold_N));
   const Fitted& mass = estimate.mass_kg;
-  if (!(mass.deviation <= kMaxRelativeDeviation * mass.value))
+  // Readings that are all zero are a mass of 0 +- 0.
+  if (!(mass.value > 0.0 && mass.deviation <= kMaxRelativeDeviation * mass.value))
     refuse(options, fmt::format("the mass is {:.3g} +- {:.2g} kg", mass.value, mass.deviation),
            fmt::format("a deviation of at most {} of it: a heavier cover, a longer log, or one "
                        "without contact",

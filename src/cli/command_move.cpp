@@ -49,6 +49,9 @@ Json vectorOf(const char* option, const std::string& text) {
                                    option, escaped(text), inQuotes(word)));
     vector.push_back(*number);
   }
+  if (vector.size() != 3)
+    throw InputError(fmt::format("{} {}: has {} numbers, expected three, such as 0.9,-,0.25",
+                                 option, escaped(text), vector.size()));
   return vector;
 }
 
@@ -101,7 +104,7 @@ std::string taskText(const Json& task) {
   if (state == "blocked") return fmt::format("blocked{}\n", contactText(task.at("contact")));
   if (state == "given_up")
     return fmt::format("given up, was blocked{}\n", contactText(task.at("contact")));
-  if (state == "stopped") return "the arm was stopped\n";
+  if (state == "stopped") return "the arm was stopped: `tactus status` says why\n";
   return escaped(state) + "\n";
 }
 

@@ -38,7 +38,7 @@ std::string changeText(const Json& answer) {
   for (const auto& [key, values] : answer.at("changes").items())
     text += fmt::format("{}  {} -> {}\n", escaped(key), values.at("from").dump(),
                         values.at("to").dump());
-  return text.empty() ? "nothing differs\n" : text;
+  return text;
 }
 
 std::string stateText(const Json& answer) {
@@ -51,11 +51,17 @@ std::string stateText(const Json& answer) {
   return "kept\n";
 }
 
+std::string answerText(const Json& answer) {
+  if (answer.at("changes").empty()) return "nothing differs\n";
+  std::string text = changeText(answer) + stateText(answer);
+  if (answer.at("is_for_a_time"))
+    text += "for a time: then back to what was kept before, with what is still on trial\n";
+  return text;
+}
+
 int change(const Json& request, const ChangeOptions& options) {
   const Json answer = ControlClient(controlPath()).change(request, options.waits);
-  std::fputs(
-      options.json ? jsonText(answer).c_str() : (changeText(answer) + stateText(answer)).c_str(),
-      stdout);
+  std::fputs((options.json ? jsonText(answer) : answerText(answer)).c_str(), stdout);
   return answer.at("trouble").get<std::string>().empty() ? kExitDone : kExitFault;
 }
 

@@ -200,6 +200,7 @@ Json ControlRequests::showGains() {
           {"number", number_},
           {"state", gainStateName(report_.state)},
           {"trouble", gainTroubleText(report_)},
+          {"is_for_a_time", isTrying() && trials_.back().is_for_a_time},
           {"scene", std::filesystem::absolute(newest().sources.front().path).string()},
           {"scene_hash", fmt::format("{:016x}", read_hash_)},
           {"kept", gainsJson(kept_.controller.gains)},

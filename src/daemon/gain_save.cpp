@@ -65,6 +65,10 @@ Json gainDifferences(const std::string& path, const Json& running) {
 
 SavedGains saveGains(const ControlClient& daemon) {
   const Json answer = daemon.ask({{"do", "show"}});
+  if (answer.at("is_for_a_time"))
+    throw InputError(
+        "save: gains are set for a time, and go back after it; expected them to be set without "
+        "--for, once they are back");
   const std::string path = answer.at("scene");
   const std::string text = SourceReader(readFromDisk).readFirst(path).text;
   if (fmt::format("{:016x}", sourceHash(text)) != answer.at("scene_hash"))

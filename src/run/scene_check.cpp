@@ -137,6 +137,9 @@ Findings examine(const Scene& scene) {
   findings.contact = checkContacts(scene, stability.stiffest_N_per_m);
   add(stability.warnings);
   add(findings.contact.warnings);
+  if (!scene.troubles.empty())
+    findings.warnings.emplace_back(
+        "simulation.troubles happen on the buses of tactus plant alone, not in tactus simulate");
   checkLogSize(scene);
   return findings;
 }

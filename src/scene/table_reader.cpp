@@ -17,6 +17,9 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
+/// What `tactus init` writes where somebody has to; a number or a word of its own says so itself.
+constexpr const char* kFillIn = "FILL_IN";
+
 /// What the values of a file have in common.
 struct File {
   const YamlNode& root;
@@ -155,6 +158,7 @@ struct ValueReader {
   }
   void operator()(std::string* text) const {
     if (r.node.kind != Kind::kScalar || r.node.text.empty()) r.failType();
+    if (r.node.text == kFillIn) r.fail(r.node, r.path, inQuotes(kFillIn) + " is left");
     *text = r.node.text;
   }
   void operator()(std::vector<double>* numbers) const {
@@ -238,6 +242,18 @@ void refuseDecimalComma(const YamlNode& node, const YamlEntry& entry, const std:
          "expected a decimal point: " + before.value.text + "." + entry.key);
 }
 
+/// The first key of this name within the sections; empty if there is none.
+std::string pathWithin(const std::vector<KeySpec>& keys, const std::string& name) {
+  for (const KeySpec& spec : keys) {
+    if (spec.type != ValueType::kSection) continue;
+    for (const KeySpec& inner : spec.keys)
+      if (inner.key == name) return spec.key + "." + name;
+    const std::string path = pathWithin(spec.keys, name);
+    if (!path.empty()) return spec.key + "." + path;
+  }
+  return "";
+}
+
 void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
                        const std::string& prefix) {
   std::vector<std::string> known;
@@ -246,7 +262,8 @@ void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
   for (const YamlEntry& entry : node.entries) {
     if (std::ranges::count(known, entry.key) > 0) continue;
     refuseDecimalComma(node, entry, prefix);
-    const std::string nearest = nearestWord(entry.key, known);
+    const std::string within = pathWithin(keys, entry.key);
+    const std::string nearest = within.empty() ? nearestWord(entry.key, known) : within;
     failAt(entry.key_at, prefix + entry.key, "unknown key",
            known.empty()     ? "expected none here"
            : nearest.empty() ? fmt::format("expected one of {}", fmt::join(known, ", "))

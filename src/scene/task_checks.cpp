@@ -70,7 +70,8 @@ void checkWaypoint(const CheckedScene& c, const Waypoint& waypoint, const std::s
 /// A tool that is held off must not be told to go further and further away.
 void checkCommands(const CheckedScene& c) {
   if (c.scene.trajectory)
-    c.fail("task.trajectory", "a trajectory besides task.source: commands", "one of both");
+    c.fail("task.trajectory", "a trajectory besides task.source: commands",
+           "one of both; trajectory: ~ drops what this scene extends");
   if (!c.scene.controller || c.scene.controller->variant == Variant::kNone) return;
   const TaskGains& gains = c.scene.gains.task;
   if (!c.scene.task.hasPosition())

@@ -132,8 +132,12 @@ void applyOverride(YamlNode& root, const Override& setting, std::string_view pat
     failAt(at, setting.key, "is no path of keys", "expected section.key or section.list[0].key");
   }
   YamlNode* node = &root;
+  std::string name;  // of the node
   for (const PathStep& path_step : steps) {
     if (isNothing(*node)) *node = YamlNode{YamlNode::Kind::kMap, at};
+    if (node->kind == YamlNode::Kind::kList)
+      failAt(at, setting.key, fmt::format("{} is looked for in a list", inQuotes(path_step.key)),
+             fmt::format("expected which of its entries, such as {}[0]", name));
     if (node->kind != YamlNode::Kind::kMap) {
       failAt(at, setting.key, fmt::format("{} is no key of a section", inQuotes(path_step.key)),
              setting.key == path ? "expected a key the scene knows"
@@ -143,7 +147,7 @@ void applyOverride(YamlNode& root, const Override& setting, std::string_view pat
       node->entries.push_back({path_step.key, at, YamlNode{YamlNode::Kind::kEmpty, at}});
     }
     node = node->find(path_step.key);
-    std::string name = path_step.key;
+    name = path_step.key;
     for (const std::size_t index : path_step.indices) {
       if (index >= node->items.size()) failForIndex(at, setting.key, name, *node, index);
       node = &node->items[index];

@@ -75,6 +75,8 @@ TEST_F(CoverRunTest, WhatALogDoesNotTellIsRefused) {
   EXPECT_NE(refusal().find("too short"), std::string::npos) << refusal();
   logRun("robots/crops9_cover", withNoise({}));
   EXPECT_NE(refusal().find("cover: the mass is"), std::string::npos) << refusal();
+  logRun("robots/crops9_cover", {});  // not even noise
+  EXPECT_NE(refusal().find("cover: the mass is 0"), std::string::npos) << refusal();
   logRun("free_motion", {});
   EXPECT_NE(refusal().find("no tactile module is read"), std::string::npos) << refusal();
 }

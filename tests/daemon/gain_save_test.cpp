@@ -117,6 +117,18 @@ TEST_F(SavedGainsTest, AreInTheFileOfADaemonThatEndsBeforeItReadsIt) {
   EXPECT_NE(file_.text().find("damping: 0.8"), std::string::npos);
 }
 
+TEST_F(SavedGainsTest, AreNotThoseOfATime) {
+  const std::string before = file_.text();
+  requests_.answer(R"({"do": "set", "values": {"controller.damping": 0.8}, "for_s": 5})");
+  try {
+    save([] {}, true);
+    ADD_FAILURE() << "saved what goes back";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("for a time"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(file_.text(), before);
+}
+
 /// A daemon that was started with --set controller.damping=0.9.
 class SetAtTheStart : public SavedGainsTest {
  protected:

@@ -97,6 +97,12 @@ TEST(Extends, RemovingAnUnknownKeyIsAnError) {
       {"", "", "run.yaml:2:1: stifness: ", "unknown key", "'stiffness'"});
 }
 
+TEST(Extends, AKeyThatBelongsInASectionIsNamedWithIt) {
+  test::expectError(
+      test::loadError(withBase({{"run.yaml", "extends: base/base.yaml\ndamping: 1\n"}})),
+      {"", "", "run.yaml:2:1: damping: ", "unknown key", "'controller.damping'"});
+}
+
 TEST(Extends, CirclesAreErrors) {
   test::expectError(test::loadError({{"run.yaml", "extends: ./run.yaml\n"}}),
                     {"", "", "run.yaml:1:10: extends: ", "leads back", "no circle"});

@@ -163,6 +163,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BrokenText{"chip: gpiochip1", "chip: /dev/gpiochip1",
                    "robot.yaml:32:9: gpio.chip: ", "'/dev/gpiochip1' is no name", "gpiochip0"},
+        BrokenText{"chip: gpiochip1", "chip: FILL_IN",
+                   "robot.yaml:32:9: gpio.chip: ", "'FILL_IN' is left", "text"},
         BrokenText{"  chip: gpiochip1\n", "", "robot.yaml:32:3: gpio.chip: ", "is missing", "text"},
         BrokenText{"brake: {line: 5}", "brake: {line: 3}", "robot.yaml:34:17: gpio.brake.line: ",
                    "line 3 is e_stop's", "a line of its own"},

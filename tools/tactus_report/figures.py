@@ -3,15 +3,12 @@
 import dataclasses
 import html
 import io
-import logging
 import re
 
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
-
-logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no remarks about caches and HOME
 
 # Matplotlib wants colours as numbers; these stand for the page's and are replaced in the SVG.
 INK, GRID, RED, GREEN, BLUE, ORANGE, PURPLE, TEAL, PINK, OLIVE = (
