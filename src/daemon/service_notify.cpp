@@ -1,6 +1,12 @@
 #include "tactus/daemon/service_notify.h"
 
-#include <systemd/sd-daemon.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdlib>
 
 namespace tactus {
 namespace {
@@ -13,15 +19,41 @@ bool isUp(Mode mode) noexcept {
 
 }  // namespace
 
+bool tellManager(std::string_view state) noexcept {
+  const char* const name = std::getenv("NOTIFY_SOCKET");
+  const std::string_view path = name ? name : "";
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.empty() || path.size() >= sizeof(address.sun_path)) return true;
+  path.copy(address.sun_path, path.size());
+  if (path.front() == '@') address.sun_path[0] = '\0';  // the abstract name space
+  const int descriptor = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) return true;  // a manager that cannot be told must not end the run
+  iovec part{const_cast<char*>(state.data()), state.size()};
+  msghdr message{};
+  message.msg_name = &address;
+  message.msg_namelen = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + path.size());
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  const bool has_room = ::sendmsg(descriptor, &message, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0 ||
+                        (errno != EAGAIN && errno != ENOBUFS);
+  ::close(descriptor);
+  return has_room;
+}
+
 void ServiceNotify::onMode(Mode mode, const std::string& status) {
-  std::string state = "STATUS=" + status;
-  if (!is_ready_ && isUp(mode)) {
-    is_ready_ = true;
-    state += "\nREADY=1";
-  }
+  is_up_ = is_up_ || isUp(mode);
+  waiting_ = "STATUS=" + status;
+  if (is_up_ && !is_ready_) waiting_ += "\nREADY=1";
   // The manager's time limit for a stop begins now, if it did not ask for the stop itself.
-  if (mode == Mode::kOff) state += "\nSTOPPING=1";
-  sd_notify(0, state.c_str());  // a manager that has gone must not end the run
+  if (mode == Mode::kOff) waiting_ += "\nSTOPPING=1";
+  tellAgain();
+}
+
+void ServiceNotify::tellAgain() {
+  if (waiting_.empty() || !tellManager(waiting_)) return;
+  is_ready_ = is_up_;
+  waiting_.clear();
 }
 
 }  // namespace tactus

@@ -4,6 +4,8 @@
 
 #include <system_error>
 
+#include "tactus/daemon/service_notify.h"
+
 namespace tactus {
 namespace {
 
@@ -36,7 +38,7 @@ void ServiceWatchdog::watch(const std::stop_token& stop, std::chrono::microsecon
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     wait_.wait_for(lock, stop, period, [] { return false; });
-    if (health_.look()) sd_notify(0, "WATCHDOG=1");
+    if (health_.look()) tellManager("WATCHDOG=1");
   }
 }
 

@@ -23,5 +23,16 @@ TEST(JournalSink, SaysEachChangeOfModeInALineAndToTheManager) {
             "STATUS=holding: tactile_invalid, at 3.214 s, 102.5 N, at most 100 N");
 }
 
+TEST(JournalSink, TellsAManagerThatHungOnceItReadsAgain) {
+  test::NotifySocket manager;
+  manager.fill();
+  JournalSink sink;
+  sink.onMode({}, "off");
+  sink.flush();
+  manager.readAll();
+  sink.flush();
+  EXPECT_EQ(manager.receive(), "STATUS=off");
+}
+
 }  // namespace
 }  // namespace tactus

@@ -46,5 +46,23 @@ TEST(ServiceNotify, doesNothingWithoutAManager) {
   EXPECT_EQ(manager.receive(), "");
 }
 
+/// As one that is about to end, or was stopped.
+TEST(ServiceNotify, doesNotWaitForAManagerThatHangs) {
+  test::NotifySocket manager;
+  ServiceNotify notify;
+  manager.fill();
+  EXPECT_FALSE(tellManager("WATCHDOG=1"));
+  notify.onMode(Mode::kReady, "ready");
+  notify.onMode(Mode::kFault, "fault: e-stop");
+  notify.tellAgain();
+  manager.readAll();
+  notify.tellAgain();
+  EXPECT_EQ(manager.receive(), "STATUS=fault: e-stop\nREADY=1");
+  notify.tellAgain();
+  notify.onMode(Mode::kReady, "ready");
+  EXPECT_EQ(manager.receive(), "STATUS=ready");
+  EXPECT_EQ(manager.receive(), "");
+}
+
 }  // namespace
 }  // namespace tactus

@@ -45,6 +45,21 @@ class NotifySocket {
   }
   std::string receive() { return receive(0); }
 
+  /// Up to where a sender would wait.
+  void fill() {
+    sockaddr_un address{};
+    socklen_t size = sizeof(address);
+    getsockname(descriptor_, reinterpret_cast<sockaddr*>(&address), &size);
+    const int sender = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    while (sendto(sender, ".", 1, MSG_DONTWAIT, reinterpret_cast<sockaddr*>(&address), size) == 1) {
+    }
+    close(sender);
+  }
+  void readAll() {
+    while (!receive().empty()) {
+    }
+  }
+
  private:
   int descriptor_;
 };

@@ -11,6 +11,7 @@ namespace tactus {
 /// change of mode or fault.
 class JournalSink final : public RecordSink {
  public:
+  void flush() override { service_.tellAgain(); }
   void onMode(const ModeReport& report, const std::string& description) override;
 
  private:
