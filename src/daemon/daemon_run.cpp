@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <time.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -112,7 +113,7 @@ void judgeRefusals(const std::vector<Refusal>& refusals, bool is_required) {
 
 std::unique_ptr<HardwareLoop> openHardware(const Scene& scene, double duration_s,
                                            const SystemCallFilter& filter, LoopLink& link) {
-  const long long max_task_cycles = std::llround(duration_s / scene.period_s);
+  const long long max_task_cycles = motionCycles(duration_s, scene.period_s);
   try {
     return std::make_unique<HardwareLoop>(scene, max_task_cycles, filter, link);
   } catch (const std::runtime_error& error) {
@@ -148,6 +149,10 @@ LoopFigures loopFigures(const Scene& scene, const HardwareLoop& loop, const Loop
 }
 
 }  // namespace
+
+long long motionCycles(double duration_s, double period_s) noexcept {
+  return duration_s > 0.0 ? std::max(1LL, std::llround(duration_s / period_s)) : 0;
+}
 
 Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   blockStopSignals();
