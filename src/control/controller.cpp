@@ -21,6 +21,13 @@ void replaceRotation(const TaskConfig& task, const Vector3& rotation_vector,
     if (task.components[i] >= 3) w[i] = rotation_vector[task.components[i] - 3];
 }
 
+/// Hazard: a ramp to rest that went on only in the cycles that are there would last longer by as
+/// much as the loop is too slow. All joints together, as the way that clearance knows of.
+void rampOn(const JointLimits& limits, double duration_s, JointVector& velocity) noexcept {
+  const double ramp_s = velocity.cwiseAbs().cwiseQuotient(limits.max_acceleration).maxCoeff();
+  velocity *= ramp_s > duration_s ? 1.0 - duration_s / ramp_s : 0.0;
+}
+
 }  // namespace
 
 Controller::Controller(const ControllerConfig& config)
@@ -161,6 +168,8 @@ void Controller::answerContact(const Gains& gains, const TaskKinematics& kinemat
 
 void Controller::coast(int missed_cycles, double period_s, ControllerState& state) const noexcept {
   passTime(missed_cycles * period_s, state);
+  if (state.is_stopping && !state.retreat.is_under_way)
+    rampOn(config_.limits, missed_cycles * period_s, state.velocity_before);
   for (int i = 0; i < modules(); ++i) {
     state.modules[i].age_s += missed_cycles * period_s;
     state.modules[i].cover.missed_s += missed_cycles * period_s;

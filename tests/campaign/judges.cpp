@@ -57,7 +57,10 @@ void LimitsJudge::look(const Look& look) {
   const JointVector before =
       isCommanding(look.before.mode) ? look.before.command : JointVector::Zero(now.command.size());
   const JointVector change = (now.command - before).cwiseAbs();
-  if ((change - limits.max_acceleration * look.promise.period_s).maxCoeff() > 1e-9)
+  // A ramp to rest goes on in cycles that are missed.
+  const bool is_ramp = now.mode == kHolding || now.mode == kStopping;
+  const double time_s = is_ramp ? 1e-3 * (now.t_ms - look.before.t_ms) : look.promise.period_s;
+  if ((change - limits.max_acceleration * time_s).maxCoeff() > 1e-9)
     look.complain("limits", "command beyond the acceleration limit", largest(change));
   for (int i = 0; i < now.setpoint.size(); ++i) {
     const bool is_command = std::abs(now.setpoint[i] - now.command[i]) <= 2.0 * count[i];

@@ -159,6 +159,33 @@ TEST(MissedCycles, AreOfTheWayAndOfTheSamples) {
   EXPECT_EQ(state.return_share, 1.0);
 }
 
+/// The drives kept their velocity meanwhile, so the next command lacks all that the ramp has got
+/// to; in a retreat that is no ramp.
+TEST(MissedCycles, AreOfTheRampToRest) {
+  test::Random random(2406);
+  ControllerConfig config = test::fullController(random, 6, Variant::kNullSpace);
+  config.limits.max_acceleration = JointVector{{5.0, 1.0, 2.0, 2.0, 2.0, 2.0}};
+  const Controller controller(config);
+  ControllerState state = controller.initialState(JointVector::Zero(6));
+  const JointVector velocity{{0.1, -0.2, 0.0, 0.0, 0.0, 0.0}};  // 0.2 s by the second joint
+  state.velocity_before = velocity;
+  ControllerState running = state;
+  controller.coast(5, 0.01, running);
+  EXPECT_EQ(running.velocity_before, velocity);
+  state.is_stopping = true;
+  ControllerState retreating = state;
+  retreating.retreat.is_under_way = true;
+  controller.coast(5, 0.01, retreating);
+  EXPECT_EQ(retreating.velocity_before, velocity);
+  controller.coast(5, 0.01, state);
+  EXPECT_NEAR(state.q_desired[1], -0.01, 1e-15);
+  EXPECT_TRUE(state.velocity_before.isApprox(0.75 * velocity, 1e-12));
+  controller.coast(15, 0.01, state);
+  EXPECT_LT(state.velocity_before.norm(), 1e-12);
+  controller.coast(15, 0.01, state);
+  EXPECT_TRUE(state.velocity_before.isZero(0.0));
+}
+
 /// While an arm stops, its task's clock stands still itself.
 TEST(MissedCycles, OfAStopAreNoTimeOfTheTask) {
   test::Random random(2405);

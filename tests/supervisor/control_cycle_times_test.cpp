@@ -196,6 +196,30 @@ TEST(ControlCycleTimes, AStopMayTakeAsLongAsItsRamp) {
   EXPECT_TRUE(cell.areDrivesOff());
 }
 
+/// On a computer that is too slow as on any other, though it can tell so only now and then.
+TEST(ControlCycleTimes, ARampTakesNoLongerWhereCyclesAreMissed) {
+  const auto ramp_s = [](int missed) {
+    Scene scene = slowScene();
+    scene.controller.limits.max_acceleration[8] = 0.05;
+    VirtualRobotCell cell(scene);
+    EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+    for (int i = 0; i < 5000; ++i) cell.step();
+    const std::int64_t start_ns = cell.t_ns;
+    cell.input.late_in_a_row = 4;
+    for (int i = 0; i < 5000; ++i) {
+      cell.input.missed_cycles = missed;
+      cell.t_ns += 1'000'000 * missed;
+      cell.step();
+      if (cell.largestSetpoint() == 0) break;
+    }
+    EXPECT_EQ(cell.cycle.report().fault, Fault::kOverrun);
+    return 1e-9 * static_cast<double>(cell.t_ns - start_ns);
+  };
+  const double undisturbed_s = ramp_s(0);
+  EXPECT_GT(undisturbed_s, 0.3) << "it hardly moved: this test is blind";
+  for (const int missed : {1, 2}) EXPECT_NEAR(ramp_s(missed), undisturbed_s, 0.02) << missed;
+}
+
 /// Where a joint should be while it ramps is where it has been commanded to meanwhile.
 TEST(ControlCycleTimes, AStopGoesOnWithItsPlaces) {
   VirtualRobotCell cell(slowScene());

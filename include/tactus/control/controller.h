@@ -123,7 +123,7 @@ class Controller {
   bool goesOnWithout(int module, const Gains& gains, const ControllerState& state) const noexcept;
 
   /// For cycles that were missed: the drives kept the last command for as long, and the reference
-  /// its progress.
+  /// its progress. A ramp to rest is no longer for them: what it lacks comes with the next command.
   void coast(int missed_cycles, double period_s, ControllerState& state) const noexcept;
 
   /// One cycle. gains: within the ranges of their keys and fit for each other (findGainProblem() of
