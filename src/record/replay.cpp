@@ -40,7 +40,9 @@ CycleRecord Replayer::replay(const CycleRecord& recorded) {
   const bool was_known = is_known_;
   is_known_ = continuity_.add(recorded);
   const int missed = continuity_.missedCycles();
+  const double waited_s = state_.waited_s;
   if (missed > 0) controller_.coast(missed, period_s_, state_);
+  if (mode != Mode::kRunning) state_.waited_s = waited_s;  // nor did the task's clock go on
   if (is_known_ && !was_known) state_.waited_s = 0.0;
   if (state_.tool_motion && !isSame(state_.tool_motion->plan(), recorded.tool_motion))
     state_.tool_motion.emplace(recorded.tool_motion);

@@ -84,6 +84,7 @@ ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareCon
 void ControlCycle::update(const CycleInput& input) noexcept {
   if (!has_next_orders_) goOnWithOrders();
   has_next_orders_ = false;
+  const double waited_s = state_.waited_s;
   coast(input.missed_cycles);
   robot_.expect(isCommanding(mode_.mode) ? state_.q_desired : output_.q_desired);
   const auto samples_before = input_.tactile;
@@ -93,6 +94,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   const Mode before = mode_.mode;
   const Fault fault_before = mode_.fault;
   updateMode(mode_config_, modeInput(input, judge(input)), mode_);
+  if (mode_.mode != Mode::kRunning) state_.waited_s = waited_s;
   const bool is_new_fault = mode_.fault != fault_before;
   if (is_new_fault && mode_.fault != judged_.fault) judgeTimeLimit(before);
   if (is_new_fault) noteCulprit();
@@ -193,7 +195,10 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   if (!is_started_) begin();
   missed_cycles_ = is_started_ ? input.missed_cycles : 0;
   cycles_ += is_started_ ? 1 + missed_cycles_ : 0;
-  task_cycles_ += is_started_ && before == Mode::kRunning ? 1 + missed_cycles_ : 0;
+  // A pause that stops the arm is no time of its task, or it would make up for that when it goes
+  // on.
+  const int paused_cycles = is_running ? missed_cycles_ : 0;
+  task_cycles_ += is_started_ && before == Mode::kRunning ? 1 + paused_cycles : 0;
   is_started_ = true;
   applyMode(controller_, mode_.mode, before, input_, gains_, state_);
   const bool goes_on = is_running && before != Mode::kRunning;

@@ -104,6 +104,26 @@ TEST(GoingOn, AHandDuringAHoldMovesNothingLater) {
   }
 }
 
+/// As of a virtual machine that stood still: the path has not gone on without the arm.
+TEST(GoingOn, AnArmThatAPauseHasStoppedMakesUpForNoneOfIt) {
+  const VirtualRobotCell running = runningCell("null_space", 2000);
+  const auto peakAfterPause = [&](int missed) {
+    VirtualRobotCell cell = running;
+    cell.input.missed_cycles = missed;
+    cell.input.late_in_a_row = missed + 1;
+    cell.t_ns += 1'000'000LL * missed;
+    cell.step();
+    cell.input.missed_cycles = cell.input.late_in_a_row = 0;
+    EXPECT_NEAR(cell.record().task_time_s, running.record().task_time_s + 0.001, 1e-9);
+    step(cell, 1000);
+    EXPECT_EQ(cell.cycle.report().mode, Mode::kFault);
+    return peakOnGoingOn(cell);
+  };
+  const double undisturbed = peakAfterPause(10);
+  EXPECT_LE(peakAfterPause(5000), undisturbed + 0.02);
+  EXPECT_LE(peakAfterPause(100'000), undisturbed + 0.02);
+}
+
 TEST(GoingOn, ASilentModuleInContactMovesNothingLater) {
   for (const char* variant : kVariants) {
     const VirtualRobotCell running = runningCell(variant, 7000);

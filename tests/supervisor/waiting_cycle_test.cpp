@@ -27,7 +27,7 @@ Scene tooFastForItsJoints() {
   return scene;
 }
 
-/// A hold, missed cycles, and an e-stop after which the arm starts again.
+/// A hold, missed cycles, a pause that stops the arm, and an e-stop after which it starts again.
 std::vector<CycleRecord> runWithEvents(const Scene& scene) {
   VirtualRobotCell cell(scene);
   std::vector<CycleRecord> records;
@@ -39,7 +39,10 @@ std::vector<CycleRecord> runWithEvents(const Scene& scene) {
     cell.input.lines.emergency_stop = i > 3000 && i < 3500;
     const bool is_missed = i == 1600 || i == 2100 || i == 5000;
     cell.input.missed_cycles = is_missed ? 2 : 0;
-    if (is_missed) cell.plant.advance(cell.t_ns += 2'000'000);
+    if (i == 2990) cell.input.missed_cycles = 400;
+    cell.input.late_in_a_row = i == 2990 ? 401 : 0;
+    if (cell.input.missed_cycles > 0)
+      cell.plant.advance(cell.t_ns += 1'000'000 * cell.input.missed_cycles);
     cell.input.stop_requested = i > 13900;
     cell.step();
     records.push_back(cell.record());
