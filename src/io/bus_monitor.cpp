@@ -37,10 +37,12 @@ bool lacksAcknowledge(const CanFrame& error) noexcept {
 void BusMonitor::onErrorFrame(const CanFrame& frame) noexcept {
   ++counters_.error_frames;
   if ((frame.id & CAN_ERR_CRTL) != 0) {
-    if ((frame.data[1] & kPassive) != 0)
+    if ((frame.data[1] & kPassive) != 0) {
       is_passive_ = true;
-    else if ((frame.data[1] & kNotPassive) != 0)
+      frames_to_active_ = kFramesToActive;
+    } else if ((frame.data[1] & kNotPassive) != 0) {
       is_passive_ = false;
+    }
   }
   if (lacksAcknowledge(frame)) lacks_acknowledge_ = true;
   if (is_passive_ && lacks_acknowledge_) raise(Fault::kBusUnacknowledged);
@@ -56,6 +58,8 @@ void BusMonitor::onConfirmed(int frames) noexcept {
   was_confirmed_ = is_known_alive_ = true;
   has_answered_ = true;
   lacks_acknowledge_ = false;
+  frames_to_active_ = std::max(0, frames_to_active_ - frames);
+  if (frames_to_active_ == 0) is_passive_ = false;
 }
 
 void BusMonitor::onSent(int accepted, int offered) noexcept {

@@ -319,6 +319,27 @@ TEST(BusMonitor, ForgetsAfterTheRearmThatTheBusWasPassive) {
   EXPECT_EQ(monitor.fault(), Fault::kNone) << "a passing stall like any other";
 }
 
+/// Not every driver tells that its controller is active again, which after this it has to be.
+TEST(BusMonitor, ForgetsAfter128ConfirmedFramesThatTheControllerWasPassive) {
+  for (const int confirmed : {127, 128}) {
+    BusMonitor monitor;
+    monitor.onErrorFrame(kPassive);
+    for (int i = 0; i < confirmed; ++i) {
+      monitor.onSent(1, 1);
+      monitor.onConfirmed(1);
+      monitor.update();
+      ASSERT_EQ(monitor.fault(), Fault::kNone);
+    }
+    monitor.onSent(4, 4);
+    monitor.update();
+    EXPECT_EQ(monitor.fault(), confirmed < 128 ? Fault::kBusUnacknowledged : Fault::kNone);
+    if (confirmed < 128) continue;
+    monitor.onErrorFrame(kPassive);
+    monitor.update();
+    EXPECT_EQ(monitor.fault(), Fault::kBusUnacknowledged) << "passive anew";
+  }
+}
+
 TEST(BusMonitor, AnErrorAfterTheAnswerTakesItBack) {
   BusMonitor monitor;
   monitor.onErrorFrame(kPassive);

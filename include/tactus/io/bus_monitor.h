@@ -41,6 +41,9 @@ class BusMonitor {
   /// Batches in a row that were full: more than copper carries, and than the socket keeps while
   /// nobody reads.
   static constexpr int kMaxFullBatches = 3;
+  /// After so many frames that were confirmed a controller is passive no more, whether its driver
+  /// says so or not: its counter of errors, 255 at most, is back below 128.
+  static constexpr int kFramesToActive = 128;
 
   void onErrorFrame(const CanFrame& frame) noexcept;
   void onConfirmed(int frames) noexcept;  ///< own frames that came back as echo
@@ -81,6 +84,7 @@ class BusMonitor {
   int calm_cycles_ = 0;
   int cycles_to_probe_ = 0;
   bool is_passive_ = false;
+  int frames_to_active_ = 0;        ///< until a passive controller has to be active again
   bool lacks_acknowledge_ = false;  ///< since the last confirmation
   bool was_refused_ = false;        ///< this cycle
   bool was_confirmed_ = false;      ///< this cycle
