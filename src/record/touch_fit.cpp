@@ -127,6 +127,23 @@ PlacedFit fitAt(const Touch& touch, double cutoff_hz, double x0_m) {
   return fit;
 }
 
+/// Of what was touched before the samples begin the force is a line over the filtered way, and this
+/// where that line is zero.
+double placeOnLine(const Touch& touch, double cutoff_hz) {
+  const std::vector<double> way = filtered(touch, cutoff_hz, [](double x_m) { return x_m; });
+  double count = 0.0, x = 0.0, f = 0.0, xx = 0.0, xf = 0.0;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    if (!touch.counts[i]) continue;
+    count += 1.0;
+    x += way[i];
+    f += touch.force_N[i];
+    xx += way[i] * way[i];
+    xf += way[i] * touch.force_N[i];
+  }
+  const double c_N_per_m = (count * xf - x * f) / (count * xx - x * x);
+  return x / count - f / count / c_N_per_m;
+}
+
 double placeOfTouch(const Touch& touch, double cutoff_hz) {
   const auto [least, most] = std::ranges::minmax_element(touch.way_m);
   const double low = *least - kFarther * (*most - *least);
@@ -145,6 +162,8 @@ double placeOfTouch(const Touch& touch, double cutoff_hz) {
     const double middle = best;
     if (!look(middle - width)) look(middle + width);
   }
+  const double before = placeOnLine(touch, cutoff_hz);  // may be farther than any that was tried
+  if (before < *least) look(before);
   return best;
 }
 

@@ -155,6 +155,22 @@ TEST(TouchFit, KnowsWhereASmallForcePointsByItsOwnSample) {
   EXPECT_EQ(wayOf(0.0, 0.0, 0.0), Vector3::Zero());
 }
 
+/// By one that was touched long before F_th is passed, as where the threshold is large: no place of
+/// touch is in the samples, nor near them.
+TEST(TouchFit, FindsTheStiffnessOfWhatWasTouchedLongBefore) {
+  for (const double stiffness_N_per_m : {20.0, 200.0, 2000.0}) {
+    const SpringTouch touch{.stiffness_N_per_m = stiffness_N_per_m,
+                            .speed_m_per_s = 20.0 / stiffness_N_per_m};
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const FitRun run = touchRun(touch, seed);
+      const double felt_s = 2.9;
+      const TouchFit fit = fitTouch(fitConfig(), 0, run.samples, felt_s);
+      ASSERT_TRUE(fit.is_known) << seed;
+      EXPECT_NEAR(fit.stiffness_N_per_m, stiffness_N_per_m, 0.005 * stiffness_N_per_m) << seed;
+    }
+  }
+}
+
 /// As the second part of a long log: what the force does then is the law's, and no touch.
 TEST(TouchFit, IsUnknownWhereTheSamplesBeginInContact) {
   test::Random random(5);
