@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "tactus/record/contact_json.h"
+#include "tactus/record/contact_list.h"
 #include "tactus/scene/stability_check.h"
 
 namespace tactus {
@@ -48,9 +49,14 @@ const CycleRecord& triggerCycle(const Capture& capture) {
   return found == capture.records.end() ? capture.records.back() : *found;
 }
 
+/// Behind the contact's end the way says nothing of it any more.
 TouchFit fitOf(const Scene& scene, const Capture& capture, int module, double felt_s) {
   std::deque<TouchSample> samples;
-  for (const CycleRecord& record : capture.records) samples.push_back(touchSample(record, module));
+  ContactList contact = contactList(scene.controller, 0, module);
+  for (const CycleRecord& record : capture.records) {
+    samples.push_back(touchSample(record, module));
+    if (record.t_s >= felt_s && contact.add(record)) break;
+  }
   return fitTouch(scene.controller, module, samples, felt_s);
 }
 

@@ -76,6 +76,18 @@ TEST(Scope, ShowsTheContactsOfARunAroundTheirTouch) {
               0.02 * contact.touch.stiffness_N_per_m);
 }
 
+/// It slides on along the post, which a fit over what comes then would take for less than half as
+/// stiff.
+TEST(Scope, KnowsHowStiffAContactWasThatEndsSoon) {
+  const ScopedRun run("whole_arm/planar3_clutter", {{"simulation.duration_s", "4"}});
+  const ContactFigures& contact = run.figures.contacts.front();
+  ASSERT_LT(contact.end_s, contact.start_s + kBehindTouch_s);
+  const Json trace = run.traces({"--pre", "0.6"})[0];
+  ASSERT_EQ(trace.at("trigger_s"), contact.start_s);
+  EXPECT_NEAR(trace.at("contact_stiffness_N_per_m").at("value"), contact.touch.stiffness_N_per_m,
+              0.01 * contact.touch.stiffness_N_per_m);
+}
+
 /// F_th is no force at which an arm rests that does not give way.
 TEST(Scope, NamesNoForceToRestAtWithoutForceControl) {
   const ScopedRun run("scenario1_none", {{"simulation.duration_s", "5"}});
