@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tactus/scene/stability_check.h"
+
 namespace tactus {
 namespace {
 
@@ -14,7 +16,9 @@ using Warnings = std::vector<std::string>;
 constexpr double kLongestLink_m = 20.0;  ///< longer ones are a URDF in mm, or in cm
 constexpr double kShortestArm_m = 0.02;  ///< a URDF in km, or one that was scaled twice
 constexpr double kWidestLimit_rad = 8.0 * std::numbers::pi;  ///< four turns; wrists have two
-constexpr double kMostOffLink = 0.75;  ///< of a cover; one leg of a bent link stays below 0.71
+constexpr double kMostOff = 0.1;        ///< of a cover's mass and of its filter
+constexpr double kLightCover_kg = 0.1;  ///< with which no law swings
+constexpr double kMostOffLink = 0.75;   ///< of a cover; one leg of a bent link stays below 0.71
 
 ChainPose poseAtStart(const Scene& scene) {
   ChainPose pose;
@@ -72,6 +76,47 @@ void checkCovers(const Scene& scene, Warnings& warnings) {
   }
 }
 
+double massOf(const std::optional<CoverConfig>& cover) { return cover ? cover->mass_kg : 0.0; }
+
+/// What is left of the inertia of a simulated cover moves the arm, and that the cover.
+void checkCoverLoads(const Scene& scene, Warnings& warnings) {
+  if (!scene.controller.force_control) return;
+  const PlantConfig plant = plantOf(scene);
+  for (std::size_t i = 0; i < scene.controller.tactile_modules.size(); ++i) {
+    const TactileModuleConfig& read = scene.controller.tactile_modules[i];
+    const SimulatedModuleConfig& module = plant.modules[i];
+    const double taken_kg = massOf(read.cover), simulated_kg = massOf(module.cover);
+    const double most_off_kg = std::max(kLightCover_kg, kMostOff * taken_kg);
+    const double most_off_hz = taken_kg > 0.0 ? kMostOff * read.filter_cutoff_hz : kNoLimit;
+    if (std::abs(taken_kg - simulated_kg) <= most_off_kg &&
+        std::abs(module.filter_cutoff_hz - read.filter_cutoff_hz) <= most_off_hz)
+      continue;
+    warnings.push_back(fmt::format(
+        "the cover of {} is simulated with {:g} kg and a filter of {:g} Hz, but taken out of the "
+        "readings with {:g} kg and {:g} Hz, as robot.yaml has them: what is left of its inertia "
+        "may swing",
+        scene.module_links[i], simulated_kg, module.filter_cutoff_hz, taken_kg,
+        read.filter_cutoff_hz));
+  }
+}
+
+/// Motors move where links no longer do.
+void checkCoversBehindGears(const Scene& scene, Warnings& warnings) {
+  const ControllerConfig& config = scene.controller;
+  const bool is_flexible =
+      scene.plant.dynamics && scene.plant.dynamics->gear_stiffness.minCoeff() < kNoLimit;
+  if (!config.force_control || !is_flexible || scene.plant.drives.reports_links) return;
+  if (config.geared_links) return;
+  Warnings links;
+  for (std::size_t i = 0; i < config.tactile_modules.size(); ++i)
+    if (massOf(config.tactile_modules[i].cover) > 0.0) links.push_back(scene.module_links[i]);
+  if (links.empty()) return;
+  warnings.push_back(fmt::format(
+      "flexible gears are simulated, but covers taken out of the readings as if the drives "
+      "measured the links, which may swing: cover.behind_gears is not true of {}",
+      fmt::join(links, ", ")));
+}
+
 /// A joint that speeds up alone: together they may need more, never all of them less.
 void checkEfforts(const Scene& scene, Warnings& warnings) {
   if (!scene.arm) return;
@@ -126,6 +171,8 @@ std::vector<std::string> checkArm(const Scene& scene) {
   checkSizes(scene, warnings);
   checkJointLimits(scene, warnings);
   checkCovers(scene, warnings);
+  checkCoverLoads(scene, warnings);
+  checkCoversBehindGears(scene, warnings);
   checkEfforts(scene, warnings);
   checkDrives(scene, warnings);
   return warnings;

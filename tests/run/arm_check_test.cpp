@@ -51,6 +51,38 @@ TEST(ArmCheck, HasNothingButEffortsAgainstTheArmsThatComeAlong) {
   EXPECT_GT(scenes, 20);
 }
 
+Warnings ofCovers(const std::vector<Override>& overrides) {
+  Warnings warnings = checkArm(test::shippedScene("whole_arm/crops9_skin_two_links", overrides));
+  std::erase_if(warnings, [](const std::string& warning) {
+    return warning.find("taken out of the readings") == std::string::npos;
+  });
+  return warnings;
+}
+
+/// Each of these presses with 14 to 40 N where 5 N are the limit.
+TEST(ArmCheck, WarnsOfCoversThatAreSimulatedOtherwiseThanTheyAreTakenOut) {
+  const std::string cutoff = "simulation.tactile_module.filter_cutoff_hz";
+  const std::string cover = "simulation.tactile_module.cover";
+  for (const std::string filter : {"6", "10", "23", "37"}) {
+    const Warnings warnings = ofCovers({{cutoff, filter}});
+    EXPECT_EQ(warnings.size(), 3u) << filter;
+    EXPECT_TRUE(has(warnings, "link4 is simulated with 0.3 kg and a filter of " + filter + " Hz"));
+  }
+  EXPECT_TRUE(has(ofCovers({{cover, "{mass_kg: 0.15}"}}), "link4 is simulated with 0.15 kg"));
+  EXPECT_TRUE(has(ofCovers({{"simulation.arm", "flexible_gears"}}), "link3, link4, link6"));
+  EXPECT_EQ(ofCovers({{cutoff, "16"}}), Warnings{});
+  EXPECT_EQ(ofCovers({{cover, "{mass_kg: 0.2}"}}), Warnings{});
+  EXPECT_EQ(ofCovers({{"simulation.arm", "rigid_gears"}}), Warnings{});
+}
+
+/// One that weighs nothing is taken out of no reading, whatever filters it.
+TEST(ArmCheck, KnowsThatAFilterAloneDoesNoHarm) {
+  const Warnings warnings = checkArm(test::shippedScene(
+      "scenario3_tactus", {{"simulation.arm", "flexible_gears"},
+                           {"simulation.tactile_module.filter_cutoff_hz", "37"}}));
+  EXPECT_FALSE(has(warnings, "taken out of the readings"));
+}
+
 /// A URDF's names are somebody else's, and go to a terminal.
 TEST(ArmCheck, NamesOfAUrdfReachNoTerminalAsCommands) {
   SceneFiles files;
