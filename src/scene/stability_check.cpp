@@ -79,15 +79,15 @@ std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, doubl
   return "more damping, or less delay in filter and drives";
 }
 
-/// Where not even a contact as stiff as the law takes it would be stable, or none has the phase
-/// margin, the gains are wrong, else the stiffness is.
+/// Where a contact as stiff as the law takes it has not the phase margin the gains are wrong, for
+/// what may be met is taken for no softer, else the stiffness is.
 [[noreturn]] void failUnstable(const Scene& scene, const StabilityReport& report,
                                const std::string& stiffest_key,
                                const std::vector<VariantLoop>& loops, const LoopReport& unstable) {
   const std::string contact = fmt::format("unstable ({}{}) in a contact of {:g} N/m", unstable.name,
                                           ofModule(scene, report.module), report.stiffest_N_per_m);
   const double ratio = largestRatio(loops, kMinPhaseMargin_rad);
-  if (unstable.margins.largest_stiffness_ratio < 1.0 || ratio == 0.0) {
+  if (ratio < 1.0) {
     fail(scene, "controller.time_constant_s",
          fmt::format("{} s is {}", scene.controller.gains.force.time_constant_s, contact),
          timeConstantExpectation(loops, report.ratio()));
@@ -104,6 +104,9 @@ std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, doubl
        fmt::format("at most {:g} N/m, or stiffness.assumed_N_per_m of at least {:g} N/m ({})",
                    kInsideLimit * ratio * report.stiffness_N_per_m, least_N_per_m, rule));
 }
+
+/// So that what is less than the least does not show as it.
+double roundedDown(double deg) { return std::floor(10.0 * deg) / 10.0; }
 
 const LoopReport& nearestOf(const StabilityReport& report) {
   return *std::ranges::min_element(report.loops, {},
@@ -129,7 +132,7 @@ std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& r
   if (nearest.phaseMargin_deg() < kMinPhaseMargin_deg) {
     warnings.push_back(fmt::format(
         "phase margin of {:.1f} degrees ({}{}): overshoots and rings, better {:g} or more",
-        nearest.phaseMargin_deg(), nearest.name, ofModule(scene, report.module),
+        roundedDown(nearest.phaseMargin_deg()), nearest.name, ofModule(scene, report.module),
         kMinPhaseMargin_deg));
   }
   const double assumed_N_per_m = scene.controller.gains.force.assumed_stiffness_N_per_m;
@@ -257,8 +260,9 @@ void requirePhaseMargin(const Scene& scene, double least_deg) {
       variantLoops(scene.controller, judgedPlant(scene), scene.period_s, report->module);
   fail(scene, "controller.time_constant_s",
        fmt::format("{:.4g} s leaves a phase margin of {:.1f} degrees ({}{})",
-                   scene.controller.gains.force.time_constant_s, nearest.phaseMargin_deg(),
-                   nearest.name, ofModule(scene, report->module)),
+                   scene.controller.gains.force.time_constant_s,
+                   roundedDown(nearest.phaseMargin_deg()), nearest.name,
+                   ofModule(scene, report->module)),
        timeConstantExpectation(loops, report->ratio()));
 }
 

@@ -175,6 +175,18 @@ TEST(StabilityCheck, NamesATimeConstantWhereNoStiffnessHasTheMargin) {
   EXPECT_EQ(check(scene(numberAfter(error, "at least "))).warnings, std::vector<std::string>{});
 }
 
+/// What may be met is no softer than what the law takes it for: more stiffness would not help.
+TEST(StabilityCheck, NamesATimeConstantWhereTheStiffnessThatIsTakenHasNotTheMargin) {
+  const auto scene = [](const std::string& T_s) {
+    return quick(assumed()).load(
+        {{"controller.time_constant_s", T_s}, {"stiffness.assumed_N_per_m", "500"}});
+  };
+  const std::string error = stabilityError(scene("0.08"));
+  EXPECT_NE(error.find(": controller.time_constant_s: 0.08 s is unstable "), std::string::npos)
+      << error;
+  EXPECT_EQ(check(scene(numberAfter(error, "at least "))).warnings, std::vector<std::string>{});
+}
+
 TEST(StabilityCheck, NamesTheEdgeWhereDampingAllowsNoMargin) {
   const auto scene = [](const std::string& T_s) {
     return assumed().load({{"controller.damping", "0.1"}, {"controller.time_constant_s", T_s}});
@@ -220,6 +232,22 @@ TEST(StabilityCheck, WarnsBelowThirtyDegrees) {
   ASSERT_EQ(slow_drives.warnings.size(), 1u);
   EXPECT_NE(slow_drives.warnings[0].find("phase margin of 2"), std::string::npos);
   EXPECT_EQ(check(quick(assumed()).load()).warnings.size(), 0u);
+}
+
+/// Not "30.0 degrees: better 30 or more".
+TEST(StabilityCheck, TellsNoMarginThatWouldDoWhereItDoesNot) {
+  double low_s = 0.07, high_s = 0.2;
+  const auto margin = [](double T_s) {
+    return quick(assumed()).load({{"controller.time_constant_s", std::to_string(T_s)}});
+  };
+  while (high_s - low_s > 2e-6) {
+    const double middle_s = 0.5 * (low_s + high_s);
+    (phaseMargin_deg(margin(middle_s)) < kMinPhaseMargin_deg ? low_s : high_s) = middle_s;
+  }
+  const StabilityReport report = check(margin(low_s));
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_NE(report.warnings[0].find("phase margin of 29.9 degrees"), std::string::npos)
+      << report.warnings[0];
 }
 
 TEST(StabilityCheck, FindsNothingInTheScenesThatComeAlong) {
