@@ -54,12 +54,14 @@ std::vector<TouchReport> touchesOf(const Scene& scene, const PathContacts& conta
     if (!touch || touch->t_s == 0.0 || touch->speed_m_per_s <= 0.0) continue;
     const TouchedSpring touched = touchedSpring(scene, touch->module, scene.plant.obstacles[i],
                                                 scene.plant.robot_stiffness_N_per_m);
-    // One that appears in the arm pushes at once.
-    const double standing_N = std::max(touchPeak_N(touched, touch->speed_m_per_s),
-                                       touched.spring.force_N(touch->depth_m));
-    const double peak_N = pushOf_N(scene.plant.obstacles[i], standing_N);
-    reports.push_back({static_cast<int>(i), *touch, peak_N,
-                       softerTouch(scene, touched, touch->speed_m_per_s, peak_N)});
+    // One that appears in the arm pushes at once, however slow that is.
+    const double approach_N = touchPeak_N(touched, touch->speed_m_per_s);
+    const double at_once_N = touched.spring.force_N(touch->depth_m);
+    const double peak_N = pushOf_N(scene.plant.obstacles[i], std::max(approach_N, at_once_N));
+    TouchReport report{static_cast<int>(i), *touch, peak_N, {}};
+    if (approach_N >= at_once_N)
+      report.softer = softerTouch(scene, touched, touch->speed_m_per_s, peak_N);
+    reports.push_back(report);
   }
   return reports;
 }
@@ -211,7 +213,7 @@ bool isOnPath(const Scene& scene, const PathContacts& contacts, const ObstacleCo
 
 /// Friction tilts the force that is felt, so that the way back slides along the cover, which tilts
 /// it anew; see docs/approach_speed_limit.md. A module that feels M_x knows the normal.
-void checkFriction(const Scene& scene, std::vector<std::string>& warnings) {
+void warnOfFriction(const Scene& scene, std::vector<std::string>& warnings) {
   const std::optional<ForceControlConfig>& law = scene.controller.force_control;
   const auto feelsNormal = [](const TactileModuleConfig& module) { return module.feels_moment_x; };
   if (!law || std::ranges::all_of(scene.controller.tactile_modules, feelsNormal)) return;
@@ -228,8 +230,23 @@ void checkFriction(const Scene& scene, std::vector<std::string>& warnings) {
   }
 }
 
+/// Of the first touches, as of an obstacle that comes in over an end of the cover.
+void warnOfHardTouches(const Scene& scene, const std::vector<TouchReport>& touches,
+                       std::vector<std::string>& warnings) {
+  for (const TouchReport& report : touches) {
+    const int module = report.touch.module;
+    const double max_force_N = scene.controller.tactile_modules[module].max_force_N;
+    if (report.peak_N <= max_force_N) continue;
+    warnings.push_back(
+        fmt::format("the touch of obstacle {}{} may come to {:.3g} N, the sensor's max_force_N is "
+                    "{:g}: that ends in a fault",
+                    report.obstacle, ofModule(scene, module), report.peak_N, max_force_N));
+  }
+}
+
 std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& contacts,
-                                    const std::optional<PeakReport>& peak) {
+                                    const ExpectedContact& report) {
+  const std::optional<PeakReport>& peak = report.peak;
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < contacts.touches.size(); ++i) {
     const std::optional<PathTouch>& touch = contacts.touches[i];
@@ -244,9 +261,10 @@ std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& cont
                       1e3 * touch->depth_m, scene.module_links[touch->module]));
     }
   }
-  checkFriction(scene, warnings);
+  warnOfFriction(scene, warnings);
   for (const CapsuleTouch& touch : contacts.unsensed)
     if (!isFeltBefore(scene, contacts, touch)) warnings.push_back(unsensedWarning(scene, touch));
+  warnOfHardTouches(scene, report.touches, warnings);
   if (peak && peak->peak_N() > peak->max_force_N) {
     warnings.push_back(
         fmt::format("the stiffest contact{} may come to {:.3g} N, the sensor's max_force_N is "
@@ -274,7 +292,7 @@ ExpectedContact checkContacts(const Scene& scene, double stiffest_N_per_m) {
     if (scene.controller.force_control->variant == Variant::kNullLimit)
       report.moving = bearableMotion(scene.controller.gains.force, stiffest_N_per_m);
   }
-  report.warnings = warningsOf(scene, contacts, report.peak);
+  report.warnings = warningsOf(scene, contacts, report);
   return report;
 }
 

@@ -224,6 +224,21 @@ TEST(TouchCheck, WarnsOfAPeakThatTheSensorCannotShow) {
       "the sensor's max_force_N is 3"));
 }
 
+/// It comes in over the end of the cover, 19 mm deep: no speed makes that softer.
+TEST(TouchCheck, WarnsOfATouchThatTheSensorCannotShow) {
+  const ExpectedContact expected =
+      expectedOf("scenario2_tactus", {{"simulation.obstacles[0].x_m", "0.745"},
+                                      {"simulation.obstacles[0].stiffness_N_per_m", "1e5"}});
+  ASSERT_EQ(expected.touches.size(), 2u);
+  EXPECT_GT(expected.touches[0].peak_N, 100.0);
+  EXPECT_FALSE(expected.touches[0].softer);
+  EXPECT_TRUE(expected.touches[1].peak_N < 5.0 || expected.touches[1].softer);
+  ASSERT_EQ(expected.warnings.size(), 1u);
+  EXPECT_NE(expected.warnings[0].find("the touch of obstacle 0 may come to 1"), std::string::npos)
+      << expected.warnings[0];
+  EXPECT_TRUE(hasWarning(expected.warnings, "the sensor's max_force_N is 100"));
+}
+
 /// The mass that a contact is said to meet, of an arm that is told where to go.
 double massOfTold(const test::SceneFiles& files, const std::string& rotors) {
   const Scene scene = files.load({{"task.trajectory", "~"},
