@@ -193,14 +193,16 @@ static int __attribute__((noinline)) fails(struct call* call, int error) {
   return is_failing;
 }
 
-#define CALL(name) \
-  static struct call name##_call __attribute__((section("calls"), used)) = {#name, 0}
-#define NEXT(name)                                                \
-  ({                                                              \
-    static __typeof__(&name) next;                                \
-    if (!next) next = (__typeof__(&name))dlsym(RTLD_NEXT, #name); \
-    next;                                                         \
-  })
+/* The function behind is looked for before main(): the dynamic linker's lock is a system call where
+   two threads want it, and the loop may make none. */
+#define CALL(name)                                                                     \
+  static struct call name##_call __attribute__((section("calls"), used)) = {#name, 0}; \
+  static __typeof__(&name) name##_next __attribute__((used));                          \
+  static void __attribute__((constructor)) find_##name(void) {                         \
+    name##_next = (__typeof__(&name))dlsym(RTLD_NEXT, #name);                          \
+  }                                                                                    \
+  struct call
+#define NEXT(name) (name##_next ? name##_next : (__typeof__(&name))dlsym(RTLD_NEXT, #name))
 /* A function that comes to failed, and errno to error, where it fails. */
 #define FAILING(error, failed, result, name, parameters, arguments) \
   CALL(name);                                                       \
