@@ -22,6 +22,7 @@
 #include "tactus/record/log_parts.h"
 #include "tactus/record/logged_scene.h"
 #include "tactus/record/output_file.h"
+#include "tactus/record/touch_fit.h"
 #include "tactus/record/ulog_reader.h"
 #include "tactus/scene/located_error.h"
 
@@ -56,6 +57,7 @@ ScopeTrigger scopeTrigger(const ScopeOptions& options, const Scene& scene,
   trigger.window.hysteresis =
       options.hysteresis.value_or(is_default ? gains.contact_threshold_N - least_N : 0.0);
   trigger.window.holdoff_s = options.holdoff_s.value_or(0.0);
+  trigger.window.lead_s = kBeforeTouch_s;  // c_e is of all that led to F_th, however much is shown
   return trigger;
 }
 

@@ -23,7 +23,8 @@ int loudestModule(const Capture& capture, int modules) {
   int loudest = 0;
   double most_N = -kNoLimit;
   for (const CycleRecord& record : capture.records) {
-    if (capture.is_triggered && record.t_s < capture.trigger_s) continue;
+    const double from_s = capture.is_triggered ? capture.trigger_s : capture.from_s;
+    if (record.t_s < from_s) continue;
     for (int i = 0; i < modules; ++i) {
       if (!(record.force_sensor_N[i] > most_N)) continue;
       most_N = record.force_sensor_N[i];
@@ -33,13 +34,15 @@ int loudestModule(const Capture& capture, int modules) {
   return loudest;
 }
 
-/// The first cycle in which F_sen passes F_th on its way up; null: it does not.
+/// The first cycle that is shown in which F_sen passes F_th on its way up; null: it does not.
 const CycleRecord* feltCycle(const Capture& capture, int module) {
   const auto is_felt = [module](const CycleRecord& record) {
     return record.force_sensor_N[module] > record.gains.force.contact_threshold_N;
   };
   for (std::size_t i = 1; i < capture.records.size(); ++i)
-    if (is_felt(capture.records[i]) && !is_felt(capture.records[i - 1])) return &capture.records[i];
+    if (capture.records[i].t_s >= capture.from_s && is_felt(capture.records[i]) &&
+        !is_felt(capture.records[i - 1]))
+      return &capture.records[i];
   return nullptr;
 }
 
@@ -131,6 +134,7 @@ ScopeTrace scopeTrace(const Scene& scene, const TriggerCondition& condition,
   trace.law_stiffness_N_per_m = (felt ? *felt : trigger).stiffness_N_per_m;
   trace.rest_N = restForce_N(scene, trace.gains);
   for (const CycleRecord& record : capture.records) {
+    if (record.t_s < capture.from_s) continue;
     const double t_s = record.t_s - capture.trigger_s;
     trace.force.t_s.push_back(t_s);
     trace.force.value.push_back(record.force_sensor_N[module]);

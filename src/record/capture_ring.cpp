@@ -31,7 +31,7 @@ std::optional<Capture> CaptureRing::add(const CycleRecord& record) {
     complete = around(*trigger_s_, true);
     trigger_s_.reset();
   }
-  const double kept_s = window_.pre_s + window_.post_s + kRounding_s;
+  const double kept_s = window_.lead_s + window_.pre_s + window_.post_s + kRounding_s;
   while (recent_.front().t_s < record.t_s - kept_s) recent_.pop_front();
   return complete;
 }
@@ -46,10 +46,11 @@ Capture CaptureRing::newest() const {
 }
 
 Capture CaptureRing::around(double trigger_s, bool is_triggered) const {
-  const double from_s = is_triggered ? trigger_s - window_.pre_s - kRounding_s : -kNoLimit;
+  const double before_s = window_.pre_s + (is_triggered ? 0.0 : window_.post_s);
+  const double from_s = trigger_s - before_s - kRounding_s;
   const auto first = std::ranges::find_if(
-      recent_, [from_s](const CycleRecord& record) { return record.t_s >= from_s; });
-  return {trigger_s, is_triggered, {first, recent_.end()}};
+      recent_, [&](const CycleRecord& record) { return record.t_s >= from_s - window_.lead_s; });
+  return {trigger_s, is_triggered, {first, recent_.end()}, from_s};
 }
 
 }  // namespace tactus

@@ -88,6 +88,17 @@ TEST(Scope, KnowsHowStiffAContactWasThatEndsSoon) {
               0.01 * contact.touch.stiffness_N_per_m);
 }
 
+/// However much of the approach is shown.
+TEST(Scope, FitsAllOfTheApproach) {
+  const ScopedRun run("real/real_scenario1", {{"simulation.duration_s", "8"}});
+  const double c_N_per_m = run.figures.contacts.front().touch.stiffness_N_per_m;
+  for (const char* pre_s : {"0.05", "0.3", "1"}) {
+    const Json trace = run.traces({"--pre", pre_s})[0];
+    EXPECT_NEAR(trace.at("contact_stiffness_N_per_m").at("value"), c_N_per_m, 1e-6 * c_N_per_m);
+    EXPECT_NEAR(trace.at("force").at("t_s")[0].get<double>(), -std::stod(pre_s), 1e-6);
+  }
+}
+
 /// F_th is no force at which an arm rests that does not give way.
 TEST(Scope, NamesNoForceToRestAtWithoutForceControl) {
   const ScopedRun run("scenario1_none", {{"simulation.duration_s", "5"}});

@@ -51,6 +51,15 @@ TEST(CaptureRing, HoldsExactlyWhatIsAroundTheTrigger) {
   }
 }
 
+TEST(CaptureRing, KeepsWhatLedToItApart) {
+  const CapturedRun run = captured({.pre_s = 0.3, .post_s = 0.5, .lead_s = 0.6}, {1.0, 2.5}, 4000);
+  ASSERT_EQ(run.captures.size(), 2u);
+  const Capture& capture = run.captures[1];
+  EXPECT_EQ(capture.records.front().u_n, 1600.0);
+  EXPECT_EQ(capture.records.back().u_n, 3000.0);
+  EXPECT_NEAR(capture.from_s, 2.2, 1e-6);
+}
+
 TEST(CaptureRing, HasLessBeforeATriggerAtTheStart) {
   const CapturedRun run = captured({.pre_s = 0.3, .post_s = 0.2}, {0.05}, 1000);
   ASSERT_EQ(run.captures.size(), 1u);

@@ -12,17 +12,19 @@ namespace tactus {
 struct Capture {
   double trigger_s = 0.0;            ///< time of the log; of one without a trigger its last cycle's
   bool is_triggered = true;          ///< false: the newest cycles, without a trigger
-  std::vector<CycleRecord> records;  ///< from pre_s before the trigger to post_s behind it
+  std::vector<CycleRecord> records;  ///< from lead_s + pre_s before the trigger to post_s behind it
+  double from_s = -kNoLimit;         ///< where pre_s begins
 };
 
 struct CaptureWindow {
   double pre_s = 0.3, post_s = 2.0;  ///< >= 0
   double hysteresis = 0.0, holdoff_s = 0.0;
+  double lead_s = 0.0;  ///< of what is not wanted itself, but says what led to it
 };
 
 /// Keeps the newest cycles, and hands them out around each trigger once what comes behind it is
-/// there, too. Until then there is no further trigger. Memory is that of pre_s + post_s. Time that
-/// goes back, as of another run, begins anew.
+/// there, too. Until then there is no further trigger. Memory is that of lead_s + pre_s + post_s.
+/// Time that goes back, as of another run, begins anew.
 class CaptureRing {
  public:
   CaptureRing(TriggerCondition condition, const CaptureWindow& window);
