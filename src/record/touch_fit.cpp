@@ -17,6 +17,7 @@ constexpr std::size_t kLeastSamples = 10;
 constexpr double kLeastForce_N = 0.5;
 constexpr double kMostDeviation = 0.5;  ///< of c_e
 constexpr double kEnd_m = 0.002;        ///< of a cover: there F^ need not be the normal
+constexpr double kPlacing = 0.25;       ///< of the force that was felt first: less has no place
 constexpr double kLargestGap = 2.5;     ///< periods
 constexpr int kPlaces = 40;             ///< of touch that are tried first
 constexpr int kHalvings = 20;           ///< around the best of them
@@ -47,24 +48,25 @@ Touch wayOf(const ControllerConfig& config, int module, const std::deque<TouchSa
       samples, [felt_s](const TouchSample& sample) { return sample.t_s >= felt_s; });
   if (felt == samples.end() || isAtEnd(config, module, *felt)) return touch;
   if (felt_s - samples.front().t_s < kLeastBefore_s) return touch;
+  const double least_N = std::max(kMinForceForDirection_N, kPlacing * felt->force_N);
+  const TouchSample* placed = &*felt;
   double way_m = 0.0;
   std::optional<Pose> before;
   std::uint64_t sequence = 0;
   ChainPose pose;
   for (const TouchSample& sample : samples) {
     if (sample.t_s < felt_s - kBeforeTouch_s || sample.t_s > felt_s + kBehindTouch_s) continue;
-    const bool is_felt = sample.t_s >= felt_s && sample.force_N > kMinForceForDirection_N;
-    const TouchSample& placed = is_felt ? sample : *felt;
+    const bool points_away = sample.way.dot(placed->direction) < 0.0;
+    if (sample.t_s >= felt_s && !points_away && sample.force_N > least_N) placed = &sample;
     config.chain.computePose(JointVector::Map(sample.q, config.chain.size()), pose);
     const Pose X_BaseModule = framePose(pose, link);
-    const Vector3 F_Base = X_BaseModule.R_AB * placed.direction;
+    const Vector3 F_Base = X_BaseModule.R_AB * placed->direction;
     if (before) {
-      way_m -= F_Base.dot(pointOf(X_BaseModule, placed.position_m) -
-                          pointOf(*before, placed.position_m));
+      way_m -= F_Base.dot(pointOf(X_BaseModule, placed->position_m) -
+                          pointOf(*before, placed->position_m));
     }
     touch.t_s.push_back(sample.t_s);
     touch.way_m.push_back(way_m);
-    const bool points_away = !is_felt && sample.way.dot(felt->direction) < 0.0;
     touch.force_N.push_back(points_away ? -sample.force_N : sample.force_N);
     touch.counts.push_back(before && sample.sequence != sequence);
     sequence = sample.sequence;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <numbers>
 #include <random>
 
 #include "support/rail_robot.h"
@@ -168,6 +169,37 @@ TEST(TouchFit, FindsTheStiffnessOfWhatWasTouchedLongBefore) {
       ASSERT_TRUE(fit.is_known) << seed;
       EXPECT_NEAR(fit.stiffness_N_per_m, stiffness_N_per_m, 0.005 * stiffness_N_per_m) << seed;
     }
+  }
+}
+
+/// F_sen is a size, and the filter swings back behind each push: taken for one from the other side,
+/// a way out of the obstacle would be one into it.
+TEST(TouchFit, FindsTheStiffnessOfAContactThatBounces) {
+  test::Random random(6);
+  for (int i = 0; i < 50; ++i) {
+    const double stiffness_N_per_m = random.logUniform(100.0, 1e4);
+    const double turn_per_s = 2.0 * std::numbers::pi * random.uniform(4.0, 8.0);
+    const double deepest_m = random.uniform(5.0, 15.0) / stiffness_N_per_m;
+    ButterworthLowPass filter(15.0, 1.0 / kFitCycle_s);
+    FitRun run;
+    TouchSample sample{.position_m = 0.5};
+    for (int k = 0; k < 2500; ++k) {
+      sample.t_s = kFitCycle_s * k;
+      const double angle = turn_per_s * (sample.t_s - 1.0);
+      sample.q[0] = deepest_m * (angle < 0.0 ? angle : std::sin(angle));
+      const double filtered_N = filter.update(stiffness_N_per_m * std::max(0.0, sample.q[0]));
+      if (k % kSampleCycles == 0) {
+        sample.force_N = std::abs(filtered_N);
+        sample.way = Vector3(0.0, -filtered_N, 0.0);
+        if (sample.force_N > 0.05) sample.direction = sample.way.normalized();
+        ++sample.sequence;
+      }
+      run.samples.push_back(sample);
+      if (sample.force_N > kFelt_N && run.felt_s == 0.0) run.felt_s = sample.t_s;
+    }
+    const TouchFit fit = fitTouch(fitConfig(), 0, run.samples, run.felt_s);
+    ASSERT_TRUE(fit.is_known) << i;
+    EXPECT_NEAR(fit.stiffness_N_per_m, stiffness_N_per_m, 0.005 * stiffness_N_per_m) << i;
   }
 }
 

@@ -37,17 +37,18 @@ inline constexpr double kBehindTouch_s = 0.6;
 /// the new samples from 0.6 s before felt_s to 0.6 s behind it. x is the way of the contact point
 /// against F^, by the measured joints, at each cycle where the force then says it acts:
 ///   dx = -F^^T (p(q_k) - p(q_k-1)),   p: the point of the module's axis there
-/// before felt_s where it acted then; so x hardly notices that a contact slides along the link. LP
-/// is the nominal filter of the module. F_sen is a size: before felt_s it counts with the sign of
-/// its part along that F^, for else the noise of a free module would be a force. c_e has all in it
-/// that gives way between the measured joints and the world: obstacle and cover, and gears where
-/// the drives measure motors. The interval is 1.96 standard deviations of the linearised fit; as
-/// neighbouring residuals are alike, they count as 2 f_c independent ones a second. It knows
-/// nothing of errors in the way itself. Unknown of fewer than 10 samples or 0.5 N, of cycles that
-/// are missing, of samples that begin less than 50 ms before felt_s, as a log that begins in
-/// contact, of a contact within 2 mm of the cover's ends, where F^ need not be the normal, and
-/// where the deviation is above half of c_e. felt_s: F_sen is above F_th from there on. Costs some
-/// milliseconds.
+/// before felt_s where it acted then, and where it is less than a quarter of that, or points away,
+/// where it acted last; so x hardly notices that a contact slides along the link. LP is the nominal
+/// filter of the module. F_sen is a size: it counts with the sign of its part along that F^, for
+/// else the noise of a free module would be a force, and so would be what the filter swings back
+/// when a contact bounces. c_e has all in it that gives way between the measured joints
+/// and the world: obstacle and cover, and gears where the drives measure motors. The interval
+/// is 1.96 standard deviations of the linearised fit; as neighbouring residuals are alike, they
+/// count as 2 f_c independent ones a second. It knows nothing of errors in the way itself. Unknown
+/// of fewer than 10 samples or 0.5 N, of cycles that are missing, of samples that begin less than
+/// 50 ms before felt_s, as a log that begins in contact, of a contact within 2 mm of the cover's
+/// ends, where F^ need not be the normal, and where the deviation is above half of c_e. felt_s:
+/// F_sen is above F_th from there on. Costs some milliseconds.
 // clang-format on
 TouchFit fitTouch(const ControllerConfig& config, int module,
                   const std::deque<TouchSample>& samples, double felt_s);
