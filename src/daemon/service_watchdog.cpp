@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include "tactus/daemon/service_notify.h"
+#include "tactus/io/service_manager.h"
 
 namespace tactus {
 namespace {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/notify_socket.h"
+#include "tactus/io/service_manager.h"
 
 namespace tactus {
 namespace {
