@@ -87,22 +87,6 @@ TEST(CycleReports, DrivesThatAPauseHasStoppedAreNotToBlame) {
   }
 }
 
-/// A loop that pauses again and again must not put off what drives say.
-TEST(CycleReports, OnlyTheFirstPauseLeavesDrivesOut) {
-  VirtualRobotCell cell = movingCell(emptyScene("scenario1_null_space"));
-  const auto pause = [&] {
-    cell.input.missed_cycles = 50;
-    cell.input.late_in_a_row += 51;
-    cell.t_ns += 50'000'000;
-    cell.step();
-  };
-  pause();
-  EXPECT_EQ(cell.cycle.report().mode, Mode::kStopping);
-  pause();
-  EXPECT_EQ(cell.cycle.report().mode, Mode::kFault);
-  EXPECT_EQ(cell.cycle.report().fault, Fault::kOverrun);
-}
-
 /// For those who tell a tool where to go: the motion that they order starts there.
 TEST(CycleReports, ShowWhereTheToolIs) {
   const Scene scene = emptyScene("commands");
