@@ -30,15 +30,9 @@ Fault ControlCycle::judge(const CycleInput& input) noexcept {
   const auto found = [this](Fault fault) { return (judged_.fault = fault) != Fault::kNone; };
   if (input.lines.emergency_stop) return judged_.fault = Fault::kEmergencyStop;
   if (input.are_lines_lost) return judged_.fault = Fault::kGpioLost;
-  if (found(judgeBuses(input))) return judged_.fault;
-  const bool is_late = mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_;
-  // Drives that heard nothing in a pause have stopped for that: the pause is what is named, and the
-  // next cycle stops the others at once.
-  const bool has_paused =
-      is_late && input.missed_cycles > max_late_cycles_ && mode_.fault == Fault::kNone;
-  if (!has_paused && found(judgeDrives())) return judged_.fault;
+  if (found(judgeBuses(input)) || found(judgeDrives())) return judged_.fault;
   if (input.has_forbidden_call) return judged_.fault = Fault::kForbiddenSystemCall;
-  if (is_late) {
+  if (mode_.mode != Mode::kBoot && input.late_in_a_row > max_late_cycles_) {
     judged_.detail = {static_cast<double>(input.late_in_a_row),
                       static_cast<double>(max_late_cycles_), "cycles"};
     return judged_.fault = Fault::kOverrun;

@@ -61,32 +61,6 @@ TEST(CycleReports, LateCyclesCountOneByOne) {
   EXPECT_EQ(cell.cycle.report().fault, Fault::kOverrun);
 }
 
-/// Of a virtual machine that stood still: drives have missed SYNC, and say so, but stop at once.
-TEST(CycleReports, DrivesThatAPauseHasStoppedAreNotToBlame) {
-  for (const Mode mode : {Mode::kReady, Mode::kRunning}) {
-    Scene scene = emptyScene("scenario1_null_space");
-    scene.hardware->gpio.emplace().enable.emplace();
-    VirtualRobotCell cell(scene);
-    cell.input.lines.enable = mode == Mode::kRunning;
-    ASSERT_TRUE(cell.runUntil(mode, 5000));
-    for (int i = 0; i < 500; ++i) cell.step();
-    cell.input.missed_cycles = 200;
-    cell.input.late_in_a_row = 201;
-    cell.t_ns += 200'000'000;
-    cell.step();
-    const auto expectOverrun = [&] {
-      EXPECT_EQ(cell.cycle.report().fault, Fault::kOverrun);
-      EXPECT_EQ(cell.cycle.report().detail.value, 201.0);
-      EXPECT_EQ(cell.cycle.report().joint, -1);
-    };
-    expectOverrun();
-    cell.input.missed_cycles = cell.input.late_in_a_row = 0;
-    for (int i = 0; i < 2; ++i) cell.step();
-    expectOverrun();
-    EXPECT_EQ(cell.cycle.report().mode, Mode::kFault);
-  }
-}
-
 /// For those who tell a tool where to go: the motion that they order starts there.
 TEST(CycleReports, ShowWhereTheToolIs) {
   const Scene scene = emptyScene("commands");
