@@ -151,9 +151,8 @@ std::string draftSummary(const RobotDraft& draft, const std::vector<SourceFile>&
       fmt::format("home      tool at ({:.4f}, {:.4f}, {:.4f}) m, smallest singular value {:.3g}\n",
                   tool.x(), tool.y(), tool.z(), draft.home.smallest_singular_value);
   text +=
-      "assumed   accelerations: full speed within 0.2 s; radii of capsules of links without "
-      "collision "
-      "geometry\n";
+      "assumed   accelerations: full speed within 0.2 s; radii of capsules without a shape in the "
+      "URDF\n";
   for (const AssumedLimit& limit : draft.completed.assumed)
     text += fmt::format("assumed   {} of joint {}: the URDF has none; measure\n", limit.what,
                         escaped(limit.joint));

@@ -52,8 +52,10 @@ std::string stateText(const Json& answer) {
 }
 
 std::string answerText(const Json& answer) {
-  if (answer.at("changes").empty()) return "nothing differs\n";
-  std::string text = changeText(answer) + stateText(answer);
+  const bool differs = !answer.at("changes").empty();
+  const bool has_trouble = !answer.at("trouble").get<std::string>().empty();
+  std::string text = differs ? changeText(answer) : "nothing differs\n";
+  if (differs || has_trouble) text += stateText(answer);
   if (answer.at("is_for_a_time"))
     text += "for a time: then back to what was kept before, with what is still on trial\n";
   return text;

@@ -22,10 +22,10 @@ void replaceRotation(const TaskConfig& task, const Vector3& rotation_vector,
 }
 
 /// Hazard: a ramp to rest that went on only in the cycles that are there would last longer by as
-/// much as the loop is too slow. All joints together, as the way that clearance knows of.
+/// much as the loop is too slow.
 void rampOn(const JointLimits& limits, double duration_s, JointVector& velocity) noexcept {
-  const double ramp_s = velocity.cwiseAbs().cwiseQuotient(limits.max_acceleration).maxCoeff();
-  velocity *= ramp_s > duration_s ? 1.0 - duration_s / ramp_s : 0.0;
+  const JointVector most = duration_s * limits.max_acceleration;
+  velocity -= velocity.cwiseMax(-most).cwiseMin(most);
 }
 
 }  // namespace

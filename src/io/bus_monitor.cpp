@@ -37,13 +37,12 @@ bool lacksAcknowledge(const CanFrame& error) noexcept {
 void BusMonitor::onErrorFrame(const CanFrame& frame) noexcept {
   ++counters_.error_frames;
   if ((frame.id & CAN_ERR_CRTL) != 0) {
-    if ((frame.data[1] & kPassive) != 0) {
+    if ((frame.data[1] & kPassive) != 0)
       is_passive_ = true;
-      frames_to_active_ = kFramesToActive;
-    } else if ((frame.data[1] & kNotPassive) != 0) {
+    else if ((frame.data[1] & kNotPassive) != 0)
       is_passive_ = false;
-    }
   }
+  if (is_passive_) frames_to_active_ = kFramesToActive;  // any error raises its counter anew
   if (lacksAcknowledge(frame)) lacks_acknowledge_ = true;
   if (is_passive_ && lacks_acknowledge_) raise(Fault::kBusUnacknowledged);
   if ((frame.id & (CAN_ERR_BUSOFF | CAN_ERR_RESTARTED)) != 0) {

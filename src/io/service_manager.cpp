@@ -19,7 +19,7 @@ bool tellManager(std::string_view state) noexcept {
   path.copy(address.sun_path, path.size());
   if (path.front() == '@') address.sun_path[0] = '\0';  // the abstract name space
   const int descriptor = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) return true;  // a manager that cannot be told must not end the run
+  if (descriptor < 0) return false;  // another time
   iovec part{const_cast<char*>(state.data()), state.size()};
   msghdr message{};
   message.msg_name = &address;
@@ -27,7 +27,7 @@ bool tellManager(std::string_view state) noexcept {
   message.msg_iov = &part;
   message.msg_iovlen = 1;
   const bool has_room = ::sendmsg(descriptor, &message, MSG_DONTWAIT | MSG_NOSIGNAL) >= 0 ||
-                        (errno != EAGAIN && errno != ENOBUFS);
+                        (errno != EAGAIN && errno != ENOBUFS && errno != ENOMEM);
   ::close(descriptor);
   return has_room;
 }

@@ -1,6 +1,8 @@
 #include "tactus/record/message.h"
 
+#include <fcntl.h>
 #include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,15 +18,43 @@ namespace {
 /// Messages since the last one that found room.
 std::atomic<int> lost{0};
 
-/// Where poll() tells of room, a pipe, a terminal and the journal's socket take PIPE_BUF at once.
-/// Where it tells of an error nobody is left to wait for.
+constexpr int kPatience_ms = 50;
+
+/// Standard error. A terminal with room for a byte, or a pipe whose last page another thread takes,
+/// lets a write wait however poll() answers: those are opened anew without waiting, which leaves
+/// them as they are for all others. A socket has room for a line where poll() says so, and a file
+/// always.
+class StandardError {
+ public:
+  StandardError() {
+    struct stat what {};
+    const bool may_wait =
+        ::fstat(STDERR_FILENO, &what) == 0 && (S_ISFIFO(what.st_mode) || S_ISCHR(what.st_mode));
+    if (may_wait) own_ = ::open("/proc/self/fd/2", O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  }
+  ~StandardError() {
+    if (own_ >= 0) ::close(own_);
+  }
+  StandardError(const StandardError&) = delete;
+  StandardError& operator=(const StandardError&) = delete;
+
+  int descriptor() const noexcept { return own_ >= 0 ? own_ : STDERR_FILENO; }
+
+ private:
+  int own_ = -1;
+};
+
+/// Where poll() tells of an error nobody is left to wait for.
 bool write(std::string_view text) noexcept {
+  const StandardError standard_error;
+  const int descriptor = standard_error.descriptor();
   while (!text.empty()) {
-    const std::string_view part = text.substr(0, PIPE_BUF);
-    pollfd polled{STDERR_FILENO, POLLOUT, 0};
-    if (::poll(&polled, 1, kMessagePatience_ms) != 1 || polled.revents != POLLOUT) return false;
-    if (::write(STDERR_FILENO, part.data(), part.size()) != std::ssize(part)) return false;
-    text.remove_prefix(part.size());
+    pollfd polled{descriptor, POLLOUT, 0};
+    if (::poll(&polled, 1, kPatience_ms) != 1 || polled.revents != POLLOUT) return false;
+    const ssize_t size =
+        ::write(descriptor, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
+    if (size <= 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(size));
   }
   return true;
 }

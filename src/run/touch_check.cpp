@@ -14,6 +14,8 @@
 namespace tactus {
 namespace {
 
+constexpr double kLeastFriction = 0.05;  ///< of obstacles: less adds a tenth to a force at most
+
 bool hasActivationForce(Variant variant) {
   return variant == Variant::kNullTask || variant == Variant::kNullJoint ||
          variant == Variant::kNullLimit;
@@ -220,13 +222,11 @@ void warnOfFriction(const Scene& scene, std::vector<std::string>& warnings) {
   const std::vector<ObstacleConfig>& obstacles = scene.plant.obstacles;
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const double mu = obstacles[i].friction_coefficient;
-    if (mu == 0.0 || mu < law->friction_coefficient) continue;
+    if (mu < kLeastFriction || mu < law->friction_coefficient) continue;
     warnings.push_back(fmt::format(
-        "obstacle {} has a friction of {:g}, the law bears {}: a stiff contact may swing and push "
-        "many times as hard; it takes null_limit with a controller.friction_coefficient above that",
-        i, mu,
-        law->friction_coefficient > 0.0 ? fmt::format("less than {:g}", law->friction_coefficient)
-                                        : "none"));
+        "obstacle {} has a friction of {:g}, which controller.friction_coefficient of null_limit "
+        "has to exceed, and is {:g}: a stiff contact may swing and push many times as hard",
+        i, mu, law->friction_coefficient));
   }
 }
 

@@ -66,4 +66,15 @@ std::string describeExpectation(const KeySpec& spec) {
   return "";
 }
 
+std::string keyWithin(const std::vector<KeySpec>& keys, const std::string& name) {
+  for (const KeySpec& spec : keys) {
+    if (spec.type != ValueType::kSection) continue;
+    for (const KeySpec& inner : spec.keys)
+      if (inner.key == name) return spec.key + "." + name;
+    const std::string path = keyWithin(spec.keys, name);
+    if (!path.empty()) return spec.key + "." + path;
+  }
+  return "";
+}
+
 }  // namespace tactus

@@ -242,18 +242,6 @@ void refuseDecimalComma(const YamlNode& node, const YamlEntry& entry, const std:
          "expected a decimal point: " + before.value.text + "." + entry.key);
 }
 
-/// The first key of this name within the sections; empty if there is none.
-std::string pathWithin(const std::vector<KeySpec>& keys, const std::string& name) {
-  for (const KeySpec& spec : keys) {
-    if (spec.type != ValueType::kSection) continue;
-    for (const KeySpec& inner : spec.keys)
-      if (inner.key == name) return spec.key + "." + name;
-    const std::string path = pathWithin(spec.keys, name);
-    if (!path.empty()) return spec.key + "." + path;
-  }
-  return "";
-}
-
 void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
                        const std::string& prefix) {
   std::vector<std::string> known;
@@ -262,7 +250,7 @@ void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
   for (const YamlEntry& entry : node.entries) {
     if (std::ranges::count(known, entry.key) > 0) continue;
     refuseDecimalComma(node, entry, prefix);
-    const std::string within = pathWithin(keys, entry.key);
+    const std::string within = keyWithin(keys, entry.key);
     const std::string nearest = within.empty() ? nearestWord(entry.key, known) : within;
     failAt(entry.key_at, prefix + entry.key, "unknown key",
            known.empty()     ? "expected none here"

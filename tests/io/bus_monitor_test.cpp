@@ -205,7 +205,7 @@ TEST(BusMonitor, NamesEachTroubleInItsCycle) {
     BusMonitor monitor;
     workingCycle(monitor);
     monitor.onConfirmed(4);
-    for (const CanFrame& error : kRows[row].errors) monitor.onErrorFrame(error);
+    for (const CanFrame& error : kRows[row].errors) monitor.onErrorFrame(errorFrame(CAN_ERR_PROT));
     if (kRows[row].receive_error != 0) monitor.onReceiveError(kRows[row].receive_error);
     if (kRows[row].send_error != 0) monitor.onSendError(kRows[row].send_error);
     monitor.update();
@@ -338,6 +338,21 @@ TEST(BusMonitor, ForgetsAfter128ConfirmedFramesThatTheControllerWasPassive) {
     monitor.update();
     EXPECT_EQ(monitor.fault(), Fault::kBusUnacknowledged) << "passive anew";
   }
+}
+
+/// Each raises the counter that has to fall.
+TEST(BusMonitor, RemembersThatTheControllerWasPassiveWhileErrorsGoOn) {
+  BusMonitor monitor;
+  monitor.onErrorFrame(kPassive);
+  for (int i = 0; i < 200; ++i) {
+    if (i == 100) monitor.onErrorFrame(errorFrame(CAN_ERR_PROT));
+    monitor.onSent(1, 1);
+    monitor.onConfirmed(1);
+    monitor.update();
+  }
+  monitor.onSent(4, 4);
+  monitor.update();
+  EXPECT_EQ(monitor.fault(), Fault::kBusUnacknowledged);
 }
 
 TEST(BusMonitor, AnErrorAfterTheAnswerTakesItBack) {

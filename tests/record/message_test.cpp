@@ -1,6 +1,8 @@
 #include "tactus/record/message.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <string>
@@ -36,6 +38,24 @@ TEST(Message, MayBeLongerThanAPipeTakesAtOnce) {
   const std::string text(3 * 4096, 'x');
   say("{}", text);
   EXPECT_EQ(pipe.read(), "tactusd: " + text + "\n");
+}
+
+/// poll() tells of room in a terminal where a byte fits.
+TEST(Message, WaitsForNoTerminalEither) {
+  const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_GE(master, 0);
+  ASSERT_EQ(::grantpt(master), 0);
+  ASSERT_EQ(::unlockpt(master), 0);
+  const int terminal = ::open(::ptsname(master), O_RDWR | O_NOCTTY);
+  ASSERT_GE(terminal, 0);
+  const int before = ::dup(STDERR_FILENO);
+  ::dup2(terminal, STDERR_FILENO);
+  const std::string text(700, 'x');
+  for (int i = 0; i < 40; ++i) say("{}", text);
+  const bool waits = (::fcntl(STDERR_FILENO, F_GETFL) & O_NONBLOCK) == 0;
+  ::dup2(before, STDERR_FILENO);
+  for (const int descriptor : {before, terminal, master}) ::close(descriptor);
+  EXPECT_TRUE(waits) << "it is as it was for all others";
 }
 
 TEST(Message, IsLostWithoutStandardError) {

@@ -1,9 +1,5 @@
 """`tactus sweep`."""
 
-import logging
-
-logging.getLogger("matplotlib").setLevel(logging.ERROR)  # no remarks about caches and HOME, as it is imported
-
 
 def stopped_text(signal_name):
     """What a sweep that a signal ends says, whenever it comes."""

@@ -4,15 +4,12 @@
 
 namespace tactus {
 
-/// As long as a message may wait for whoever reads them.
-inline constexpr int kMessagePatience_ms = 50;
-
 /// As say().
 void sayLine(fmt::string_view format, fmt::format_args values) noexcept;
 
 /// "tactusd: ..." as a line on standard error, from any thread but the loop's. A pipe that is full
 /// or a journal that hangs must not hold up the log, the status or the answers on the control
-/// socket: a line that finds no room within kMessagePatience_ms is lost, and the next one that does
+/// socket: a line that finds no room within 50 ms is lost, and the next one that does
 /// is behind one that says how many were.
 template <typename... Values>
 void say(fmt::format_string<Values...> format, const Values&... values) noexcept {

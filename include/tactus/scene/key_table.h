@@ -108,4 +108,8 @@ const std::vector<KeySpec>& robotKeys();
 /// "a number > 0 in s", "a list of 3 numbers in m": what an error says it expected.
 std::string describeExpectation(const KeySpec& spec);
 
+/// "controller.damping": the first key of this name within the sections of these; empty if there is
+/// none.
+std::string keyWithin(const std::vector<KeySpec>& keys, const std::string& name);
+
 }  // namespace tactus
