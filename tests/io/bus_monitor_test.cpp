@@ -205,7 +205,7 @@ TEST(BusMonitor, NamesEachTroubleInItsCycle) {
     BusMonitor monitor;
     workingCycle(monitor);
     monitor.onConfirmed(4);
-    for (const CanFrame& error : kRows[row].errors) monitor.onErrorFrame(errorFrame(CAN_ERR_PROT));
+    for (const CanFrame& error : kRows[row].errors) monitor.onErrorFrame(error);
     if (kRows[row].receive_error != 0) monitor.onReceiveError(kRows[row].receive_error);
     if (kRows[row].send_error != 0) monitor.onSendError(kRows[row].send_error);
     monitor.update();

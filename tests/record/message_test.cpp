@@ -12,7 +12,17 @@
 namespace tactus {
 namespace {
 
-TEST(Message, IsALineOnStandardError) {
+/// What tests before have lost is told.
+class Message : public testing::Test {
+ protected:
+  Message() {
+    testing::internal::CaptureStderr();
+    say("begins");
+    testing::internal::GetCapturedStderr();
+  }
+};
+
+TEST_F(Message, IsALineOnStandardError) {
   testing::internal::CaptureStderr();
   say("tactile module {} lost at {:.9g} s", "link_3", 3.25);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
@@ -20,7 +30,7 @@ TEST(Message, IsALineOnStandardError) {
 }
 
 /// A reader that is back learns how many he has missed.
-TEST(Message, IsLostWhereNobodyReads) {
+TEST_F(Message, IsLostWhereNobodyReads) {
   const test::UnreadStderr pipe;
   say("off");
   say("running");
@@ -32,7 +42,7 @@ TEST(Message, IsLostWhereNobodyReads) {
             "tactusd: resting\n");
 }
 
-TEST(Message, MayBeLongerThanAPipeTakesAtOnce) {
+TEST_F(Message, MayBeLongerThanAPipeTakesAtOnce) {
   const test::UnreadStderr pipe;
   pipe.read();
   const std::string text(3 * 4096, 'x');
@@ -41,7 +51,7 @@ TEST(Message, MayBeLongerThanAPipeTakesAtOnce) {
 }
 
 /// poll() tells of room in a terminal where a byte fits.
-TEST(Message, WaitsForNoTerminalEither) {
+TEST_F(Message, WaitsForNoTerminalEither) {
   const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_GE(master, 0);
   ASSERT_EQ(::grantpt(master), 0);
@@ -58,7 +68,7 @@ TEST(Message, WaitsForNoTerminalEither) {
   EXPECT_TRUE(waits) << "it is as it was for all others";
 }
 
-TEST(Message, IsLostWithoutStandardError) {
+TEST_F(Message, IsLostWithoutStandardError) {
   const int before = ::dup(STDERR_FILENO);
   ::close(STDERR_FILENO);
   say("off");
