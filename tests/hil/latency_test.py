@@ -35,14 +35,15 @@ class Latency(unittest.TestCase):
         print(table(cls.loop, cls.calls))
 
     def test_loop_wakes_up_like_cyclictest(self):
+        """The largest of a second depends on where a few interrupts fall: cyclictest's own differ by 1.4."""
+        references = [cyclictest(load) for load in ("loaded", "idle")]
         for loop in (self.loop, self.asked):
             latency = loop["wake_latency_ns"]
-            for load in ["loaded", "idle"]:
-                reference = cyclictest(load)
-                for what in ["median", "max"]:
-                    with self.subTest(load, what=what, is_asked=loop is self.asked):
-                        self.assertGreater(reference[what], 0)
-                        self.assertLessEqual(latency[what], LARGEST_RATIO * reference[what])
+            for what, pick in (("median", min), ("max", max)):
+                with self.subTest(what=what, is_asked=loop is self.asked):
+                    reference = pick(one[what] for one in references)
+                    self.assertGreater(reference, 0)
+                    self.assertLessEqual(latency[what], LARGEST_RATIO * reference)
 
     def test_no_cycle_is_missed(self):
         self.assertEqual(self.run_["outcome"], "completed")
