@@ -66,16 +66,21 @@ void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
 
 void CanRobot::coast(int missed_cycles) noexcept {
   cycles_to_heartbeat_ = std::max(0, cycles_to_heartbeat_ - missed_cycles);
+  q_before_pause_ = q_commanded_;
+  has_paused_ = true;
   for (AnyDrive& drive : drives_) visitKind([&](auto& it) { it.coast(missed_cycles); }, drive);
 }
 
 void CanRobot::read(RobotInput& input) noexcept {
   input.q_measured.resize(static_cast<int>(drives_.size()));
+  const JointVector& q_before = has_paused_ ? q_before_pause_ : q_commanded_;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const int joint = static_cast<int>(i);
-    visitKind([&](auto& it) { it.observe(q_commanded_[joint]); }, drives_[i]);
+    const CommandedPlace place = {q_commanded_[joint], q_before[joint]};
+    visitKind([&](auto& it) { it.observe(place); }, drives_[i]);
     input.q_measured[joint] = drive(joint).position;
   }
+  has_paused_ = false;
   for (std::size_t i = 0; i < tactile_modules_.size(); ++i) {
     tactile_modules_[i].tick();
     // One that the module says is none is not worth more than silence.

@@ -5,7 +5,6 @@
 
 #include "tactus/canopen/canopen.h"
 #include "tactus/canopen/cycle_count.h"
-#include "tactus/canopen/joint_tracking.h"
 
 namespace tactus {
 namespace {
@@ -108,7 +107,7 @@ void Drive::receiveEmergency(const CanFrame& frame) noexcept {
   if (is_new && emergency->code != 0) fail(Fault::kDriveFault, emergencyDetail());
 }
 
-void Drive::observe(double position) noexcept {
+void Drive::observe(const CommandedPlace& place) noexcept {
   if (phase_ == Phase::kStarting) awaitOperation();
   if (phase_ == Phase::kRestarting || phase_ == Phase::kUnconfigured) watchRestart();
   if (phase_ == Phase::kConfigured) {
@@ -117,7 +116,7 @@ void Drive::observe(double position) noexcept {
     watchSilence();
     watchFault();
     watchOperation();
-    if (isRunning(goal_)) judgePosition(config_, position, feedback_.has_value(), report_);
+    if (isRunning(goal_)) judgePosition(config_, place, feedback_.has_value(), report_);
   }
   feedback_.reset();
 }

@@ -13,10 +13,12 @@ double trackingVelocity(const DriveConfig& config, double velocity, double posit
   return std::clamp(tracking, -config.max_velocity, config.max_velocity);
 }
 
-void judgePosition(const DriveConfig& config, double position, bool is_new,
+void judgePosition(const DriveConfig& config, const CommandedPlace& place, bool is_new,
                    DriveReport& report) noexcept {
-  if (!std::isfinite(position)) return latch(Fault::kCommandNotFinite, {}, report);
-  const double distance = std::abs(position - report.position);
+  const bool is_finite = std::isfinite(place.now) && std::isfinite(place.before_pause);
+  if (!is_finite) return latch(Fault::kCommandNotFinite, {}, report);
+  const auto [lowest, highest] = std::minmax(place.now, place.before_pause);
+  const double distance = std::max(lowest - report.position, report.position - highest);
   const double limit = config.max_following_error;
   if (is_new && distance > limit)
     latch(Fault::kFollowingError, {distance, limit, "m or rad"}, report);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "tactus/canopen/cycle_count.h"
-#include "tactus/canopen/joint_tracking.h"
 
 namespace tactus {
 namespace {
@@ -66,11 +65,11 @@ void MoteusDrive::receive(const CanFrame& frame) noexcept {
 
 void MoteusDrive::coast(int missed_cycles) noexcept { stop_watch_.coast(missed_cycles); }
 
-void MoteusDrive::observe(double position) noexcept {
+void MoteusDrive::observe(const CommandedPlace& place) noexcept {
   countSilence();
   takeReply();
   if (phase_ == Phase::kSetup) judgeSetup();
-  if (phase_ == Phase::kConfigured) judgeOperation(position);
+  if (phase_ == Phase::kConfigured) judgeOperation(place);
   reply_.reset();
 }
 
@@ -167,7 +166,7 @@ void MoteusDrive::takePosition(const MoteusReply& reply) noexcept {
   still_watch_.update(report_.position);
 }
 
-void MoteusDrive::judgeOperation(double position) noexcept {
+void MoteusDrive::judgeOperation(const CommandedPlace& place) noexcept {
   if (report_.is_silent)
     fail(Fault::kDriveSilent, {static_cast<double>(silent_cycles_),
                                static_cast<double>(kMaxSilentCycles), "cycles without reply"});
@@ -178,7 +177,7 @@ void MoteusDrive::judgeOperation(double position) noexcept {
   if (goal_ == DriveGoal::kEnabled && !is_running && enabled_cycles_ >= kSettledAfter_cycles)
     fail(Fault::kDriveStateLost);
   enabled_cycles_ = is_running ? std::min(enabled_cycles_ + 1, kSettledAfter_cycles) : 0;
-  if (is_running) judgePosition(config_, position, reply_.has_value(), report_);
+  if (is_running) judgePosition(config_, place, reply_.has_value(), report_);
 }
 
 void MoteusDrive::watchStop(DriveGoal goal) noexcept {

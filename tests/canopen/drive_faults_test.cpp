@@ -264,16 +264,37 @@ TEST(DriveFaults, AFollowingErrorIsMoreThanItsLimit) {
   DriveConfig config;
   config.max_following_error = 0.0625;
   for (const double side : {-1.0, 1.0}) {
+    const auto at = [](double position) { return CommandedPlace{position, position}; };
     DriveReport report;
     report.position = 0.25;
-    judgePosition(config, 0.25 + side * 0.0625, true, report);
+    judgePosition(config, at(0.25 + side * 0.0625), true, report);
     EXPECT_EQ(report.fault, Fault::kNone);
-    judgePosition(config, 0.25 + side * 0.0626, false, report);
+    judgePosition(config, at(0.25 + side * 0.0626), false, report);
     EXPECT_EQ(report.fault, Fault::kNone) << "of an old position";
-    judgePosition(config, 0.25 + side * 0.0626, true, report);
+    judgePosition(config, at(0.25 + side * 0.0626), true, report);
     EXPECT_EQ(report.fault, Fault::kFollowingError);
     EXPECT_NEAR(report.detail.value, 0.0626, 1e-12);
   }
+}
+
+/// It may have been measured at the pause's begin, at its end or between.
+TEST(DriveFaults, AFollowingErrorAfterAPauseIsFarFromAllPlacesInIt) {
+  DriveConfig config;
+  config.max_following_error = 0.0625;
+  const auto isTooFar = [&](double position, double before, double now) {
+    DriveReport report;
+    report.position = position;
+    judgePosition(config, {now, before}, true, report);
+    return report.fault == Fault::kFollowingError;
+  };
+  for (const double side : {-1.0, 1.0}) {
+    for (const double way : {-0.0625, 0.0, 0.5, 1.0, 1.0625})
+      EXPECT_FALSE(isTooFar(side * way, 0.0, side)) << way;
+    for (const double way : {-0.0626, 1.0626}) EXPECT_TRUE(isTooFar(side * way, 0.0, side)) << way;
+  }
+  DriveReport report;
+  judgePosition(config, {0.0, NAN}, true, report);
+  EXPECT_EQ(report.fault, Fault::kCommandNotFinite);
 }
 
 /// The bus dies for five seconds and comes back: nothing of before reaches the drive.

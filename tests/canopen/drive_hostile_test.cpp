@@ -125,12 +125,12 @@ TEST(NoAllocation, InTheCycleOfADrive) {
   FrameBatch out;
   test::AllocationGuard guard;
   for (const CanFrame& frame : frames) rig.drive.receive(frame);
-  rig.drive.observe(0.0);
+  rig.drive.observe({0.0, 0.0});
   rig.drive.update(DriveGoal::kEnabled, false, 0.1, 0.0, out);
   rig.drive.update(DriveGoal::kConfigure, true, 0.1, 0.0, out);
   for (int cycle = 0; cycle < 6000; ++cycle) {
     out.clear();
-    rig.drive.observe(0.0);
+    rig.drive.observe({0.0, 0.0});
     rig.drive.update(DriveGoal::kConfigure, false, 0.0, 0.0, out);
   }
 }

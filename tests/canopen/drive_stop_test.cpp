@@ -206,7 +206,7 @@ TEST(DriveStop, FeedbackIsJudgedInTheCycleInWhichItComes) {
   rig.enable();
   rig.slave.say(0x180, {0x18, 0x16, 0, 0, 0, 0});
   for (const CanFrame& frame : rig.slave.take()) rig.drive.receive(frame);
-  rig.drive.observe(rig.position);
+  rig.drive.observe({rig.position, rig.position});
   EXPECT_EQ(rig.report().fault, Fault::kDriveFault) << "before anything is sent";
 }
 

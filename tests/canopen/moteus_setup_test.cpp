@@ -128,7 +128,7 @@ TEST(MoteusSetup, IsAskedForItsMapInItsSetUpAlone) {
   const auto asksForMap = [](MoteusRig& rig, DriveGoal goal, bool restart) {
     FrameBatch out;
     rig.drive.receive(moteusReply(0, 0.0F, 0.0F, 0));
-    rig.drive.observe(rig.position);
+    rig.drive.observe({rig.position, rig.position});
     rig.drive.update(goal, restart, 0.0, rig.position, out);
     const auto isOf = [&out](bool asks) {
       for (const auto kind : {MoteusCommand::Kind::kQuery, MoteusCommand::Kind::kStop})

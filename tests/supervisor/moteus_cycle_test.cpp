@@ -170,6 +170,28 @@ TEST(MoteusCycle, IsCleared) {
   EXPECT_TRUE(cell.runUntil(Mode::kRunning, 3000)) << faultName(cell.cycle.report().fault);
 }
 
+/// What the drives answered to the last setpoint is read after the pause: no following error,
+/// though the arm was to be elsewhere by then. Their watchdogs stop them in a long one.
+TEST(MoteusCycle, GoesOnAfterAPause) {
+  MoteusCell running(moteusScene(true));
+  ASSERT_TRUE(running.runUntil(Mode::kRunning, 2000));
+  for (const int at : {500, 1500, 2500, 4000}) {
+    while (running.cycle.taskCycles() < at) running.step();
+    for (const int missed : {2, 15, 60, 150, 500, 1000, 5000, 100'000}) {
+      SCOPED_TRACE(std::to_string(missed) + " at " + std::to_string(at));
+      MoteusCell cell = running;
+      cell.pause(missed);
+      cell.steps(1000);
+      EXPECT_EQ(cell.cycle.report().fault, missed < 3 ? Fault::kNone : Fault::kOverrun)
+          << faultName(cell.cycle.report().fault);
+      if (missed >= 3) cell.switchEnable();
+      ASSERT_TRUE(cell.runUntil(Mode::kRunning, 3000)) << faultName(cell.cycle.report().fault);
+      cell.steps(1000);
+      EXPECT_EQ(cell.cycle.report().mode, Mode::kRunning) << faultName(cell.cycle.report().fault);
+    }
+  }
+}
+
 struct WrongStart {
   const char* what;
   std::function<void(CanFrame&)> change;  ///< of a reply of node 2 in the set-up

@@ -33,7 +33,7 @@ struct DriveRig {
   std::vector<CanFrame> cycle(DriveGoal goal, double velocity = 0.0, bool restart = false) {
     for (const CanFrame& frame : slave.take()) drive.receive(frame);
     FrameBatch out;
-    drive.observe(position);
+    drive.observe({position, position});
     drive.update(goal, restart, velocity, position, out);
     position += velocity * kPeriod_s;
     for (const CanFrame& frame : out) slave.hear(frame);

@@ -30,7 +30,7 @@ class HostileDriveBus {
     is_enabled_next_.reset();
     const Fault fault_before = drive_.report().fault;
     sent_.clear();
-    drive_.observe(position);
+    drive_.observe({position, position});
     drive_.update(goal, restart, velocity, position, sent_);
     const bool is_restart = goal == DriveGoal::kConfigure && restart;
     if (!is_restart && fault_before != Fault::kNone && drive_.report().fault != fault_before)

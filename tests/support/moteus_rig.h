@@ -70,7 +70,7 @@ struct MoteusRig {
   }
   Said quietCycle(DriveGoal goal, double velocity = 0.0, bool restart = false) {
     FrameBatch out;
-    drive.observe(position);
+    drive.observe({position, position});
     drive.update(goal, restart, velocity, position, out);
     EXPECT_LE(out.size(), 1u);
     return out.empty() ? Said{-2, 0.0F} : saidBy(*out.begin());

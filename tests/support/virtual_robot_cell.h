@@ -35,6 +35,15 @@ class VirtualRobotCell {
     sendOutput();
   }
 
+  /// One period, after as many that the loop missed.
+  void pause(int missed) {
+    t_ns += missed * period_ns_;
+    input.missed_cycles = missed;
+    input.late_in_a_row = missed + 1;
+    step();
+    input.missed_cycles = input.late_in_a_row = 0;
+  }
+
   void exchangeInput() {
     plant.advance(t_ns);
     for (int bus = 0; bus < plant.buses(); ++bus) exchangeInput(bus);

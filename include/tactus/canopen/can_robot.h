@@ -75,6 +75,8 @@ class CanRobot final : public Robot {
   DriveGoal goal_ = DriveGoal::kSilent;
   bool is_restart_ = false;
   JointVector q_commanded_;
+  JointVector q_before_pause_;
+  bool has_paused_ = false;
 };
 
 }  // namespace tactus

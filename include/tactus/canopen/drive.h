@@ -7,6 +7,7 @@
 #include "tactus/canopen/drive_report.h"
 #include "tactus/canopen/drive_setup.h"
 #include "tactus/canopen/hardware_config.h"
+#include "tactus/canopen/joint_tracking.h"
 #include "tactus/canopen/pdo.h"
 #include "tactus/canopen/still_watch.h"
 #include "tactus/canopen/stop_watch.h"
@@ -46,14 +47,13 @@ class Drive {
   /// For cycles that were missed just before this one: the deadlines of a stop go on in them.
   void coast(int missed_cycles) noexcept;
 
-  /// Once a cycle, after all frames: judges what came, by what update() asked for last. position:
-  /// where the drive is commanded to be at the start of this cycle, m or rad, for the following
-  /// error.
-  void observe(double position) noexcept;
+  /// Once a cycle, after all frames: judges what came, by what update() asked for last; place: for
+  /// the following error.
+  void observe(const CommandedPlace& place) noexcept;
 
   /// Then: sets what is to be sent. velocity: m/s or rad/s at the joint, used while kEnabled and
-  /// enabled; position: as above, for the tracking gain. restart: with kConfigure, start the set-up
-  /// anew and forget all faults; for one cycle only.
+  /// enabled; position: where it is commanded to be, m or rad, for the tracking gain. restart: with
+  /// kConfigure, start the set-up anew and forget all faults; for one cycle only.
   void update(DriveGoal goal, bool restart, double velocity, double position,
               FrameBatch& out) noexcept;
 

@@ -12,8 +12,15 @@ namespace tactus {
 double trackingVelocity(const DriveConfig& config, double velocity, double position,
                         double measured) noexcept;
 
+/// Where a drive is commanded to be as a cycle begins, m or rad. Feedback that comes after missed
+/// cycles may have been measured in any of them.
+struct CommandedPlace {
+  double now;
+  double before_pause;  ///< the same where no cycle was missed
+};
+
 /// Latches kFollowingError, or kCommandNotFinite. is_new: the report's position came in this cycle.
-void judgePosition(const DriveConfig& config, double position, bool is_new,
+void judgePosition(const DriveConfig& config, const CommandedPlace& place, bool is_new,
                    DriveReport& report) noexcept;
 
 }  // namespace tactus

@@ -6,6 +6,7 @@
 #include "tactus/canopen/can_frame.h"
 #include "tactus/canopen/drive_report.h"
 #include "tactus/canopen/hardware_config.h"
+#include "tactus/canopen/joint_tracking.h"
 #include "tactus/canopen/moteus_frames.h"
 #include "tactus/canopen/still_watch.h"
 #include "tactus/canopen/stop_watch.h"
@@ -31,7 +32,7 @@ class MoteusDrive {
   /// As those of Drive.
   void receive(const CanFrame& frame) noexcept;
   void coast(int missed_cycles) noexcept;
-  void observe(double position) noexcept;
+  void observe(const CommandedPlace& place) noexcept;
   void update(DriveGoal goal, bool restart, double velocity, double position,
               FrameBatch& out) noexcept;
   void release(FrameBatch& out) const noexcept;
@@ -50,7 +51,7 @@ class MoteusDrive {
   void countSilence() noexcept;
   void takeReply() noexcept;
   void takePosition(const MoteusReply& reply) noexcept;
-  void judgeOperation(double position) noexcept;
+  void judgeOperation(const CommandedPlace& place) noexcept;
   void watchStop(DriveGoal goal) noexcept;
   bool isRunning(DriveGoal goal) const noexcept;
   MoteusCommand command(DriveGoal goal, double velocity, double position) noexcept;
