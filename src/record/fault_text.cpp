@@ -66,6 +66,14 @@ std::string describeValue(const FaultReport& report) {
          (is_long ? "" : fmt::format(" {}", detail.unit));
 }
 
+/// Drives that hear nothing for a while stop by themselves, and each by another name. Of an overrun
+/// the value says it.
+std::string describePause(const FaultReport& report) {
+  const int missed = report.missed_cycles;
+  if (missed == 0 || report.fault == Fault::kOverrun) return "";
+  return fmt::format(", after {} missed cycle{}", missed, missed == 1 ? "" : "s");
+}
+
 /// Of a drive's fault that of the drive.
 Json busName(const FaultReport& report, const Scene& scene) {
   int bus = report.bus;
@@ -90,7 +98,7 @@ std::string refusalText(const DriveConfig& drive, const DriveReport& report) {
 std::string faultEvent(const FaultReport& report, const Scene& scene) {
   std::string text = faultName(report.fault) + describeCulprit(report, scene);
   if (std::isfinite(report.time_s)) text += fmt::format(", at {:.9g} s", report.time_s);
-  return text + describeValue(report);
+  return text + describeValue(report) + describePause(report);
 }
 
 std::string describeFault(const FaultReport& report, const Scene& scene) {
@@ -116,6 +124,7 @@ Json faultJson(const FaultReport& report, const Scene& scene) {
           {"value", report.detail.value},
           {"limit", report.detail.limit},
           {"unit", unit.empty() ? Json() : Json(unit)},
+          {"missed_cycles", report.missed_cycles},
           {"description", describeFault(report, scene)}};
 }
 

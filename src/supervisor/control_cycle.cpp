@@ -97,7 +97,7 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   if (mode_.mode != Mode::kRunning) state_.waited_s = waited_s;
   const bool is_new_fault = mode_.fault != fault_before;
   if (is_new_fault && mode_.fault != judged_.fault) judgeTimeLimit(before);
-  if (is_new_fault) noteCulprit();
+  if (is_new_fault) noteCulprit(std::max(0, input.missed_cycles));
   report_.mode = mode_.mode;
   report_.fault = mode_.fault;
   control(input, before);

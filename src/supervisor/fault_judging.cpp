@@ -14,9 +14,10 @@ constexpr int kWithheldAfterPause = 3;
 
 }  // namespace
 
-void ControlCycle::noteCulprit() noexcept {
+void ControlCycle::noteCulprit(int missed_cycles) noexcept {
   report_ = {};
   report_.detail = judged_.detail;
+  report_.missed_cycles = missed_cycles;
   report_.joint = judged_.joint;
   report_.bus = judged_.bus;
   if (judged_.joint < 0) return;

@@ -125,6 +125,8 @@ void Play::step(CycleInput input) {
   forActive([&](Injection& x) {
     if (x.kind->missed) input.missed_cycles += x.kind->missed(x);
   });
+  if (input.missed_cycles > 0)
+    input.late_in_a_row = std::max(input.late_in_a_row, input.missed_cycles + 1);
   has_stopped_ = has_stopped_ || input.stop_requested;
   has_forbidden_ = has_forbidden_ || input.has_forbidden_call;
   input.stop_requested = has_stopped_;

@@ -44,6 +44,23 @@ TEST_F(FaultText, TellsTimeValueAndLimit) {
   EXPECT_EQ(describeMode(report, scene_), "holding");
 }
 
+/// A pause makes drives stop by themselves: else one would look for the fault in the drive.
+TEST_F(FaultText, TellsOfAPauseJustBefore) {
+  FaultReport report = ofDrive(Fault::kDriveFault, {});
+  report.drive.emergency_code = 0x8700;
+  report.missed_cycles = 500;
+  const std::string text =
+      "drive_fault, drive 2 on can1 (joint j5), emergency code 0x8700, operation enabled, after ";
+  EXPECT_EQ(faultEvent(report, scene_), text + "500 missed cycles");
+  EXPECT_EQ(faultJson(report, scene_).at("missed_cycles"), 500);
+  report.missed_cycles = 1;
+  EXPECT_EQ(faultEvent(report, scene_), text + "1 missed cycle");
+  report.fault = Fault::kOverrun;
+  report.joint = -1;
+  report.detail = {501.0, 3.0, "cycles"};
+  EXPECT_EQ(faultEvent(report, scene_), "overrun, 501 cycles, at most 3 cycles");
+}
+
 TEST_F(FaultText, NamesDriveBusAndJoint) {
   const FaultReport report = ofDrive(Fault::kFollowingError, {0.0613, 0.05, "rad"});
   EXPECT_EQ(faultEvent(report, scene_),
@@ -138,8 +155,9 @@ TEST_F(FaultText, AsJsonHasTheMembersOfTheContract) {
   const Json json = faultJson(forceTooLarge(), scene_);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_EQ(keys, (std::vector<std::string>{"name", "time_s", "joint", "bus", "tactile_module",
-                                            "value", "limit", "unit", "description"}));
+  EXPECT_EQ(keys,
+            (std::vector<std::string>{"name", "time_s", "joint", "bus", "tactile_module", "value",
+                                      "limit", "unit", "missed_cycles", "description"}));
   EXPECT_EQ(json.at("name"), "tactile_invalid");
   EXPECT_EQ(json.at("time_s"), 3.214);
   EXPECT_EQ(json.at("value"), 102.5);

@@ -109,11 +109,8 @@ TEST(GoingOn, AnArmThatAPauseHasStoppedMakesUpForNoneOfIt) {
   const VirtualRobotCell running = runningCell("null_space", 2000);
   const auto peakAfterPause = [&](int missed) {
     VirtualRobotCell cell = running;
-    cell.input.missed_cycles = missed;
-    cell.input.late_in_a_row = missed + 1;
-    cell.t_ns += 1'000'000LL * missed;
-    cell.step();
-    cell.input.missed_cycles = cell.input.late_in_a_row = 0;
+    cell.pause(missed);
+    EXPECT_EQ(cell.cycle.report().missed_cycles, missed);
     EXPECT_NEAR(cell.record().task_time_s, running.record().task_time_s + 0.001, 1e-9);
     step(cell, 1000);
     EXPECT_EQ(cell.cycle.report().mode, Mode::kFault);

@@ -98,7 +98,7 @@ class ControlCycle {
   void goOnWithTool() noexcept;
   void startTares() noexcept;
   void repeatRefusedTares() noexcept;
-  void noteCulprit() noexcept;
+  void noteCulprit(int missed_cycles) noexcept;
   void control(const CycleInput& input, Mode before) noexcept;
   double time_s() const noexcept { return static_cast<double>(cycles_) * period_s_; }
   long long nextTaskCycle() const noexcept {

@@ -16,6 +16,7 @@ struct FaultReport {
   int joint = -1;
   int bus = -1;
   FaultDetail detail;
+  int missed_cycles = 0;    ///< just before it was seen: the cause may be the pause
   DriveReport drive;        ///< of that joint, as it was
   double q_measured = 0.0;  ///< of that joint, m or rad
   double q_expected = 0.0;  ///< where it was commanded to be at last, or where the scene starts
