@@ -41,8 +41,8 @@ bool passOn(const RowVector& lacking, const RowVector& delta, const RowVector& l
 }  // namespace
 
 void RowProblem::multiply() noexcept {
-  if (has_products_) return;
-  has_products_ = true;
+  if (is_multiplied_) return;
+  is_multiplied_ = true;
   in_all_.resize(rows_.size, rows_.size);
   in_task_.resize(rows_.size, rows_.size);
   for (int i = 0; i < rows_.size; ++i) {
@@ -97,26 +97,26 @@ void RowProblem::respond(const RowSpace& space, RowMatrix& K, RowVector& delta) 
   }
 }
 
-/// K: with delta. False if the solver's steps were not enough.
+/// K: with delta. False if no products were left.
 bool RowProblem::repeat(const RowMatrix& K, const RowVector& delta, const RowVector& lacking,
-                        int steps, RowVector& l) const noexcept {
+                        RowVector& l) noexcept {
   Complementarity problem(K);
   RowVector d = lacking;
-  bool is_whole = problem.solve(d, steps);
+  bool is_whole = problem.solve(d, products_left_);
   for (int i = 1; i < kRepetitions && is_whole; ++i) {
     const bool is_new = passOn(lacking, delta, problem.l(), d);
     if (rows_.is_of_one_contact)
       problem.forget();
     else if (!is_new)
       break;
-    is_whole = problem.solve(d, steps);
+    is_whole = problem.solve(d, products_left_);
   }
   l = problem.l();
   return is_whole;
 }
 
 RowMultipliers RowProblem::solve(const RowVector& v_max_m_per_s, const RowSpace& space,
-                                 const Motion& motion, int steps) noexcept {
+                                 const Motion& motion) noexcept {
   RowVector lacking(rows_.size);
   bool is_kept = true;
   for (int i = 0; i < rows_.size; ++i) {
@@ -132,12 +132,12 @@ RowMultipliers RowProblem::solve(const RowVector& v_max_m_per_s, const RowSpace&
   respond(space, K, delta);
   for (int i = 0; i < rows_.size; ++i) K(i, i) += delta[i];
   RowMultipliers found;
-  found.is_whole = repeat(K, delta, lacking, steps, found.l);
+  found.is_whole = repeat(K, delta, lacking, found.l);
   return found;
 }
 
-RowVector RowProblem::keep(Motion& motion, int steps) noexcept {
-  const RowMultipliers found = solve(ownSpeeds(rows_), kBothSpaces, motion, steps);
+RowVector RowProblem::keep(Motion& motion) noexcept {
+  const RowMultipliers found = solve(ownSpeeds(rows_), kBothSpaces, motion);
   addRows(rows_, found.l, kBothSpaces, motion);
   if (!found.is_whole) slowDown(rows_, task_size_, motion);
   return found.l;

@@ -12,6 +12,8 @@ constexpr double kTolerance = 1e-12;
 /// As many as one contact with friction has are solved by plain sums and quotients; with more,
 /// whose solution takes most of the time, by pairs and products.
 constexpr int kFew = 4;
+/// What a step costs beside its products, counted as such.
+constexpr int kStepProducts = 20;
 constexpr double kLeastPivot = 1e-15;  ///< of K_ii: rounding must not make K indefinite
 
 /// Where a row of a triangle begins.
@@ -44,6 +46,7 @@ Complementarity::Complementarity(const RowMatrix& K) noexcept
 
 /// L of K = L L^T gets one row more.
 void Complementarity::hold(int row) noexcept {
+  products_left_ -= size_ * size_ / 2;
   double* const l = L_.data() + rowAt(size_);
   const double* const K_row = K_.data() + row * K_.rows();
   const int few = std::min(size_, kFew);
@@ -60,9 +63,46 @@ void Complementarity::hold(int row) noexcept {
   held_[size_++] = row;
 }
 
-/// Those without a multiplier. What was held before the first of them stays as it is.
+/// A row less, by rotations of two columns each: L Q of those that stay is a triangle again, and
+/// Q^T y its forward solution.
+void Complementarity::release(int i) noexcept {
+  std::array<double, kMaxRows> cosine, sine;
+  products_left_ -= size_ * (size_ - i);
+  --size_;
+  const auto rotate = [&](const double* from, int end, double* to) {
+    double carried = from[i];
+    for (int j = i; j < end; ++j) {
+      const double next = from[j + 1];
+      to[j] = cosine[j] * carried + sine[j] * next;
+      carried = cosine[j] * next - sine[j] * carried;
+    }
+    return carried;
+  };
+  for (int k = i; k < size_; ++k) {
+    const double* const from = L_.data() + rowAt(k + 1);
+    double* const to = L_.data() + rowAt(k);
+    std::copy_n(from, i, to);
+    const double carried = rotate(from, k, to);
+    to[k] = std::sqrt(carried * carried + from[k + 1] * from[k + 1]);
+    inverse_[k] = 1.0 / to[k];
+    cosine[k] = carried * inverse_[k];
+    sine[k] = from[k + 1] * inverse_[k];
+    held_[k] = held_[k + 1];
+    column_[k] = column_[k + 1];
+  }
+  rotate(y_.data(), size_, y_.data());
+  forward_ = size_;
+}
+
+/// Those without a multiplier. Of few, what is left is factored anew: one contact with friction
+/// moves to the bit as it always did.
 void Complementarity::letGo() noexcept {
   const int before = size_;
+  if (before > kFew) {
+    for (int i = before - 1; i >= 0; --i)
+      if (!(l_[held_[i]] > 0.0)) release(i);
+    return;
+  }
   size_ = 0;
   while (size_ < before && l_[held_[size_]] > 0.0) ++size_;
   forward_ = std::min(forward_, size_);
@@ -115,9 +155,10 @@ inline bool Complementarity::goToZ() noexcept {
 }
 
 /// Until all that are held have multipliers.
-inline bool Complementarity::settle(const RowVector& d, int& steps) noexcept {
+inline bool Complementarity::settle(const RowVector& d) noexcept {
   while (size_ > 0) {
-    if (steps-- <= 0) return false;
+    if (products_left_ <= 0) return false;
+    products_left_ -= size_ * size_ + kStepProducts;
     solveHeld(d);
     if (goToZ()) return true;
     letGo();
@@ -140,6 +181,7 @@ inline void Complementarity::lackOf(int first, const RowVector& d) noexcept {
 /// The row that lacks most of those that are not held; -1: none.
 inline int Complementarity::neediest(const RowVector& d) noexcept {
   const auto rows = static_cast<int>(l_.size());
+  products_left_ -= rows * size_;
   if (rows == 1) {
     lack_[0] = d[0];  // as it is not held
   } else if (rows < 4) {
@@ -167,15 +209,17 @@ void Complementarity::forget() noexcept {
   size_ = 0;
 }
 
-bool Complementarity::solve(const RowVector& d, int steps_each_row) noexcept {
-  int steps = steps_each_row * static_cast<int>(l_.size());
+bool Complementarity::solve(const RowVector& d, int& products_left) noexcept {
+  products_left_ = products_left;
   forward_ = 0;
-  while (settle(d, steps)) {
+  bool is_solved = false;
+  while (!is_solved && settle(d)) {
     const int row = size_ < static_cast<int>(l_.size()) ? neediest(d) : -1;
-    if (row < 0) return true;
-    hold(row);
+    is_solved = row < 0;
+    if (!is_solved) hold(row);
   }
-  return false;
+  products_left = products_left_;
+  return is_solved;
 }
 
 }  // namespace tactus

@@ -208,10 +208,10 @@ TEST(SpeedRows, AreKeptByASlowerMotionWhereTheSolverMustEndEarly) {
   int cut = 0;
   for (int i = 0; i < 5000; ++i) {
     RowsCase c(random, random.integer(2, kMaxRows));
-    const int steps = random.integer(0, 1);
+    const int products = random.integer(0, 40 * c.rows.size);
     const bool is_whole =
-        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), kBothSpaces, c.motion, steps).is_whole;
-    RowProblem(c.rows, c.m).keep(c.motion, steps);
+        RowProblem(c.rows, c.m, products).solve(ownSpeeds(c.rows), kBothSpaces, c.motion).is_whole;
+    RowProblem(c.rows, c.m, products).keep(c.motion);
     const Eigen::VectorXd speed = c.A * c.joints(c.motion);
     ASSERT_TRUE(speed.allFinite());
     if (is_whole) continue;
@@ -244,9 +244,9 @@ TEST(SpeedRows, SlowAMotionDownNoFurtherThanTheyHaveTo) {
       if (v_max >= 0.0 && approach[row] > 0.0) share = std::min(share, v_max / approach[row]);
     }
     const bool is_whole =
-        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), kBothSpaces, c.motion, 0).is_whole;
+        RowProblem(c.rows, c.m, 0).solve(ownSpeeds(c.rows), kBothSpaces, c.motion).is_whole;
     if (is_whole) continue;
-    RowProblem(c.rows, c.m).keep(c.motion, 0);
+    RowProblem(c.rows, c.m, 0).keep(c.motion);
     ASSERT_LT((c.joints(c.motion) - share * before).norm(), 1e-9 * (1.0 + before.norm())) << i;
     slowed += share > 0.0 && share < 1.0 ? 1 : 0;
     stopped += share == 0.0 ? 1 : 0;
@@ -274,15 +274,15 @@ TEST(SpeedRows, EndWhereTheirNumberSays) {
     RowsCase c(random, random.integer(2, kMaxRows - 1));
     Motion motion = c.motion, other = c.motion;
     const bool is_whole =
-        RowProblem(c.rows, c.m).solve(ownSpeeds(c.rows), kBothSpaces, motion, 0).is_whole;
+        RowProblem(c.rows, c.m, 0).solve(ownSpeeds(c.rows), kBothSpaces, motion).is_whole;
     cut += is_whole ? 0 : 1;
-    RowProblem(c.rows, c.m).keep(motion, 0);
+    RowProblem(c.rows, c.m, 0).keep(motion);
     SpeedRow& beyond = c.rows.row[c.rows.size];
     beyond = c.rows.row[0];
     beyond.v_max_m_per_s = 0.0;
     beyond.a_scaled = -c.motion.v_scaled;
     beyond.a_task = -c.motion.y;
-    RowProblem(c.rows, c.m).keep(other, 0);
+    RowProblem(c.rows, c.m, 0).keep(other);
     ASSERT_EQ(other.v_scaled, motion.v_scaled) << i;
     ASSERT_EQ(other.y, motion.y) << i;
   }

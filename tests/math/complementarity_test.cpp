@@ -43,13 +43,20 @@ std::optional<Eigen::VectorXd> bruteForce(const Problem& p) {
   return {};
 }
 
+constexpr int kPlenty = 10'000'000;
+
+bool solve(const RowVector& d, Complementarity& problem) {
+  int products_left = kPlenty;
+  return problem.solve(d, products_left);
+}
+
 TEST(Complementarity, FindsTheOneSolution) {
   test::Random random(301);
   int with_active = 0;
   for (int i = 0; i < 500; ++i) {
     const Problem p(random, random.integer(1, 6), random.chance(0.5) ? 0.0 : 0.9);
     Complementarity problem(p.K);
-    ASSERT_TRUE(problem.solve(p.d));
+    ASSERT_TRUE(solve(p.d, problem));
     const RowVector& l = problem.l();
     const auto expected = bruteForce(p);
     ASSERT_TRUE(expected);
@@ -64,7 +71,7 @@ TEST(Complementarity, KeepsItsConditionsForAnyNumberOfRows) {
   for (int i = 0; i < 3000; ++i) {
     const Problem p(random, random.integer(1, kMaxRows), random.uniform(0.0, 0.999));
     Complementarity problem(p.K);
-    ASSERT_TRUE(problem.solve(p.d)) << i;
+    ASSERT_TRUE(solve(p.d, problem)) << i;
     const RowVector& l = problem.l();
     const Eigen::VectorXd lack = p.d - p.K * l;
     const double scale = p.d.norm() + p.K.norm() * l.norm();
@@ -84,9 +91,9 @@ TEST(Complementarity, GoesOnFromItsLastSolution) {
     RowVector d = p.d;
     for (int k = 0; k < 10; ++k) {
       const RowVector before = going_on.l();
-      ASSERT_TRUE(going_on.solve(d));
+      ASSERT_TRUE(solve(d, going_on));
       Complementarity fresh(p.K);
-      ASSERT_TRUE(fresh.solve(d));
+      ASSERT_TRUE(solve(d, fresh));
       const double scale = 1.0 + fresh.l().norm();
       ASSERT_LT((going_on.l() - fresh.l()).norm(), 1e-6 * scale) << i << " " << k;
       changed += ((before.array() > 0.0) != (fresh.l().array() > 0.0)).any() ? 1 : 0;
@@ -97,12 +104,38 @@ TEST(Complementarity, GoesOnFromItsLastSolution) {
   EXPECT_GT(changed, 1000);
 }
 
+/// Counted by another: the products of all steps, of a solution that is cut anywhere.
+TEST(Complementarity, TakesNoMoreThanItsProductsAndOneStep) {
+  test::Random random(305);
+  int cut = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const int rows = random.integer(1, kMaxRows);
+    const Problem p(random, rows, random.uniform(0.0, 0.999));
+    Complementarity problem(p.K);
+    const int products = random.integer(0, 300 * rows);
+    int left = products;
+    const bool is_whole = problem.solve(p.d, left);
+    ASSERT_LE(left, products);
+    const int step = rows * rows * rows / 6 + 3 * rows * rows + 40;  // all held anew, and solved
+    ASSERT_GE(left, -step) << i;
+    ASSERT_GE(problem.l().minCoeff(), 0.0);
+    ASSERT_TRUE(problem.l().allFinite());
+    if (is_whole) continue;
+    ASSERT_LE(left, 0);
+    ++cut;
+    int more = kPlenty;
+    ASSERT_TRUE(problem.solve(p.d, more)) << "goes on where it was cut";
+    ASSERT_LE((p.d - p.K * problem.l()).maxCoeff(), 1e-9 * (1.0 + p.K.norm() * problem.l().norm()));
+  }
+  EXPECT_GT(cut, 500);
+}
+
 TEST(Complementarity, AsksForNothingWhereNothingLacks) {
   test::Random random(303);
   Problem p(random, 5, 0.0);
   p.d = -p.d.cwiseAbs();
   Complementarity problem(p.K);
-  ASSERT_TRUE(problem.solve(p.d));
+  ASSERT_TRUE(solve(p.d, problem));
   EXPECT_TRUE(problem.l().isZero(0.0));
 }
 

@@ -61,32 +61,34 @@ inline constexpr RowSpace kBothSpaces{1.0, 30.0, kNoLimit, 1e-6};
 // clang-format on
 struct RowMultipliers {
   RowVector l;           ///< m/s each m^2
-  bool is_whole = true;  ///< false: the solver's steps were not enough; l keeps some of the rows
+  bool is_whole = true;  ///< false: no products were left; l keeps some of the rows
 };
 
-/// Finds them for two levels of the same rows, which must outlive it and stay as they are.
+/// Finds them for two levels of the same rows, which must outlive it and stay as they are, within
+/// so many products together.
 class RowProblem {
  public:
-  RowProblem(const SpeedRows& rows, int task_size) noexcept : rows_(rows), task_size_(task_size) {}
+  RowProblem(const SpeedRows& rows, int task_size, int products = kMostProducts) noexcept
+      : rows_(rows), task_size_(task_size), products_left_(products) {}
 
-  /// v_max_m_per_s: in place of the rows' own. steps: of the solver, for each row.
-  RowMultipliers solve(const RowVector& v_max_m_per_s, const RowSpace& space, const Motion& motion,
-                       int steps = kStepsEachRow) noexcept;
+  /// v_max_m_per_s: in place of the rows' own.
+  RowMultipliers solve(const RowVector& v_max_m_per_s, const RowSpace& space,
+                       const Motion& motion) noexcept;
 
-  /// Adds to the motion what it takes to keep the rows, by kBothSpaces. Where the solver's steps
-  /// are not enough, the whole motion is slowed down until it keeps all rows with v_max >= 0.
-  /// Returns l.
-  RowVector keep(Motion& motion, int steps = kStepsEachRow) noexcept;
+  /// Adds to the motion what it takes to keep the rows, by kBothSpaces. Where no products are left,
+  /// the whole motion is slowed down until it keeps all rows with v_max >= 0. Returns l.
+  RowVector keep(Motion& motion) noexcept;
 
  private:
   void multiply() noexcept;
   void respond(const RowSpace& space, RowMatrix& K, RowVector& delta) const noexcept;
-  bool repeat(const RowMatrix& K, const RowVector& delta, const RowVector& lacking, int steps,
-              RowVector& l) const noexcept;
+  bool repeat(const RowMatrix& K, const RowVector& delta, const RowVector& lacking,
+              RowVector& l) noexcept;
 
   const SpeedRows& rows_;
   int task_size_;
-  bool has_products_ = false;   ///< not before a row lacks something
+  int products_left_;
+  bool is_multiplied_ = false;  ///< not before a row lacks something
   RowMatrix in_all_, in_task_;  ///< a_i^T W^-1 a_j, and what of it is in the task space
 };
 

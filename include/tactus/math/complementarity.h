@@ -7,7 +7,9 @@ namespace tactus {
 
 inline constexpr int kMaxRows = 60;  ///< that one motion has to keep
 
-inline constexpr int kStepsEachRow = 3;
+/// Products that the solutions of a cycle may take together: a bound of time, whatever rows come.
+/// Of the drawn sets of 45 rows in docs/gate.md three of a thousand need more.
+inline constexpr int kMostProducts = 100'000;
 
 using RowVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxRows, 1>;
 using RowMatrix =
@@ -19,15 +21,15 @@ using RowMatrix =
 /// 1e-12 times the condition of K. These are the multipliers of the least squares
 /// min 1/2 l^T K l - d^T l, l >= 0, found as by Lawson and Hanson (Solving Least Squares Problems,
 /// 1974, chapter 23), from the last solution: one row more of a factorisation for each row that
-/// enters, a factorisation for each that leaves.
+/// enters, rotations of it for each that leaves.
 class Complementarity {
  public:
   /// K must outlive it.
   explicit Complementarity(const RowMatrix& K) noexcept;
 
-  /// False if steps_each_row of these, times the rows, were not enough; l >= 0 then keeps the rows
-  /// that it holds, and that was the last solution.
-  bool solve(const RowVector& d, int steps_each_row = kStepsEachRow) noexcept;
+  /// Takes what it needs from products_left, beyond zero by one step at most. False if that was not
+  /// enough; l >= 0 then keeps the rows that it holds, and that was the last solution.
+  bool solve(const RowVector& d, int& products_left) noexcept;
 
   /// The next solution begins at zero.
   void forget() noexcept;
@@ -36,15 +38,17 @@ class Complementarity {
 
  private:
   void hold(int row) noexcept;
+  void release(int i) noexcept;
   void letGo() noexcept;
   void solveHeld(const RowVector& d) noexcept;
   bool goToZ() noexcept;
-  bool settle(const RowVector& d, int& steps) noexcept;
+  bool settle(const RowVector& d) noexcept;
   template <int kPairs>
   void lackOf(int first, const RowVector& d) noexcept;
   int neediest(const RowVector& d) noexcept;
 
   const RowMatrix& K_;
+  int products_left_ = 0;
   RowVector l_;
   int size_ = 0;                                       ///< rows that are held with equality
   int forward_ = 0;                                    ///< of them have y for this d
