@@ -16,11 +16,14 @@ constexpr double kLeastBefore_s = 0.05;  ///< what is touched from the first sam
 constexpr std::size_t kLeastSamples = 10;
 constexpr double kLeastForce_N = 0.5;
 constexpr double kMostDeviation = 0.5;  ///< of c_e
-constexpr double kEnd_m = 0.002;        ///< of a cover: there F^ need not be the normal
-constexpr double kPlacing = 0.25;       ///< of the force that was felt first: less has no place
-constexpr double kLargestGap = 2.5;     ///< periods
-constexpr int kPlaces = 40;             ///< of touch that are tried first
-constexpr int kHalvings = 20;           ///< around the best of them
+/// Of c_e: of first touches in simulation the way is as well known as this, where F^ has
+/// noise, the contact point moves or the arm rings.
+constexpr double kWayDeviation = 0.03;
+constexpr double kEnd_m = 0.002;     ///< of a cover: there F^ need not be the normal
+constexpr double kPlacing = 0.25;    ///< of the force that was felt first: less has no place
+constexpr double kLargestGap = 2.5;  ///< periods
+constexpr int kPlaces = 40;          ///< of touch that are tried first
+constexpr int kHalvings = 20;        ///< around the best of them
 /// Where it touched before the samples begin, so many times the way that they have farther.
 constexpr double kFarther = 3.0;
 
@@ -169,7 +172,7 @@ double placeOfTouch(const Touch& touch, double cutoff_hz) {
   return best;
 }
 
-/// Standard deviation of c_e, by the normal matrix in c_e and x_0.
+/// Standard deviation of c_e, by the normal matrix in c_e and x_0, and of the way.
 double deviationOf(const Touch& touch, double cutoff_hz, double x0_m, const PlacedFit& fit) {
   const std::vector<double> by_c =
       filtered(touch, cutoff_hz, [x0_m](double x_m) { return std::max(0.0, x_m - x0_m); });
@@ -188,7 +191,8 @@ double deviationOf(const Touch& touch, double cutoff_hz, double x0_m, const Plac
   if (!(information > 0.0)) return kNoLimit;
   const double independent = std::min(fit.count, 2.0 * cutoff_hz * (to_s - from_s));
   const double variance_N2 = fit.residual_N2 / std::max(1.0, independent - 2.0);
-  return std::sqrt(variance_N2 / information);
+  const double of_way = kWayDeviation * fit.c_N_per_m;
+  return std::sqrt(variance_N2 / information + of_way * of_way);
 }
 
 void addTouch(const Touch& touch, double x0_m, double felt_s, TouchFit& result) {

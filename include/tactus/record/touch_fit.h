@@ -44,7 +44,7 @@ inline constexpr double kBehindTouch_s = 0.6;
 /// when a contact bounces. c_e has all in it that gives way between the measured joints
 /// and the world: obstacle and cover, and gears where the drives measure motors. The interval
 /// is 1.96 standard deviations of the linearised fit; as neighbouring residuals are alike, they
-/// count as 2 f_c independent ones a second. It knows nothing of errors in the way itself. Unknown
+/// count as 2 f_c independent ones a second; with 3 % for errors in the way itself. Unknown
 /// of fewer than 10 samples or 0.5 N, of cycles that are missing, of samples that begin less than
 /// 50 ms before felt_s, as a log that begins in contact, of a contact within 2 mm of the cover's
 /// ends, where F^ need not be the normal, and where the deviation is above half of c_e. felt_s:
