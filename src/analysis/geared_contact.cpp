@@ -7,8 +7,8 @@
 #include <unsupported/Eigen/MatrixFunctions>
 #include <vector>
 
+#include "tactus/analysis/contact_at_pose.h"
 #include "tactus/analysis/cover_geometry.h"
-#include "tactus/math/contact_space.h"
 
 namespace tactus {
 namespace {
@@ -51,19 +51,11 @@ Answer answerIn(AnswerSpace space, const WeightedPseudoinverse& pseudoinverse,
 /// As the controller answers: `way` of GearedContact.
 JointVector wayOf(AnswerSpace space, const ControllerConfig& config, const ChainPose& pose,
                   const ScaledVector& a) {
-  const ScaledVector inv_sqrt_weights =
-      scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones());
-  ScaledJacobian J;
-  computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()),
-                     config.task.components.data(), config.task.size, inv_sqrt_weights, J);
-  WeightedPseudoinverse pseudoinverse;
-  pseudoinverse.factorise(J, config.chain.size(), config.task.size);
-  ContactSpace contact;
-  computeContactSpace(pseudoinverse, a, inv_sqrt_weights, PaddedTaskVector::Zero(), contact);
-  const Answer answer = answerIn(space, pseudoinverse, contact);
-  if (answer.k <= kImmovable * contact.k_j) return JointVector::Zero(config.chain.size());
-  const ScaledVector way =
-      invertRegularised(answer.k, contact.k_j) * inv_sqrt_weights.cwiseProduct(answer.v_scaled);
+  const ContactAtPose seen = contactAtPose(config, pose, a);
+  const Answer answer = answerIn(space, seen.pseudoinverse, seen.space);
+  if (answer.k <= kImmovable * seen.space.k_j) return JointVector::Zero(config.chain.size());
+  const ScaledVector way = invertRegularised(answer.k, seen.space.k_j) *
+                           seen.inv_sqrt_weights.cwiseProduct(answer.v_scaled);
   return way.head(config.chain.size());
 }
 

@@ -38,7 +38,7 @@ class FollowedCover {
     const CoverEnds ends = coverEnds(pose, module_);
     if (has_moved_) measureSpeed(ends, q, t_s, period_s, contacts.fastest[index_]);
     ends_ = ends;
-    touch(t_s, period_s, contacts);
+    touch(q, t_s, period_s, contacts);
     has_moved_ = true;
   }
 
@@ -56,17 +56,24 @@ class FollowedCover {
   }
 
   /// The speed of a touch is known a cycle later.
-  void touch(double t_s, double period_s, PathContacts& contacts) {
+  void touch(const JointVector& q, double t_s, double period_s, PathContacts& contacts) {
     const Vector3 way = ends_.p_BaseEnd - ends_.p_BaseStart;
     const CoverAxis axis{ends_.p_BaseStart, way.normalized(), module_.length_m, radius_m_};
     for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-      const double depth_m = obstacles_[i].touch(axis, t_s).force_N;
+      const ObstacleContact contact = obstacles_[i].touch(axis, t_s);
+      const double depth_m = contact.force_N;
       std::optional<PathTouch>& first = contacts.touches[i];
       if (depth_m > 0.0 && !first) {
-        first = PathTouch{index_, t_s, depth_m};
+        first = PathTouch{.module = index_,
+                          .t_s = t_s,
+                          .depth_m = depth_m,
+                          .q = q,
+                          .p_Base = axis.p_BaseStart + contact.position_m * axis.direction,
+                          .normal_Base = contact.force_Base.normalized()};
       } else if (first && first->module == index_ && t_s < first->t_s + 1.5 * period_s) {
         first->speed_m_per_s = std::max(0.0, (depth_m - depth_m_[i]) / period_s);
       }
+      if (first && first->module == index_) first->deepest_m = std::max(first->deepest_m, depth_m);
       depth_m_[i] = depth_m;
     }
   }

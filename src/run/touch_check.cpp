@@ -8,6 +8,7 @@
 #include "tactus/analysis/contact_peak.h"
 #include "tactus/analysis/effective_mass.h"
 #include "tactus/analysis/variant_loops.h"
+#include "tactus/run/held_touch.h"
 #include "tactus/scene/dynamics_loader.h"
 #include "tactus/scene/stability_check.h"
 
@@ -264,12 +265,12 @@ std::vector<std::string> warningsOf(const Scene& scene, const PathContacts& cont
   warnOfFriction(scene, warnings);
   for (const CapsuleTouch& touch : contacts.unsensed)
     if (!isFeltBefore(scene, contacts, touch)) warnings.push_back(unsensedWarning(scene, touch));
+  for (const std::string& warning : heldTouches(scene, contacts)) warnings.push_back(warning);
   warnOfHardTouches(scene, report.touches, warnings);
   if (peak && peak->peak_N() > peak->max_force_N) {
     warnings.push_back(
         fmt::format("the stiffest contact{} may come to {:.3g} N, the sensor's max_force_N is "
-                    "{:g}: that ends in "
-                    "a fault",
+                    "{:g}: that ends in a fault",
                     ofModule(scene, peak->fastest.module), peak->peak_N(), peak->max_force_N));
   }
   return warnings;

@@ -12,8 +12,12 @@ namespace tactus {
 struct PathTouch {
   int module = 0;
   double t_s = 0.0;
-  double depth_m = 0.0;        ///< of the obstacle in the cover, in that cycle
-  double speed_m_per_s = 0.0;  ///< of the cover's surface into the obstacle, >= 0
+  double depth_m = 0.0;                   ///< of the obstacle in the cover, in that cycle
+  double speed_m_per_s = 0.0;             ///< of the cover's surface into the obstacle, >= 0
+  double deepest_m = 0.0;                 ///< of it in that cover on the whole path
+  JointVector q;                          ///< in that cycle, m or rad
+  Vector3 p_Base = Vector3::Zero();       ///< on the cover's axis, m
+  Vector3 normal_Base = Vector3::Zero();  ///< unit vector out of the obstacle
 };
 
 /// Where a cover is fastest.
