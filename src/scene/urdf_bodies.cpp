@@ -14,11 +14,12 @@ constexpr double kMaxMass_kg = 1e5;
 constexpr double kMaxInertia_kgm2 = 1e6;
 
 /// A body's principal moments are sums of squares along two axes each, so none is larger than the
-/// other two together. Descriptions round.
+/// other two together. Descriptions round, and so do eigenvalues: a thin rod has one of zero.
 bool isOfABody(const Matrix3& I) {
   constexpr double kRounding = 1e-3;
   const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(I).eigenvalues();
-  return moments[0] >= 0.0 && moments[2] <= (moments[0] + moments[1]) * (1.0 + kRounding);
+  return moments[0] >= -kRounding * moments[2] &&
+         moments[2] <= (moments[0] + moments[1]) * (1.0 + kRounding);
 }
 
 Matrix3 readInertia(const UrdfNode& inertial) {

@@ -48,6 +48,20 @@ TEST(DynamicsLoad, TakesBodiesFromTheUrdfAndTheRestFromTheRobot) {
   EXPECT_EQ(scene.plant.robot_stiffness_N_per_m, 9000.0);
 }
 
+/// Slanted, so that its least moment is zero but for what the computation rounds.
+TEST(DynamicsLoad, TakesAThinRod) {
+  MassiveFiles files;
+  constexpr const char* kRod =
+      "ixx=\"0.001580772\" ixy=\"-0.000243196\" ixz=\"-0.000364794\" iyy=\"0.001215979\" "
+      "iyz=\"-0.000729587\" izz=\"0.000607989\"";
+  std::size_t at = 0;
+  while ((at = files.urdf.find(kMoments)) != std::string::npos)
+    files.urdf.replace(at, std::string(kMoments).size(), kRod);
+  const Scene scene = files.load();
+  ASSERT_TRUE(scene.plant.dynamics);
+  EXPECT_EQ(scene.plant.dynamics->bodies[0].mass_kg, 2.0);
+}
+
 TEST(DynamicsLoad, IsAbsentUnlessTheSceneNamesIt) {
   MassiveFiles files;
   files.scene = test::kSceneText;
