@@ -150,9 +150,9 @@ std::string draftSummary(const RobotDraft& draft, const std::vector<SourceFile>&
   text +=
       fmt::format("home      tool at ({:.4f}, {:.4f}, {:.4f}) m, smallest singular value {:.3g}\n",
                   tool.x(), tool.y(), tool.z(), draft.home.smallest_singular_value);
-  text +=
-      "assumed   accelerations: full speed within 0.2 s; radii of capsules without a shape in the "
-      "URDF\n";
+  text += "assumed   accelerations: full speed within 0.2 s\n";
+  if (draft.are_radii_assumed)
+    text += "assumed   radii of collision_capsules: the URDF has no collision geometry; measure\n";
   for (const AssumedLimit& limit : draft.completed.assumed)
     text += fmt::format("assumed   {} of joint {}: the URDF has none; measure\n", limit.what,
                         escaped(limit.joint));

@@ -39,13 +39,19 @@ constexpr const char* kControllerDraft = R"(
 # Once robot.yaml has a tactile module, and `tactus calibrate` has measured it. docs/tuning.md says
 # what else the arm may do in a contact, and how to choose the gains.
 # controller:
-#   variant: null_space
+#   variant: null_limit      # the null space gives way, and the tool where that would not do
+#   activation_force_N: 4    # ASSUMED: what may push on the cover, beside the threshold of 1.2 N
 # stiffness:
 #   assumed_N_per_m: 2000    # ASSUMED
 )";
 
 bool isPrismatic(const RobotDraft& draft, std::size_t joint) {
   return draft.chain.joints[joint].type == JointType::kPrismatic;
+}
+
+bool isEndless(const RobotDraft& draft, std::size_t joint) {
+  const auto j = static_cast<Eigen::Index>(joint);
+  return !(draft.chain.limits.upper[j] - draft.chain.limits.lower[j] < kNoLimit);
 }
 
 const char* unitOf(const RobotDraft& draft, std::size_t joint) {
@@ -94,9 +100,10 @@ std::string drivesDraft(const RobotDraft& draft) {
   text += "# drives:\n#   joints:\n";
   for (std::size_t i = 0; i < joints; ++i)
     text += fmt::format(
-        "#     - {{joint: {}, interface: can{}, node_id: {}, counts_per_{}: FILL_IN}}\n",
+        "#     - {{joint: {}, interface: can{}, node_id: {}, counts_per_{}: FILL_IN}}{}\n",
         yamlWord(draft.chain.joint_names[i]), i / kDrivesABus, i % kDrivesABus + 1,
-        unitOf(draft, i));
+        unitOf(draft, i),
+        isEndless(draft, i) ? "  # its counts end: needs limits in the URDF" : "");
   return text;
 }
 

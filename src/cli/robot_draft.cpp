@@ -86,10 +86,19 @@ std::string commentedOut(const std::string& text) {
   return result;
 }
 
+/// The joints do not follow, or it is beyond the arm's reach.
+bool leadsTooFar(const std::string& folder, const RobotDraft& draft) {
+  try {
+    return !checkPath(loadDraft(draft, folder)).empty();
+  } catch (const InputError&) {
+    return true;
+  }
+}
+
 /// By the Jacobian of the start alone a way may lead too far.
 void shortenMotion(const std::string& folder, RobotDraft& draft) {
   constexpr int kHalvings = 6;
-  for (int i = 0; i < kHalvings && !checkPath(loadDraft(draft, folder)).empty(); ++i) {
+  for (int i = 0; i < kHalvings && leadsTooFar(folder, draft); ++i) {
     draft.motion.displacement_m *= 0.5;
     draft.motion.rotation_vector_rad *= 0.5;
     draft.scene_text = draftSceneText(draft);
@@ -100,6 +109,7 @@ void shortenMotion(const std::string& folder, RobotDraft& draft) {
 void addCapsules(const std::string& folder, RobotDraft& draft) {
   const Scene scene = loadDraft(draft, folder);
   std::string capsules = proposeCapsules(scene);
+  draft.are_radii_assumed = capsules.find("The radius is an assumption") != std::string::npos;
   capsules.erase(0, std::string_view("# For robot.yaml. ").size()).insert(0, "# ");
   try {
     draft.robot_text = draftRobotText(draft, capsules + touchingCapsules(scene, capsules));

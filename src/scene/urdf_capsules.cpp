@@ -40,32 +40,35 @@ Capsule along(const Pose& X_LinkBody, int axis, double length_m, double radius_m
 
 double sizeOf(const UrdfNode& geometry, const char* shape, const char* key) {
   const double size_m = geometry.number(shape, key, kMaxSize_m, kRequired);
-  if (size_m <= 0.0)
-    geometry.fail(geometry.child(shape), std::string(shape) + "." + key, "is not positive",
-                  "a number > 0 in m");
+  if (size_m < 0.0)
+    geometry.fail(geometry.child(shape), std::string(shape) + "." + key, "is negative",
+                  "a number >= 0 in m");
   return size_m;
 }
 
 Capsule capsuleOfBox(const UrdfNode& geometry, const Pose& X_LinkBody) {
   const Vector3 size = geometry.vector("box", "size", kMaxSize_m, Vector3::Zero());
-  if (!(size.minCoeff() > 0.0))
-    geometry.fail(geometry.child("box"), "box.size", "is not positive", "three numbers > 0 in m");
+  if (size.minCoeff() < 0.0)
+    geometry.fail(geometry.child("box"), "box.size", "is negative", "three numbers >= 0 in m");
   Eigen::Index longest;
   const double length_m = size.maxCoeff(&longest);
   const double width_m = std::max(size[(longest + 1) % 3], size[(longest + 2) % 3]);
   return along(X_LinkBody, static_cast<int>(longest), length_m, 0.5 * width_m);
 }
 
-/// Absent for meshes.
+/// Absent for meshes. Vendors mark a place by a shape without size: its radius is 0.
 std::optional<Capsule> capsuleOf(const UrdfNode& collision) {
   const UrdfNode geometry{collision.tree, collision.child("geometry"), collision.key + ".geometry"};
   const Pose X_LinkBody = collision.origin();
   if (geometry.child("sphere"))
     return along(X_LinkBody, 0, 0.0, sizeOf(geometry, "sphere", "radius"));
   if (geometry.child("box")) return capsuleOfBox(geometry, X_LinkBody);
-  if (!geometry.child("cylinder")) return std::nullopt;
-  return along(X_LinkBody, 2, sizeOf(geometry, "cylinder", "length"),
-               sizeOf(geometry, "cylinder", "radius"));
+  const bool is_capsule = static_cast<bool>(geometry.child("capsule"));  // its ends are beyond it
+  const char* const shape = is_capsule ? "capsule" : "cylinder";
+  if (!geometry.child(shape)) return std::nullopt;
+  const double length_m = sizeOf(geometry, shape, "length");
+  const double radius_m = sizeOf(geometry, shape, "radius");
+  return along(X_LinkBody, 2, length_m + (is_capsule ? 2.0 * radius_m : 0.0), radius_m);
 }
 
 /// Whether a link hangs on the arm's base or on what its joints move.
@@ -89,9 +92,9 @@ std::string ofCollisions(const UrdfTree& tree, const Scene& scene) {
     for (const pugi::xml_node& child : node.children("collision")) {
       if (!is_of_arm) continue;
       const auto capsule = capsuleOf({tree, child, "link." + name + ".collision"});
-      if (!capsule) {
-        text +=
-            fmt::format("  # {}: a mesh, of which no capsule is made: measure it\n", escaped(name));
+      if (!capsule || capsule->radius_m == 0.0) {
+        text += fmt::format("  # {}: {}, of which no capsule is made: measure it\n", escaped(name),
+                            capsule ? "a shape without size" : "a mesh");
       } else if (has_module) {
         text +=
             fmt::format("  # {} has a tactile module: of this keep what its cover leaves free\n",
@@ -180,8 +183,9 @@ std::string proposeCapsules(const Scene& scene) {
   }
   if (scene.controller.tactile_modules.empty() && !scene.plant.modules.empty())
     text += "# This scene reads no tactile module: leave out what covers take up.\n";
-  return text + "collision_capsules:\n" +
-         (of_collisions.empty() ? ofLengths(tree, scene) : of_collisions);
+  const std::string list = of_collisions.empty() ? ofLengths(tree, scene) : of_collisions;
+  const bool has_some = list.starts_with("  - ") || list.find("\n  - ") != std::string::npos;
+  return text + (has_some ? "" : "# ") + "collision_capsules:\n" + list;  // a list is never empty
 }
 
 }  // namespace tactus

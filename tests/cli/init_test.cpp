@@ -284,6 +284,9 @@ TEST_F(InitTest, WhatIsToBeFilledInLoadsOnceItIs) {
   EXPECT_EQ(scene.module_links, Lines{"lower"});
   ASSERT_TRUE(scene.hardware && scene.hardware->gpio);
   EXPECT_EQ(scene.hardware->drives[1].node_id, 2);
+  // An arm with as many joints as its task has components gives way, too.
+  ASSERT_TRUE(scene.controller.force_control);
+  EXPECT_EQ(scene.controller.force_control->variant, Variant::kNullLimit);
   EXPECT_EQ(scene.hardware->tactile_modules[0].first_id, 0x100u);
 }
 

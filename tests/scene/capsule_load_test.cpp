@@ -107,6 +107,46 @@ TEST(CapsuleProposal, IsMadeOfTheCollisionGeometry) {
             "  - {link: tool, from_m: [0, 0, 0], to_m: [0, 0, 0], radius_m: 0.07}\n");
 }
 
+/// As vendors mark places, and with the shape that some programs add to the URDF's.
+TEST(CapsuleProposal, LeavesOutShapesWithoutSizeAndTakesCapsules) {
+  for (const char* const shape :
+       {"<box size=\"0 0 0\"/>", "<box size=\"0 0 0.1\"/>", "<sphere radius=\"0.0\"/>",
+        "<cylinder radius=\"0\" length=\"0.1\"/>"}) {
+    SceneFiles files;
+    files.urdf = replaced(withCollisions(), "<sphere radius=\"0.07\"/>", shape);
+    const std::string proposed = proposeCapsules(files.load());
+    EXPECT_NE(proposed.find("  # tool: a shape without size, of which no capsule is made"),
+              std::string::npos)
+        << shape << proposed;
+    files.robot += proposed;
+    EXPECT_EQ(files.load().plant.capsules.size(), 2u) << shape;
+  }
+  SceneFiles files;
+  files.urdf = replaced(withCollisions(), "<sphere radius=\"0.07\"/>",
+                        "<capsule radius=\"0.07\" length=\"0.2\"/>");
+  EXPECT_NE(proposeCapsules(files.load())
+                .find("{link: tool, from_m: [0, 0, -0.1], to_m: [0, 0, 0.1], radius_m: 0.07}"),
+            std::string::npos);
+  for (const char* const shape : {"<box size=\"0 -1 0\"/>", "<sphere radius=\"-0.1\"/>"}) {
+    files.urdf = replaced(withCollisions(), "<sphere radius=\"0.07\"/>", shape);
+    const Scene scene = files.load();
+    EXPECT_THROW(proposeCapsules(scene), InputError) << shape;
+  }
+}
+
+/// As of most arms, whose vendors draw meshes alone.
+TEST(CapsuleProposal, OfMeshesAloneIsAcceptedToo) {
+  SceneFiles files;
+  files.urdf =
+      replaced(files.urdf, "<link name=\"link1\"/>",
+               "<link name=\"link1\"><collision><geometry><mesh filename=\"a.stl\"/></geometry>"
+               "</collision></link>");
+  const std::string proposed = proposeCapsules(files.load());
+  EXPECT_NE(proposed.find("# link1: a mesh"), std::string::npos);
+  files.robot += proposed;
+  EXPECT_TRUE(files.load().plant.capsules.empty());
+}
+
 TEST(CapsuleProposal, IsAcceptedAsItIs) {
   SceneFiles files;
   files.urdf = withCollisions();
@@ -142,7 +182,7 @@ TEST(CapsuleProposal, SaysThatTheSceneReadsNoModule) {
 }
 
 TEST(CapsuleProposal, RefusesGeometryThatIsNone) {
-  for (const char* bad : {"0", "-1", "nan", "wide"}) {
+  for (const char* bad : {"-1", "nan", "wide"}) {
     SceneFiles files;
     files.urdf =
         replaced(withCollisions(), "radius=\"0.07\"", "radius=\"" + std::string(bad) + "\"");

@@ -28,6 +28,7 @@ struct RobotDraft {
   UrdfChain chain;
   std::vector<double> masses_kg;         ///< that move with each joint alone; empty: not known
   std::string mass_problem;              ///< why not
+  bool are_radii_assumed = false;        ///< of capsules on the ways from joint to joint
   std::vector<double> max_acceleration;  ///< assumed
   HomePose home;
   Pose X_BaseTool;  ///< there
