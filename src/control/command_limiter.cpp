@@ -38,14 +38,26 @@ double brake(double v, double distance, double acceleration, double period_s) {
   return std::clamp(v, -speed, speed);
 }
 
-/// The largest factor of at most 1 that brings every v into its interval; 1 if there is none.
-double commonFactor(const JointVector& velocity, const Interval* intervals) {
+/// The factor to which the limits of speed alone shorten the command.
+double speedFactor(const JointVector& velocity, const JointVector& max_velocity) {
+  double factor = 1.0;
+  for (int i = 0; i < velocity.size(); ++i)
+    if (std::abs(velocity[i]) > max_velocity[i])
+      factor = std::min(factor, max_velocity[i] / std::abs(velocity[i]));
+  return factor;
+}
+
+/// The largest factor of at most 1 that brings every v into its interval. If there is none, that
+/// of the speeds alone: each joint goes there by itself, and a few cycles on all have their
+/// direction. By the command as it is they would keep another for as long as it asks for too much.
+double commonFactor(const JointVector& velocity, const Interval* intervals,
+                    const JointVector& max_velocity) {
   double low = 0.0;
   double high = 1.0;
   for (int i = 0; i < velocity.size(); ++i) {
     const double v = velocity[i];
     if (v == 0.0) {
-      if (!intervals[i].contains(0.0)) return 1.0;
+      if (!intervals[i].contains(0.0)) return speedFactor(velocity, max_velocity);
       continue;
     }
     const double a = intervals[i].low / v;
@@ -53,7 +65,7 @@ double commonFactor(const JointVector& velocity, const Interval* intervals) {
     low = std::max(low, std::min(a, b));
     high = std::min(high, std::max(a, b));
   }
-  return low <= high ? high : 1.0;
+  return low <= high ? high : speedFactor(velocity, max_velocity);
 }
 
 }  // namespace
@@ -106,7 +118,7 @@ bool CommandLimiter::apply(const JointVector& q, const JointVector& velocity_bef
   const bool finite = std::isfinite(sum);
   if (!finite) velocity.setZero();
   if (admissible && finite) return true;
-  const double factor = commonFactor(velocity, intervals);
+  const double factor = commonFactor(velocity, intervals, limits_.max_velocity);
   for (int i = 0; i < velocity.size(); ++i)
     velocity[i] = std::clamp(factor * velocity[i], intervals[i].low, intervals[i].high);
   return finite;

@@ -204,13 +204,19 @@ TEST(CommandLimiter, ScalesAllJointsByWhatOneOfThemNeeds) {
                                   {1.25, 0.0, 0.0},
                                   {kFree, 0.25, kFree},
                                   {0.25, kFree, kFree},
-                                  {1.0, 0.25, 0.4}},
+                                  {1.0, 0.25, 0.2}},
                                  {"nor does one for a joint that cannot rest yet",
                                   {0.0, 0.5, 0.4},
                                   {1.0, 0.5, 0.4},
                                   free,
                                   {0.25, kFree, kFree},
-                                  {0.75, 0.5, 0.4}}};
+                                  {0.75, 0.5, 0.4}},
+                                 {"nor for that, beside one that is too fast",
+                                  {0.0, 0.5, 0.4},
+                                  {1.0, 0.5, 0.4},
+                                  {kFree, 0.25, kFree},
+                                  {0.25, kFree, kFree},
+                                  {0.75, 0.25, 0.2}}};
   for (const ScaledCommand& c : cases) {
     JointLimits limits;
     limits.lower = JointVector::Constant(3, -kNoLimit);
@@ -222,6 +228,23 @@ TEST(CommandLimiter, ScalesAllJointsByWhatOneOfThemNeeds) {
     EXPECT_LT((v - JointVector(c.expected)).cwiseAbs().maxCoeff(), 1e-15)
         << c.what << ": " << v.transpose();
   }
+}
+
+/// One that has lost it to a slow joint, whose ramp is slow, too, as that of a lift before an arm.
+TEST(CommandLimiter, FindsTheDirectionAgainWhileTheCommandIsTooFast) {
+  JointLimits limits = test::noLimits(2);
+  limits.max_velocity << 0.035, 2.5;
+  limits.max_acceleration << 0.17, 12.0;
+  const CommandLimiter limiter(limits);
+  const JointVector wanted{{-0.1, -0.3}};
+  JointVector v{{0.0, -0.3}};  // so far it was for the second joint alone
+  for (int cycle = 0; cycle < 500; ++cycle) {
+    const JointVector before = v;
+    v = wanted;
+    ASSERT_TRUE(limiter.apply(JointVector::Zero(2), before, 0.001, v));
+  }
+  EXPECT_NEAR(v[0], -0.035, 1e-12);
+  EXPECT_NEAR(v[1], -0.105, 1e-12);
 }
 
 /// Whichever joint it is, and whatever limits it.
