@@ -1,5 +1,6 @@
 #include "tactus/supervisor/joint_places.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus {
@@ -16,6 +17,7 @@ JointVector maxFollowingErrors(const HardwareConfig& hardware) {
 
 JointPlaces::JointPlaces(const JointVector& q_start, const HardwareConfig& hardware)
     : q_commanded_(q_start),
+      q_before_(q_start),
       q_released_(q_start),
       max_following_error_(maxFollowingErrors(hardware)),
       stop_way_(JointVector::Zero(q_start.size())),
@@ -23,6 +25,7 @@ JointPlaces::JointPlaces(const JointVector& q_start, const HardwareConfig& hardw
       tolerance_(hardware.start_tolerance) {}
 
 void JointPlaces::command(const JointVector& q, const JointVector& velocity) noexcept {
+  q_before_ = q_commanded_;
   q_commanded_ = q;
   stop_way_ = stop_deadline_s_ * velocity.cwiseAbs() + max_following_error_;
   is_held_.fill(true);
@@ -30,7 +33,8 @@ void JointPlaces::command(const JointVector& q, const JointVector& velocity) noe
 
 void JointPlaces::observe(int joint, double q_measured, bool is_holding, bool is_let_go) noexcept {
   is_held_[joint] = is_held_[joint] && !is_let_go;
-  const double way = std::abs(q_measured - q_commanded_[joint]);
+  const double way =
+      std::min(std::abs(q_measured - q_commanded_[joint]), std::abs(q_measured - q_before_[joint]));
   if (is_held_[joint] && is_holding && way <= stop_way_[joint]) q_released_[joint] = q_measured;
 }
 

@@ -57,6 +57,18 @@ TEST(JointPlaces, EndWhereNoStopLeadsTo) {
   EXPECT_EQ(joints.outOfPlace(places(0.0, 1.01 * longest)), 1);
 }
 
+/// A drive that heard nothing in missed cycles has stopped near where they began.
+TEST(JointPlaces, FollowAStopThatBeganBeforeMissedCycles) {
+  JointPlaces joints(places(0, 0), twoDrives());
+  joints.command(places(0.5, 0.5), places(0.2, 0.2));
+  joints.command(places(2.5, 2.5), places(0.2, 0.2));
+  const double longest = CanopenConfig{}.stop_deadline_s * 0.2 + DriveConfig{}.max_following_error;
+  joints.observe(0, 0.5 + 0.99 * longest, true, false);
+  joints.observe(1, 0.5 + 1.01 * longest, true, false);
+  EXPECT_EQ(joints.outOfPlace(places(0.5 + 0.99 * longest, 2.5)), -1);
+  EXPECT_EQ(joints.outOfPlace(places(2.5, 0.5 + 1.01 * longest)), 1);
+}
+
 TEST(JointPlaces, AreTheCommandedOnesWhereAJointIsDoubted) {
   JointPlaces joints(places(0, 0), twoDrives());
   joints.command(places(0.5, 0.5), places(0.2, 0.2));

@@ -192,6 +192,28 @@ TEST(MoteusCycle, GoesOnAfterAPause) {
   }
 }
 
+/// They stop further on than the tolerance of a start.
+TEST(MoteusCycle, GoesOnAfterAPauseInAFastMotion) {
+  Scene scene = test::shippedScene("robots/planar2_moteus",
+                                   {{"task.trajectory.line.speed_m_per_s", "0.3"},
+                                    {"task.trajectory.line.displacement_m", "[-0.4, 0, 0]"}});
+  scene.hardware->gpio.emplace();
+  scene.hardware->gpio->enable.emplace();
+  MoteusCell running(scene);
+  ASSERT_TRUE(running.runUntil(Mode::kRunning, 2000));
+  for (int i = 0; i < 5000 && running.fastest() < 0.45; ++i) running.step();
+  ASSERT_GE(running.fastest(), 0.45) << "rad/s";
+  for (const int missed : {150, 800, 5000}) {
+    SCOPED_TRACE(missed);
+    MoteusCell cell = running;
+    cell.pause(missed);
+    cell.steps(1000);
+    EXPECT_EQ(cell.cycle.report().fault, Fault::kOverrun);
+    cell.switchEnable();
+    EXPECT_TRUE(cell.runUntil(Mode::kRunning, 3000)) << faultName(cell.cycle.report().fault);
+  }
+}
+
 struct WrongStart {
   const char* what;
   std::function<void(CanFrame&)> change;  ///< of a reply of node 2 in the set-up

@@ -20,7 +20,8 @@ class JointPlaces {
 
   /// What is seen of a joint. Each by its own drive: one that lies says nothing of the others, a
   /// joint that was let go may have been pushed, and one that went further than any stop was not
-  /// stopped. is_holding: its drive holds it or slows it down.
+  /// stopped: neither from where it was commanded to be, nor from where it was before that, as a
+  /// drive that heard nothing in missed cycles. is_holding: its drive holds it or slows it down.
   void observe(int joint, double q_measured, bool is_holding, bool is_let_go) noexcept;
 
   /// The joint's feedback cannot be believed: its place is the one that was commanded.
@@ -35,6 +36,7 @@ class JointPlaces {
 
  private:
   JointVector q_commanded_;
+  JointVector q_before_;    ///< by the command before: missed cycles may lie between
   JointVector q_released_;  ///< where each joint's drive held it at last
   JointVector max_following_error_;
   JointVector stop_way_;  ///< the longest of a stop, from where each joint was commanded
