@@ -77,7 +77,11 @@ Json ControlClient::change(const Json& request, bool until_kept, double at_most_
   do {
     std::this_thread::sleep_for(kAskAgain);  // the loop takes an order within some cycles
     answer = ask({{"do", "show"}});
-  } while (answer.at("number") == number && isOnItsWay(answer, until_kept) && hasTime());
+    if (answer.at("number") != number)  // what it tells is not of ours
+      throw InputError(
+          "another change has come meanwhile, which may have taken this one back; "
+          "`tactus diff` shows what runs");
+  } while (isOnItsWay(answer, until_kept) && hasTime());
   answer["changes"] = changes;
   return answer;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -14,13 +15,16 @@
 #include "support/written_scene.h"
 #include "tactus/daemon/control_requests.h"
 #include "tactus/io/packet_socket.h"
+#include "tactus/scene/input_error.h"
 #include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {
 
-/// Answers one client until it has gone; what it orders is on its way for ever.
-void answerAll(const PacketSocket& listening, ControlRequests& requests, LoopLink& link) {
+/// Answers one client until it has gone; what it orders is on its way for ever. then: after each.
+void answerAll(
+    const PacketSocket& listening, ControlRequests& requests, LoopLink& link,
+    const std::function<void()>& then = [] {}) {
   const auto await = [](int fd) {
     pollfd waiting{fd, POLLIN, 0};
     return ::poll(&waiting, 1, 10000) > 0;
@@ -33,6 +37,7 @@ void answerAll(const PacketSocket& listening, ControlRequests& requests, LoopLin
     if (size <= 0) return;
     link.gain_reports.put({.number = 1, .state = GainState::kRamping});
     client.send(requests.answer({room.data(), static_cast<std::size_t>(size)}));
+    then();
   }
 }
 
@@ -51,6 +56,29 @@ TEST(ControlClient, WaitsNoLongerForARampThanItIsTold) {
     EXPECT_EQ(answer.at("state"), "ramping");
     EXPECT_EQ(answer.at("changes").at("controller.damping").at("to"), 0.8);
     EXPECT_EQ(answer.at("trouble"), "");
+  }
+  daemon.join();
+}
+
+/// The state of another's change says nothing of ours, which it may have taken back.
+TEST(ControlClient, SaysThatAnotherChangeHasComeMeanwhile) {
+  test::WrittenScene file(0.7);
+  const auto link = std::make_unique<LoopLink>();
+  ControlRequests requests(loadScene(file.path(), {}), *link);
+  const std::string path = file.folder().path() + "/asked";
+  const PacketSocket listening = PacketSocket::listenAt(path, 1);
+  std::thread daemon(
+      [&] { answerAll(listening, requests, *link, [&] { requests.answer(R"({"do":"undo"})"); }); });
+  {
+    const ControlClient client(path);
+    const Json change = {{"do", "set"}, {"values", {{"controller.damping", 0.8}}}};
+    try {
+      client.change(change, true);
+      ADD_FAILURE() << "another's change is told as ours";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("another change"), std::string::npos)
+          << error.what();
+    }
   }
   daemon.join();
 }

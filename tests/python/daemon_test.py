@@ -52,6 +52,29 @@ class Running(unittest.TestCase):
         self.daemon.set({"controller.damping": before + 0.02}, for_s=600)
         self.assertEqual(self.daemon.reload()["ordered"]["controller.damping"], before)
 
+    def test_says_that_another_change_has_come(self):
+        os.environ["RUNTIME_DIRECTORY"] = str(self.rig.runtime)
+        self.addCleanup(os.environ.pop, "RUNTIME_DIRECTORY")
+        before = self.daemon.show()["ordered"]["controller.damping"]
+
+        def takes_back(damping):  # which waits for a contact that never comes
+            while self.daemon.show()["ordered"]["controller.damping"] != damping:
+                time.sleep(0.01)
+            self.daemon.set({"controller.damping": before})
+
+        other = threading.Thread(target=takes_back, args=(before + 0.03,))
+        other.start()
+        with tactus.Daemon(self.rig.runtime / "control") as waiting, \
+                self.assertRaisesRegex(tactus.DaemonError, "^another change has come"):
+            waiting.set({"controller.damping": before + 0.03}, wait=True)
+        other.join()
+        other = threading.Thread(target=takes_back, args=(before + 0.04,))
+        other.start()
+        ended = program("set", f"controller.damping={before + 0.04}", "--wait")
+        other.join()
+        self.assertEqual((ended.returncode, ended.stdout), (1, ""))
+        self.assertRegex(ended.stderr, "^another change has come[^\n]*\n$")
+
     def test_does_not_say_that_what_runs_already_waits(self):
         os.environ["RUNTIME_DIRECTORY"] = str(self.rig.runtime)
         self.addCleanup(os.environ.pop, "RUNTIME_DIRECTORY")

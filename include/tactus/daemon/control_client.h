@@ -20,7 +20,8 @@ class ControlClient {
 
   /// The last answer to a change, with its `changes`: when the gains are there, or wait for a
   /// moment without contact; with `until_kept` when they are kept, or have gone back; after
-  /// `at_most_s` in any case, with the `state` of then.
+  /// `at_most_s` in any case, with the `state` of then. Throws as ask(), and InputError where
+  /// another change comes before that: answers then tell of that one.
   Json change(const Json& request, bool until_kept, double at_most_s = kNoLimit) const;
 
  private:

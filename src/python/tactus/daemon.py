@@ -118,7 +118,7 @@ class Daemon:
 
         Returns the last answer, with `changes`: when the gains are there, or wait for a moment without
         contact; with `wait` when they are kept, for which the arm has to have been in contact for a while,
-        or went back, of which `trouble` says why.
+        or went back, of which `trouble` says why. A DaemonError where another change comes before that.
         """
         return self._change(_without_none({"do": "set", "values": dict(values), "for_s": for_s}), wait)
 
@@ -181,7 +181,9 @@ class Daemon:
         while changes or answer["state"] == "waiting":
             time.sleep(0.1)  # the loop takes an order within some cycles
             answer = self.show()
-            if answer["number"] != number or answer["state"] not in on_its_way:
+            if answer["number"] != number:  # what it tells is not of ours
+                raise DaemonError("another change has come meanwhile, which may have taken this one back")
+            if answer["state"] not in on_its_way:
                 break
         return answer | {"changes": changes}
 
