@@ -1,6 +1,7 @@
 #include "tactus/canopen/can_robot.h"
 
 #include <algorithm>
+#include <cmath>
 #include <variant>
 
 #include "tactus/canopen/canopen.h"
@@ -80,7 +81,6 @@ void CanRobot::read(RobotInput& input) noexcept {
     visitKind([&](auto& it) { it.observe(place); }, drives_[i]);
     input.q_measured[joint] = drive(joint).position;
   }
-  has_paused_ = false;
   for (std::size_t i = 0; i < tactile_modules_.size(); ++i) {
     tactile_modules_[i].tick();
     // One that the module says is none is not worth more than silence.
@@ -107,10 +107,11 @@ void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
     FrameBatch& outbox = outboxes_[busOf(drives_[i])];
     visitKind(
         [&](auto& it) {
-          it.update(goal_, is_restart_, velocity_setpoint[joint], q_commanded_[joint], outbox);
+          it.update(goal_, is_restart_, velocity_setpoint[joint], placeToTrack(joint), outbox);
         },
         drives_[i]);
   }
+  has_paused_ = false;
   for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
     if (has_canopen_[bus]) outboxes_[bus].push(syncFrame());
   }
@@ -124,6 +125,14 @@ void CanRobot::release() noexcept {
   for (FrameBatch& outbox : outboxes_) outbox.clear();
   for (const AnyDrive& drive : drives_)
     visitKind([&](const auto& it) { it.release(outboxes_[it.bus()]); }, drive);
+}
+
+/// A drive that was heard of before a pause or in it is not behind for the way of the pause.
+double CanRobot::placeToTrack(int joint) const noexcept {
+  const double now = q_commanded_[joint];
+  if (!has_paused_ || !std::isfinite(now)) return now;
+  const double before = q_before_pause_[joint];
+  return std::clamp(drive(joint).position, std::min(before, now), std::max(before, now));
 }
 
 const DriveReport& CanRobot::drive(int joint) const noexcept { return reportOf(drives_[joint]); }

@@ -285,6 +285,33 @@ TEST(CanRobot, PullsItsDrivesToWhereTheyAreCommandedToBe) {
     EXPECT_NEAR(rig.slaves[joint].velocity, 10.0 * apart[joint] * 1e6, 1.0) << joint;
 }
 
+/// What they tell after a pause may be of its begin: no lag, though they are commanded further on.
+TEST(CanRobot, PullsNoDriveForTheWayOfMissedCycles) {
+  HardwareConfig hardware = RobotRig::hardware();
+  for (DriveConfig& drive : hardware.drives) drive.tracking_gain_per_s = 10.0;
+  RobotRig rig(hardware);
+  rig.enable();
+  RobotInput input;
+  rig.robot.read(input);
+  const JointVector start = input.q_measured;
+  const JointVector apart = (JointVector(2) << 0.01, -0.02).finished();
+  const auto cycle = [&](const JointVector& q) {
+    rig.robot.expect(q);
+    rig.robot.read(input);
+    rig.robot.command(DriveGoal::kEnabled, false, q);
+    rig.robot.write(JointVector::Constant(2, 0.1));
+    for (const CanFrame& frame : rig.robot.outbox(0))
+      for (ScriptedDrive& slave : rig.slaves) slave.hear(frame);
+  };
+  cycle(start);
+  rig.robot.coast(20);
+  cycle(start + apart);
+  for (const int joint : {0, 1}) EXPECT_NEAR(rig.slaves[joint].velocity, 0.1e6, 1.0) << joint;
+  cycle(start + apart);
+  for (const int joint : {0, 1})
+    EXPECT_NEAR(rig.slaves[joint].velocity, (0.1 + 10.0 * apart[joint]) * 1e6, 1.0) << joint;
+}
+
 /// Of the same identifiers, each on its bus.
 TEST(CanRobot, HearsItsTactileModules) {
   HardwareConfig hardware = RobotRig::hardware();

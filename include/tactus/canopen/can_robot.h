@@ -65,6 +65,8 @@ class CanRobot final : public Robot {
   std::span<TactileReceiver> tactileModules() noexcept { return tactile_modules_; }
 
  private:
+  double placeToTrack(int joint) const noexcept;
+
   std::vector<AnyDrive> drives_;
   std::vector<TactileReceiver> tactile_modules_;
   std::vector<FrameBatch> outboxes_;  ///< one a bus
@@ -76,7 +78,7 @@ class CanRobot final : public Robot {
   bool is_restart_ = false;
   JointVector q_commanded_;
   JointVector q_before_pause_;
-  bool has_paused_ = false;
+  bool has_paused_ = false;  ///< just before this cycle
 };
 
 }  // namespace tactus
