@@ -113,8 +113,10 @@ constexpr auto kHazards = std::to_array<Hazard>({
      "`FaultInContact.RestartsByTheEnableLineOnly`, `python.mode_model`", "the latched fault",
      "none, until the line is off and on", "", "who switches has to look", "mode `fault`"},
     {kUnasked, "a bus gets its power back, and old setpoints wait in queues", Fault::kNone,
-     "`ControlCyclePowerCut.BringsNoStaleSetpointToADrive`, `hil.faults`", "unconfirmed frames",
-     "none are sent", "1 cycle", "nothing", "`bus_unacknowledged`"},
+     "`ControlCyclePowerCut.BringsNoStaleSetpointToADrive`, "
+     "`MoteusCycle.FollowsASetpointThatWaitedForPowerNoLongerThanItsWatchdog`, `hil.faults`",
+     "unconfirmed frames", "none are sent", "1 cycle",
+     "nothing; a moteus moves as before for `heartbeat_timeout_s` at most", "`bus_unacknowledged`"},
     {kUnasked, "a second daemon takes the same buses", Fault::kNone,
      "`InterfaceLock.IsHeldByOneAtATime`, `hil.faults`", "a lock of each interface",
      "the second one does not start", "before motion", "programs that are not ours", "exit code 3"},

@@ -237,6 +237,27 @@ TEST(MoteusCycle, IsNoFasterAfterAPauseWhereDrivesAreTracked) {
   }
 }
 
+/// One that the adapter still tries to send when the bus has power again.
+TEST(MoteusCycle, FollowsASetpointThatWaitedForPowerNoLongerThanItsWatchdog) {
+  MoteusCell cell = fastCell();
+  const double before = cell.fastest();
+  cell.play(MoteusKind::kPowerCut, 0);
+  cell.steps(1500);
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kBusUnacknowledged);
+  EXPECT_EQ(cell.fastest(), 0.0);
+  cell.plant.play({}, cell.t_ns);
+  int moving_ms = 0;
+  for (int i = 0; i < 1000; ++i) {
+    cell.step();
+    EXPECT_LE(cell.fastest(), 1.05 * before) << i;
+    moving_ms += cell.fastest() > 0.0 ? 1 : 0;
+  }
+  const double stop_ms = 1e3 * before / MoteusSlave::kDeceleration;
+  EXPECT_LE(moving_ms, 60 + stop_ms + 2) << "heartbeat_timeout_s, and what it takes to slow down";
+  EXPECT_EQ(cell.cycle.report().mode, Mode::kFault);
+  EXPECT_EQ(cell.fastest(), 0.0);
+}
+
 struct WrongStart {
   const char* what;
   std::function<void(CanFrame&)> change;  ///< of a reply of node 2 in the set-up
