@@ -11,7 +11,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kStiffest_N_per_m = 7000.0;
+constexpr double kArmStiffness_N_per_m = 7000.0;
 
 double simulatedPeak_N(const Scene& scene) {
   test::ClosedLoop loop(scene.controller, scene.plant, scene.period_s);
@@ -34,7 +34,7 @@ Scene planarTouch(const std::string& components, const std::string& controller) 
 /// With x and y bound two joints have no null space, so that the path presses the arm on.
 TEST(HeldTouch, IsAWarningWithTheForceThatThePathComesTo) {
   const Scene scene = planarTouch("[x, y]", "{variant: null_space}");
-  const ExpectedContact expected = checkContacts(scene, kStiffest_N_per_m);
+  const ExpectedContact expected = checkContacts(scene, kArmStiffness_N_per_m);
   ASSERT_EQ(expected.warnings.size(), 1u);
   const std::string& warning = expected.warnings[0];
   const std::string said =
@@ -51,7 +51,7 @@ TEST(HeldTouch, IsNoneWhereTheArmGivesWay) {
   for (const Scene& scene : {planarTouch("[x]", "{variant: null_space}"),
                              planarTouch("[x, y]", "{variant: null_limit, activation_force_N: 4}"),
                              planarTouch("[x, y]", "{variant: task_space}")}) {
-    const ExpectedContact expected = checkContacts(scene, kStiffest_N_per_m);
+    const ExpectedContact expected = checkContacts(scene, kArmStiffness_N_per_m);
     EXPECT_TRUE(expected.warnings.empty()) << scene.variant;
     ASSERT_EQ(expected.touches.size(), 1u);
     EXPECT_LT(simulatedPeak_N(scene), 6.0) << scene.variant;
