@@ -127,7 +127,8 @@ void CanRobot::release() noexcept {
     visitKind([&](const auto& it) { it.release(outboxes_[it.bus()]); }, drive);
 }
 
-/// A drive that was heard of before a pause or in it is not behind for the way of the pause.
+/// A drive whose reply is of before a pause, or of its middle, is not behind for the way of the
+/// pause.
 double CanRobot::placeToTrack(int joint) const noexcept {
   const double now = q_commanded_[joint];
   if (!has_paused_ || !std::isfinite(now)) return now;

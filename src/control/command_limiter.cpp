@@ -48,8 +48,9 @@ double speedFactor(const JointVector& velocity, const JointVector& max_velocity)
 }
 
 /// The largest factor of at most 1 that brings every v into its interval. If there is none, that
-/// of the speeds alone: each joint goes there by itself, and a few cycles on all have their
-/// direction. By the command as it is they would keep another for as long as it asks for too much.
+/// of the speeds alone: each joint goes there by itself, and has its part of the direction when its
+/// own acceleration allows. By the command as it is they would keep another for as long as it asks
+/// for too much.
 double commonFactor(const JointVector& velocity, const Interval* intervals,
                     const JointVector& max_velocity) {
   double low = 0.0;

@@ -15,6 +15,8 @@ constexpr double kFading = 0.2;
 /// A link that comes back to the contact that it has lost, before it went elsewhere, had not
 /// remembered it for long enough.
 constexpr double kLeastHaste = 1.0 / 64.0;
+/// Of the products of a cycle the first level takes no more: the second one has to hold.
+constexpr double kFirstShare = 0.5;
 constexpr double kElsewhere = 0.5;  ///< of the distance where a contact is another
 
 /// How fast m fades; 0 while the contact is felt.
@@ -197,7 +199,7 @@ double SeveralContacts::holdInNullSpace(const ForceGains& gains, const SpeedRows
                                         const RowVector& v_hold, int contacts, RowProblem& problem,
                                         NullSpeedLimits& limits, Motion& motion) const noexcept {
   if (rows.size == 0) return 0.0;
-  const RowVector l = problem.solve(v_hold, kNullSpaceAlone, motion).l;
+  const RowVector l = problem.solve(v_hold, kNullSpaceAlone, motion, kFirstShare).l;
   Motion push;
   push.y.setZero();
   push.v_scaled.setZero();

@@ -116,7 +116,7 @@ bool RowProblem::repeat(const RowMatrix& K, const RowVector& delta, const RowVec
 }
 
 RowMultipliers RowProblem::solve(const RowVector& v_max_m_per_s, const RowSpace& space,
-                                 const Motion& motion) noexcept {
+                                 const Motion& motion, double share) noexcept {
   RowVector lacking(rows_.size);
   bool is_kept = true;
   for (int i = 0; i < rows_.size; ++i) {
@@ -132,7 +132,10 @@ RowMultipliers RowProblem::solve(const RowVector& v_max_m_per_s, const RowSpace&
   respond(space, K, delta);
   for (int i = 0; i < rows_.size; ++i) K(i, i) += delta[i];
   RowMultipliers found;
+  const int for_others = products_left_ - static_cast<int>(share * products_left_);
+  products_left_ -= for_others;
   found.is_whole = repeat(K, delta, lacking, found.l);
+  products_left_ += for_others;
   return found;
 }
 

@@ -67,7 +67,7 @@ void Complementarity::hold(int row) noexcept {
 /// Q^T y its forward solution.
 void Complementarity::release(int i) noexcept {
   std::array<double, kMaxRows> cosine, sine;
-  products_left_ -= size_ * (size_ - i);
+  products_left_ -= 2 * (size_ - i) * (size_ - i);
   --size_;
   const auto rotate = [&](const double* from, int end, double* to) {
     double carried = from[i];

@@ -1,7 +1,8 @@
 #include "tactus/supervisor/joint_places.h"
 
-#include <algorithm>
 #include <cmath>
+
+#include "tactus/canopen/joint_tracking.h"
 
 namespace tactus {
 namespace {
@@ -33,8 +34,7 @@ void JointPlaces::command(const JointVector& q, const JointVector& velocity) noe
 
 void JointPlaces::observe(int joint, double q_measured, bool is_holding, bool is_let_go) noexcept {
   is_held_[joint] = is_held_[joint] && !is_let_go;
-  const double way =
-      std::min(std::abs(q_measured - q_commanded_[joint]), std::abs(q_measured - q_before_[joint]));
+  const double way = distanceFrom({q_commanded_[joint], q_before_[joint]}, q_measured);
   if (is_held_[joint] && is_holding && way <= stop_way_[joint]) q_released_[joint] = q_measured;
 }
 

@@ -70,7 +70,7 @@ struct Draw {
 
   void keep() {
     RowProblem problem(rows, config.task.size);
-    const RowMultipliers found = problem.solve(ownSpeeds(rows), kNullSpaceAlone, motion);
+    const RowMultipliers found = problem.solve(ownSpeeds(rows), kNullSpaceAlone, motion, 0.5);
     addRows(rows, found.l, kNullSpaceAlone, motion);
     problem.keep(motion);
   }

@@ -226,6 +226,25 @@ TEST(SpeedRows, AreKeptByASlowerMotionWhereTheSolverMustEndEarly) {
   EXPECT_GT(cut, 1000);
 }
 
+/// The second level finds what the first one had to leave it.
+TEST(SpeedRows, HaveHalfOfTheProductsForTheSecondLevel) {
+  test::Random random(323);
+  int cut = 0;
+  for (int i = 0; i < 1000; ++i) {
+    RowsCase c(random, random.integer(4, 40));
+    const int step = c.rows.size * c.rows.size * 2;
+    const int products = 2 * (random.integer(100, 4000) + step);
+    RowProblem both(c.rows, c.m, products), second(c.rows, c.m, products / 2 - step);
+    Motion motion = c.motion;
+    cut += both.solve(ownSpeeds(c.rows), kNullSpaceAlone, motion, 0.5).is_whole ? 0 : 1;
+    if (!RowProblem(second).solve(ownSpeeds(c.rows), kBothSpaces, motion).is_whole) continue;
+    Motion other = motion;
+    ASSERT_EQ(both.keep(motion), second.keep(other)) << i;
+    ASSERT_EQ(motion.v_scaled, other.v_scaled);
+  }
+  EXPECT_GT(cut, 100);
+}
+
 /// And no slower than the first of them asks for, whatever hardly moves or stands.
 TEST(SpeedRows, SlowAMotionDownNoFurtherThanTheyHaveTo) {
   test::Random random(321);

@@ -116,7 +116,8 @@ constexpr auto kHazards = std::to_array<Hazard>({
      "`ControlCyclePowerCut.BringsNoStaleSetpointToADrive`, "
      "`MoteusCycle.FollowsASetpointThatWaitedForPowerNoLongerThanItsWatchdog`, `hil.faults`",
      "unconfirmed frames", "none are sent", "1 cycle",
-     "nothing; a moteus moves as before for `heartbeat_timeout_s` at most", "`bus_unacknowledged`"},
+     "nothing; a moteus moves as before for `heartbeat_timeout_s` at most, and slows down",
+     "`bus_unacknowledged`"},
     {kUnasked, "a second daemon takes the same buses", Fault::kNone,
      "`InterfaceLock.IsHeldByOneAtATime`, `hil.faults`", "a lock of each interface",
      "the second one does not start", "before motion", "programs that are not ours", "exit code 3"},

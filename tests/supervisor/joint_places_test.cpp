@@ -57,16 +57,21 @@ TEST(JointPlaces, EndWhereNoStopLeadsTo) {
   EXPECT_EQ(joints.outOfPlace(places(0.0, 1.01 * longest)), 1);
 }
 
-/// A drive that heard nothing in missed cycles has stopped near where they began.
+/// A drive that heard nothing in missed cycles has stopped where they began, or on the way since.
 TEST(JointPlaces, FollowAStopThatBeganBeforeMissedCycles) {
-  JointPlaces joints(places(0, 0), twoDrives());
-  joints.command(places(0.5, 0.5), places(0.2, 0.2));
-  joints.command(places(2.5, 2.5), places(0.2, 0.2));
   const double longest = CanopenConfig{}.stop_deadline_s * 0.2 + DriveConfig{}.max_following_error;
-  joints.observe(0, 0.5 + 0.99 * longest, true, false);
-  joints.observe(1, 0.5 + 1.01 * longest, true, false);
-  EXPECT_EQ(joints.outOfPlace(places(0.5 + 0.99 * longest, 2.5)), -1);
-  EXPECT_EQ(joints.outOfPlace(places(2.5, 0.5 + 1.01 * longest)), 1);
+  for (const double stopped : {0.5 - 0.99 * longest, 0.5, 1.5, 2.5, 2.5 + 0.99 * longest}) {
+    JointPlaces joints(places(0, 0), twoDrives());
+    joints.command(places(0.5, 0.5), places(0.2, 0.2));
+    joints.command(places(2.5, 2.5), places(0.2, 0.2));
+    joints.observe(0, stopped, true, false);
+    joints.observe(1, 0.5 - 1.01 * longest, true, false);
+    EXPECT_EQ(joints.outOfPlace(places(stopped, 2.5)), -1) << stopped;
+    EXPECT_EQ(joints.outOfPlace(places(2.5, 0.5 - 1.01 * longest)), 1);
+    joints.command(places(2.5, 2.5), places(0.2, 0.2));  // no cycle was missed before this one
+    joints.observe(1, 1.5, true, false);
+    EXPECT_EQ(joints.outOfPlace(places(2.5, 1.5)), 1);
+  }
 }
 
 TEST(JointPlaces, AreTheCommandedOnesWhereAJointIsDoubted) {

@@ -19,6 +19,9 @@ struct CommandedPlace {
   double before_pause;  ///< the same where no cycle was missed
 };
 
+/// How far `position` is from the way between the two; 0: it is on it.
+double distanceFrom(const CommandedPlace& place, double position) noexcept;
+
 /// Latches kFollowingError, or kCommandNotFinite. is_new: the report's position came in this cycle.
 void judgePosition(const DriveConfig& config, const CommandedPlace& place, bool is_new,
                    DriveReport& report) noexcept;

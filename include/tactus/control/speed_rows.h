@@ -71,9 +71,10 @@ class RowProblem {
   RowProblem(const SpeedRows& rows, int task_size, int products = kMostProducts) noexcept
       : rows_(rows), task_size_(task_size), products_left_(products) {}
 
-  /// v_max_m_per_s: in place of the rows' own.
-  RowMultipliers solve(const RowVector& v_max_m_per_s, const RowSpace& space,
-                       const Motion& motion) noexcept;
+  /// v_max_m_per_s: in place of the rows' own. share: of the products that are left it takes no
+  /// more.
+  RowMultipliers solve(const RowVector& v_max_m_per_s, const RowSpace& space, const Motion& motion,
+                       double share = 1.0) noexcept;
 
   /// Adds to the motion what it takes to keep the rows, by kBothSpaces. Where no products are left,
   /// the whole motion is slowed down until it keeps all rows with v_max >= 0. Returns l.

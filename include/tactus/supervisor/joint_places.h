@@ -20,8 +20,8 @@ class JointPlaces {
 
   /// What is seen of a joint. Each by its own drive: one that lies says nothing of the others, a
   /// joint that was let go may have been pushed, and one that went further than any stop was not
-  /// stopped: neither from where it was commanded to be, nor from where it was before that, as a
-  /// drive that heard nothing in missed cycles. is_holding: its drive holds it or slows it down.
+  /// stopped: from where the last command put it, the one before, or between, as a drive stops that
+  /// heard nothing in missed cycles. is_holding: its drive holds it or slows it down.
   void observe(int joint, double q_measured, bool is_holding, bool is_let_go) noexcept;
 
   /// The joint's feedback cannot be believed: its place is the one that was commanded.
