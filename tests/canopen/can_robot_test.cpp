@@ -34,7 +34,10 @@ struct RobotRig {
     RobotInput input;
     robot.read(input);
     robot.command(goal, is_restart, input.q_measured);
-    robot.write(JointVector::Zero(2));
+    write(JointVector::Zero(2));
+  }
+  void write(const JointVector& velocity) {
+    robot.write(velocity);
     for (const CanFrame& frame : robot.outbox(0))
       for (ScriptedDrive& slave : slaves) slave.hear(frame);
   }
@@ -269,47 +272,50 @@ TEST(CanRobot, ForgetsTheFaultsOfItsDrivesByARestartAlone) {
   EXPECT_TRUE(rig.robot.drives().are_enabled);
 }
 
+/// With a tracking gain, enabled at `start`.
+struct TrackedRig : RobotRig {
+  TrackedRig() : RobotRig(tracked()) {
+    enable();
+    RobotInput input;
+    robot.read(input);
+    start = input.q_measured;
+  }
+
+  static HardwareConfig tracked() {
+    HardwareConfig config = hardware();
+    for (DriveConfig& drive : config.drives) drive.tracking_gain_per_s = 10.0;
+    return config;
+  }
+
+  JointVector start;
+  JointVector apart = (JointVector(2) << 0.01, -0.02).finished();  ///< further on
+};
+
 TEST(CanRobot, PullsItsDrivesToWhereTheyAreCommandedToBe) {
-  HardwareConfig hardware = RobotRig::hardware();
-  for (DriveConfig& drive : hardware.drives) drive.tracking_gain_per_s = 10.0;
-  RobotRig rig(hardware);
-  rig.enable();
-  RobotInput input;
-  rig.robot.read(input);
-  const JointVector apart = (JointVector(2) << 0.01, -0.02).finished();
-  rig.robot.command(DriveGoal::kEnabled, false, input.q_measured + apart);
-  rig.robot.write(JointVector::Zero(2));
-  for (const CanFrame& frame : rig.robot.outbox(0))
-    for (ScriptedDrive& slave : rig.slaves) slave.hear(frame);
+  TrackedRig rig;
+  rig.robot.command(DriveGoal::kEnabled, false, rig.start + rig.apart);
+  rig.write(JointVector::Zero(2));
   for (const int joint : {0, 1})
-    EXPECT_NEAR(rig.slaves[joint].velocity, 10.0 * apart[joint] * 1e6, 1.0) << joint;
+    EXPECT_NEAR(rig.slaves[joint].velocity, 10.0 * rig.apart[joint] * 1e6, 1.0) << joint;
 }
 
 /// What they tell after a pause may be of its begin: no lag, though they are commanded further on.
 TEST(CanRobot, PullsNoDriveForTheWayOfMissedCycles) {
-  HardwareConfig hardware = RobotRig::hardware();
-  for (DriveConfig& drive : hardware.drives) drive.tracking_gain_per_s = 10.0;
-  RobotRig rig(hardware);
-  rig.enable();
-  RobotInput input;
-  rig.robot.read(input);
-  const JointVector start = input.q_measured;
-  const JointVector apart = (JointVector(2) << 0.01, -0.02).finished();
+  TrackedRig rig;
   const auto cycle = [&](const JointVector& q) {
+    RobotInput input;
     rig.robot.expect(q);
     rig.robot.read(input);
     rig.robot.command(DriveGoal::kEnabled, false, q);
-    rig.robot.write(JointVector::Constant(2, 0.1));
-    for (const CanFrame& frame : rig.robot.outbox(0))
-      for (ScriptedDrive& slave : rig.slaves) slave.hear(frame);
+    rig.write(JointVector::Constant(2, 0.1));
   };
-  cycle(start);
+  cycle(rig.start);
   rig.robot.coast(20);
-  cycle(start + apart);
+  cycle(rig.start + rig.apart);
   for (const int joint : {0, 1}) EXPECT_NEAR(rig.slaves[joint].velocity, 0.1e6, 1.0) << joint;
-  cycle(start + apart);
+  cycle(rig.start + rig.apart);
   for (const int joint : {0, 1})
-    EXPECT_NEAR(rig.slaves[joint].velocity, (0.1 + 10.0 * apart[joint]) * 1e6, 1.0) << joint;
+    EXPECT_NEAR(rig.slaves[joint].velocity, (0.1 + 10.0 * rig.apart[joint]) * 1e6, 1.0) << joint;
 }
 
 /// Of the same identifiers, each on its bus.
