@@ -79,4 +79,8 @@ double blowPeak_N(double speed_m_per_s, double stiffness_N_per_m, double mass_kg
   return speed_m_per_s * std::sqrt(stiffness_N_per_m * mass_kg);
 }
 
+double pushOf_N(const ObstacleConfig& obstacle, double standing_N) {
+  return std::min(obstacle.slide_force_N.value_or(kNoLimit), standing_N);
+}
+
 }  // namespace tactus

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "tactus/analysis/contact_at_pose.h"
+#include "tactus/analysis/contact_peak.h"
 #include "tactus/scene/key_words.h"
 #include "tactus/scene/stability_check.h"
-#include "tactus/sim/obstacle.h"
 
 namespace tactus {
 namespace {
@@ -47,8 +46,7 @@ std::vector<std::string> heldTouches(const Scene& scene, const PathContacts& con
     if (!k || touch->deepest_m <= kMostWay * std::sqrt(*k)) continue;
     const ObstacleConfig& obstacle = scene.plant.obstacles[i];
     const ContactSpring spring(obstacle, scene.plant.robot_stiffness_N_per_m);
-    const double force_N =
-        std::min(obstacle.slide_force_N.value_or(kNoLimit), spring.force_N(touch->deepest_m));
+    const double force_N = pushOf_N(obstacle, spring.force_N(touch->deepest_m));
     if (force_N <= threshold_N + kMattersFrom_N) continue;
     warnings.push_back(fmt::format(
         "obstacle {}{} gets {:.3g} mm into the path, and {} moves the cover there by {:.1f} mm a "

@@ -45,11 +45,6 @@ std::optional<SofterTouch> softerTouch(const Scene& scene, const TouchedSpring& 
   return softer;
 }
 
-/// Of what it would push with if it stood.
-double pushOf_N(const ObstacleConfig& obstacle, double standing_N) {
-  return std::min(obstacle.slide_force_N.value_or(kNoLimit), standing_N);
-}
-
 std::vector<TouchReport> touchesOf(const Scene& scene, const PathContacts& contacts) {
   std::vector<TouchReport> reports;
   for (std::size_t i = 0; i < contacts.touches.size(); ++i) {

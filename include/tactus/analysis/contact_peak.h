@@ -40,4 +40,7 @@ std::optional<double> touchCutoff_hz(TouchedSpring touched, double speed_m_per_s
 /// Force of a blow: a free mass m at speed v against a spring k, by m v^2 / 2 = F^2 / (2 k), N.
 double blowPeak_N(double speed_m_per_s, double stiffness_N_per_m, double mass_kg);
 
+/// Of an obstacle that would push with standing_N if it did not slide, N.
+double pushOf_N(const ObstacleConfig& obstacle, double standing_N);
+
 }  // namespace tactus
