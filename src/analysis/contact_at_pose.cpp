@@ -4,7 +4,7 @@ namespace tactus {
 
 ContactAtPose contactAtPose(const ControllerConfig& config, const ChainPose& pose,
                             const ScaledVector& a) {
-  ContactAtPose contact;
+  ContactAtPose contact{};
   contact.inv_sqrt_weights =
       scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones());
   ScaledJacobian J;
