@@ -44,7 +44,7 @@ CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
       has_canopen_(hardware.buses.size(), false),
       heartbeat_(heartbeatFrame(hardware.canopen.master_node_id, NmtState::kOperational)),
       cycles_a_heartbeat_(cyclesWithin(hardware.canopen.heartbeat_period_s, period_s)),
-      q_commanded_(JointVector::Zero(static_cast<int>(hardware.drives.size()))) {
+      places_(JointVector::Zero(static_cast<int>(hardware.drives.size()))) {
   drives_.reserve(hardware.drives.size());
   for (const DriveConfig& drive : hardware.drives) {
     drives_.push_back(makeDrive(drive, hardware.canopen, period_s));
@@ -67,18 +67,15 @@ void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
 
 void CanRobot::coast(int missed_cycles) noexcept {
   cycles_to_heartbeat_ = std::max(0, cycles_to_heartbeat_ - missed_cycles);
-  q_before_pause_ = q_commanded_;
-  has_paused_ = true;
+  places_.coast();
   for (AnyDrive& drive : drives_) visitKind([&](auto& it) { it.coast(missed_cycles); }, drive);
 }
 
 void CanRobot::read(RobotInput& input) noexcept {
   input.q_measured.resize(static_cast<int>(drives_.size()));
-  const JointVector& q_before = has_paused_ ? q_before_pause_ : q_commanded_;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const int joint = static_cast<int>(i);
-    const CommandedPlace place = {q_commanded_[joint], q_before[joint]};
-    visitKind([&](auto& it) { it.observe(place); }, drives_[i]);
+    visitKind([&](auto& it) { it.observe(places_.at(joint)); }, drives_[i]);
     input.q_measured[joint] = drive(joint).position;
   }
   for (std::size_t i = 0; i < tactile_modules_.size(); ++i) {
@@ -92,7 +89,7 @@ void CanRobot::read(RobotInput& input) noexcept {
 void CanRobot::command(DriveGoal goal, bool is_restart, const JointVector& q) noexcept {
   goal_ = goal;
   is_restart_ = is_restart;
-  q_commanded_ = q;
+  places_.command(q);
 }
 
 void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
@@ -111,7 +108,6 @@ void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
         },
         drives_[i]);
   }
-  has_paused_ = false;
   for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
     if (has_canopen_[bus]) outboxes_[bus].push(syncFrame());
   }
@@ -130,9 +126,8 @@ void CanRobot::release() noexcept {
 /// A drive whose reply is of before a pause, or of its middle, is not behind for the way of the
 /// pause.
 double CanRobot::placeToTrack(int joint) const noexcept {
-  const double now = q_commanded_[joint];
-  if (!has_paused_ || !std::isfinite(now)) return now;
-  const double before = q_before_pause_[joint];
+  const auto [now, before] = places_.at(joint);
+  if (now == before || !std::isfinite(now)) return now;
   return std::clamp(drive(joint).position, std::min(before, now), std::max(before, now));
 }
 

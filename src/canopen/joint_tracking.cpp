@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace tactus {
+namespace {
+
+/// A command is seen in the feedback of the next cycle, and one may be late.
+constexpr int kLateCycles = 3;
+
+}  // namespace
 
 double trackingVelocity(const DriveConfig& config, double velocity, double position,
                         double measured) noexcept {
@@ -11,6 +17,21 @@ double trackingVelocity(const DriveConfig& config, double velocity, double posit
   const double lag = std::clamp(position - measured, -limit, limit);
   const double tracking = velocity + config.tracking_gain_per_s * lag;
   return std::clamp(tracking, -config.max_velocity, config.max_velocity);
+}
+
+void CommandedPlaces::coast() noexcept {
+  q_before_pause_ = q_now_;
+  late_cycles_ = kLateCycles;
+}
+
+void CommandedPlaces::command(const JointVector& q) noexcept {
+  q_now_ = q;
+  late_cycles_ = std::max(0, late_cycles_ - 1);
+}
+
+CommandedPlace CommandedPlaces::at(int joint) const noexcept {
+  const double now = q_now_[joint];
+  return {now, late_cycles_ > 0 ? q_before_pause_[joint] : now};
 }
 
 double distanceFrom(const CommandedPlace& place, double position) noexcept {

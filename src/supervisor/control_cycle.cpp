@@ -128,6 +128,7 @@ void ControlCycle::coast(int missed_cycles) noexcept {
   if (missed_cycles <= 0) return;
   controller_.coast(missed_cycles, period_s_, state_);
   robot_.coast(missed_cycles);
+  if (isCommanding(mode_.mode)) places_.coast();
 }
 
 bool ControlCycle::areConfigured() const noexcept {

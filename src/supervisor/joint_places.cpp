@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "tactus/canopen/joint_tracking.h"
-
 namespace tactus {
 namespace {
 
@@ -17,8 +15,7 @@ JointVector maxFollowingErrors(const HardwareConfig& hardware) {
 }  // namespace
 
 JointPlaces::JointPlaces(const JointVector& q_start, const HardwareConfig& hardware)
-    : q_commanded_(q_start),
-      q_before_(q_start),
+    : places_(q_start),
       q_released_(q_start),
       max_following_error_(maxFollowingErrors(hardware)),
       stop_way_(JointVector::Zero(q_start.size())),
@@ -26,25 +23,24 @@ JointPlaces::JointPlaces(const JointVector& q_start, const HardwareConfig& hardw
       tolerance_(hardware.start_tolerance) {}
 
 void JointPlaces::command(const JointVector& q, const JointVector& velocity) noexcept {
-  q_before_ = q_commanded_;
-  q_commanded_ = q;
+  places_.command(q);
   stop_way_ = stop_deadline_s_ * velocity.cwiseAbs() + max_following_error_;
   is_held_.fill(true);
 }
 
 void JointPlaces::observe(int joint, double q_measured, bool is_holding, bool is_let_go) noexcept {
   is_held_[joint] = is_held_[joint] && !is_let_go;
-  const double way = distanceFrom({q_commanded_[joint], q_before_[joint]}, q_measured);
+  const double way = distanceFrom(places_.at(joint), q_measured);
   if (is_held_[joint] && is_holding && way <= stop_way_[joint]) q_released_[joint] = q_measured;
 }
 
 void JointPlaces::doubt(int joint) noexcept {
   is_held_[joint] = false;
-  q_released_[joint] = q_commanded_[joint];
+  q_released_[joint] = commanded()[joint];
 }
 
 int JointPlaces::outOfPlace(const JointVector& q_measured) const noexcept {
-  const JointVector from_command = (q_measured - q_commanded_).cwiseAbs();
+  const JointVector from_command = (q_measured - commanded()).cwiseAbs();
   const JointVector from_release = (q_measured - q_released_).cwiseAbs();
   const JointVector distance = from_command.cwiseMin(from_release);
   if ((distance.array() <= tolerance_).all()) return -1;

@@ -299,7 +299,8 @@ TEST(CanRobot, PullsItsDrivesToWhereTheyAreCommandedToBe) {
     EXPECT_NEAR(rig.slaves[joint].velocity, 10.0 * rig.apart[joint] * 1e6, 1.0) << joint;
 }
 
-/// What they tell after a pause may be of its begin: no lag, though they are commanded further on.
+/// What they tell after a pause, and a cycle later, may be of its begin: no lag, though they are
+/// commanded further on.
 TEST(CanRobot, PullsNoDriveForTheWayOfMissedCycles) {
   TrackedRig rig;
   const auto cycle = [&](const JointVector& q) {
@@ -311,8 +312,10 @@ TEST(CanRobot, PullsNoDriveForTheWayOfMissedCycles) {
   };
   cycle(rig.start);
   rig.robot.coast(20);
-  cycle(rig.start + rig.apart);
-  for (const int joint : {0, 1}) EXPECT_NEAR(rig.slaves[joint].velocity, 0.1e6, 1.0) << joint;
+  for (int i = 0; i < 2; ++i) {
+    cycle(rig.start + rig.apart);
+    for (const int joint : {0, 1}) EXPECT_NEAR(rig.slaves[joint].velocity, 0.1e6, 1.0) << joint;
+  }
   cycle(rig.start + rig.apart);
   for (const int joint : {0, 1})
     EXPECT_NEAR(rig.slaves[joint].velocity, (0.1 + 10.0 * rig.apart[joint]) * 1e6, 1.0) << joint;

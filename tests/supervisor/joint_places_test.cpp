@@ -58,19 +58,25 @@ TEST(JointPlaces, EndWhereNoStopLeadsTo) {
 }
 
 /// A drive that heard nothing in missed cycles has stopped where they began, or on the way since.
+/// Its feedback may be late by a cycle.
 TEST(JointPlaces, FollowAStopThatBeganBeforeMissedCycles) {
   const double longest = CanopenConfig{}.stop_deadline_s * 0.2 + DriveConfig{}.max_following_error;
+  const JointVector before = places(0.5, 0.5), after = places(2.5, 2.5),
+                    velocity = places(0.2, 0.2);
   for (const double stopped : {0.5 - 0.99 * longest, 0.5, 1.5, 2.5, 2.5 + 0.99 * longest}) {
-    JointPlaces joints(places(0, 0), twoDrives());
-    joints.command(places(0.5, 0.5), places(0.2, 0.2));
-    joints.command(places(2.5, 2.5), places(0.2, 0.2));
-    joints.observe(0, stopped, true, false);
-    joints.observe(1, 0.5 - 1.01 * longest, true, false);
-    EXPECT_EQ(joints.outOfPlace(places(stopped, 2.5)), -1) << stopped;
-    EXPECT_EQ(joints.outOfPlace(places(2.5, 0.5 - 1.01 * longest)), 1);
-    joints.command(places(2.5, 2.5), places(0.2, 0.2));  // no cycle was missed before this one
-    joints.observe(1, 1.5, true, false);
-    EXPECT_EQ(joints.outOfPlace(places(2.5, 1.5)), 1);
+    for (const int late_cycles : {0, 1}) {
+      JointPlaces joints(places(0, 0), twoDrives());
+      joints.command(before, velocity);
+      joints.coast();
+      for (int i = 0; i <= late_cycles; ++i) joints.command(after, velocity);
+      joints.observe(0, stopped, true, false);
+      joints.observe(1, 0.5 - 1.01 * longest, true, false);
+      EXPECT_EQ(joints.outOfPlace(places(stopped, 2.5)), -1) << stopped << ", " << late_cycles;
+      EXPECT_EQ(joints.outOfPlace(places(2.5, 0.5 - 1.01 * longest)), 1);
+      for (int i = 0; i < 2; ++i) joints.command(after, velocity);
+      joints.observe(1, 1.5, true, false);
+      EXPECT_EQ(joints.outOfPlace(places(2.5, 1.5)), 1) << "no feedback is that late";
+    }
   }
 }
 

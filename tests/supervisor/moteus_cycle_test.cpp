@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "support/shipped_scene.h"
@@ -213,6 +214,33 @@ TEST(MoteusCycle, GoesOnAfterAPauseInAFastMotion) {
   for (const int missed : {150, 800, 5000}) {
     SCOPED_TRACE(missed);
     MoteusCell cell = running;
+    cell.pause(missed);
+    cell.steps(1000);
+    EXPECT_EQ(cell.cycle.report().fault, Fault::kOverrun);
+    cell.switchEnable();
+    EXPECT_TRUE(cell.runUntil(Mode::kRunning, 3000)) << faultName(cell.cycle.report().fault);
+  }
+}
+
+/// Through an adapter that hands on each reply a cycle late.
+TEST(MoteusCycle, GoesOnAfterAPauseWhereRepliesAreLate) {
+  for (const int missed : {5, 20, 50, 150, 800, 5000}) {
+    SCOPED_TRACE(missed);
+    MoteusCell cell = fastCell();
+    std::array<CanFrame, 2> late;
+    bool is_first = true;
+    cell.on_frame = [&](int, CanFrame& frame) {
+      for (int node = 1; node <= 2; ++node) {
+        if (!isMoteusReply(frame, node)) continue;
+        CanFrame& before = late[static_cast<std::size_t>(node - 1)];
+        if (is_first) before = frame;
+        std::swap(before, frame);
+      }
+    };
+    cell.step();
+    is_first = false;
+    cell.steps(10);
+    ASSERT_EQ(cell.cycle.report().mode, Mode::kRunning);
     cell.pause(missed);
     cell.steps(1000);
     EXPECT_EQ(cell.cycle.report().fault, Fault::kOverrun);

@@ -6,6 +6,7 @@
 #include "tactus/canopen/any_drive.h"
 #include "tactus/canopen/can_frame.h"
 #include "tactus/canopen/hardware_config.h"
+#include "tactus/canopen/joint_tracking.h"
 #include "tactus/canopen/tactile_receiver.h"
 #include "tactus/control/robot.h"
 
@@ -31,7 +32,7 @@ class CanRobot final : public Robot {
 
   void receive(int bus, std::span<const CanFrame> frames) noexcept;
   /// Where the arm is commanded to be now, m or rad, for what read() judges.
-  void expect(const JointVector& q) noexcept { q_commanded_ = q; }
+  void expect(const JointVector& q) noexcept { places_.expect(q); }
   /// For cycles that were missed: drives' deadlines go on in them, and the heartbeat's period.
   void coast(int missed_cycles) noexcept;
   void read(RobotInput& input) noexcept override;  ///< a drive without feedback so far reads as 0
@@ -76,9 +77,7 @@ class CanRobot final : public Robot {
   int cycles_to_heartbeat_ = 0;
   DriveGoal goal_ = DriveGoal::kSilent;
   bool is_restart_ = false;
-  JointVector q_commanded_;
-  JointVector q_before_pause_;
-  bool has_paused_ = false;  ///< just before this cycle
+  CommandedPlaces places_;
 };
 
 }  // namespace tactus
