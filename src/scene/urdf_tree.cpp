@@ -43,6 +43,11 @@ void parseDocument(UrdfTree& tree) {
     failAt(tree.position(robot), "-", "the document element is " + inQuotes(robot.name()),
            "expected <robot>");
   }
+  for (pugi::xml_node next = robot.next_sibling(); next; next = next.next_sibling()) {
+    if (next.type() == pugi::node_element)  // pugixml takes it
+      failAt(tree.position(next), "-", inQuotes(next.name()) + " after the end of <robot>",
+             "expected one document element");
+  }
   tree.robot_name = robot.attribute("name").value();
   checkLength(tree, robot, "robot.name", tree.robot_name);
 }

@@ -150,6 +150,15 @@ TEST(BrokenUrdfFile, OtherDocumentElement) {
                     {"", "", "robot.urdf:1:1: -: ", "the document element is 'sdf'", "<robot>"});
 }
 
+TEST(BrokenUrdfFile, SomethingAfterItsEnd) {
+  SceneFiles files;
+  files.urdf += "<!-- a remark may be there -->\n";
+  EXPECT_NO_THROW(files.load());
+  files.urdf += "<robot name=\"other\"/>\n";
+  test::expectError(test::loadError(files.sources()),
+                    {"", "", "robot.urdf:", "'robot' after the end of <robot>", "one document"});
+}
+
 TEST(BrokenUrdfFile, Empty) {
   SceneFiles files;
   files.urdf = "";
