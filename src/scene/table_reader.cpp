@@ -24,6 +24,8 @@ constexpr const char* kFillIn = "FILL_IN";
 struct File {
   const YamlNode& root;
   NamedNumbers& numbers;
+  const std::vector<KeySpec>& other_keys;  ///< of the other file
+  const char* other_file;
 };
 
 /// One value on its way from a node to a config.
@@ -242,14 +244,27 @@ void refuseDecimalComma(const YamlNode& node, const YamlEntry& entry, const std:
          "expected a decimal point: " + before.value.text + "." + entry.key);
 }
 
+/// path: dotted, entries of lists with their index.
+bool hasKey(const std::vector<KeySpec>& keys, std::string_view path) {
+  const std::size_t dot = path.find('.');
+  const std::string_view key = path.substr(0, std::min(dot, path.find('[')));
+  const auto found = std::ranges::find(keys, key, &KeySpec::key);
+  if (found == keys.end()) return false;
+  return dot == std::string_view::npos || hasKey(found->keys, path.substr(dot + 1));
+}
+
 void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
-                       const std::string& prefix) {
+                       const std::string& prefix, const File& file) {
   std::vector<std::string> known;
   known.reserve(keys.size());
   for (const KeySpec& spec : keys) known.push_back(spec.key);
   for (const YamlEntry& entry : node.entries) {
     if (std::ranges::count(known, entry.key) > 0) continue;
     refuseDecimalComma(node, entry, prefix);
+    if (hasKey(file.other_keys, prefix + entry.key)) {
+      failAt(entry.key_at, prefix + entry.key, "unknown key here",
+             std::string("expected in ") + file.other_file);
+    }
     const std::string within = keyWithin(keys, entry.key);
     const std::string nearest = within.empty() ? nearestWord(entry.key, known) : within;
     failAt(entry.key_at, prefix + entry.key, "unknown key",
@@ -266,7 +281,7 @@ void readSection(const YamlNode& node, const std::vector<KeySpec>& keys, const s
            "expected a section of keys ({} for none)");
   }
   const std::string prefix = path.empty() ? "" : path + ".";
-  rejectUnknownKeys(node, keys, prefix);
+  rejectUnknownKeys(node, keys, prefix, file);
   for (const KeySpec& spec : keys) {
     const YamlNode* value = node.find(spec.key);
     if (value && value->kind != Kind::kNull) {
@@ -278,21 +293,21 @@ void readSection(const YamlNode& node, const std::vector<KeySpec>& keys, const s
 }
 
 template <class Config>
-Config readConfig(const YamlNode& root, const std::vector<KeySpec>& keys, NamedNumbers& numbers) {
+Config readConfig(const std::vector<KeySpec>& keys, File file) {
   Config config;
-  File file{root, numbers};
-  readSection(root, keys, "", &config, file);
+  readSection(file.root, keys, "", &config, file);
   return config;
 }
 
 }  // namespace
 
 SceneConfig readSceneConfig(const YamlNode& root, NamedNumbers& numbers) {
-  return readConfig<SceneConfig>(root, sceneKeys(), numbers);
+  return readConfig<SceneConfig>(
+      sceneKeys(), {root, numbers, robotKeys(), "the robot's file, which the key robot names"});
 }
 
 RobotConfig readRobotConfig(const YamlNode& root, NamedNumbers& numbers) {
-  return readConfig<RobotConfig>(root, robotKeys(), numbers);
+  return readConfig<RobotConfig>(robotKeys(), {root, numbers, sceneKeys(), "a scene"});
 }
 
 }  // namespace tactus

@@ -181,8 +181,10 @@ INSTANTIATE_TEST_SUITE_P(
                    "robot.yaml:35:23: real_time.priority: ", "out of range", "from 1 to 98"},
         BrokenText{"cpu: 1", "cpu: -2", "robot.yaml:35:32: real_time.cpu: ", "out of range",
                    "from -1 to 1023"},
-        BrokenText{"cpu: 1", "required: false", "robot.yaml:35:27: real_time.required: ",
-                   "unknown key", "one of priority, cpu, max_late_cycles"}));
+        BrokenText{"cpu: 1", "core: 1", "robot.yaml:35:27: real_time.core: ", "unknown key",
+                   "one of priority, cpu, max_late_cycles"},
+        BrokenText{"cpu: 1", "required: false",
+                   "robot.yaml:35:27: real_time.required: ", "unknown key here", "in a scene"}));
 
 /// The ids of CiA 301 on the bus of the module: SYNC, EMCY, PDOs, SDO and heartbeats of drive and
 /// master; any of the module's four frames may hit one.

@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "robot.yaml:14:30: tactile_module.calibration[1][7]: ", "'nan' is not finite",
                    "numbers"},
         BrokenText{"stiffness_N_per_m: 5000", "stiffness_N_per_m: 5000\nextends: other.yaml",
-                   "robot.yaml:6:1: extends: ", "unknown key", "one of urdf"}));
+                   "robot.yaml:6:1: extends: ", "unknown key here", "in a scene"}));
 
 TEST(RobotWithoutModule, CannotBeControlledByForce) {
   SceneFiles files;

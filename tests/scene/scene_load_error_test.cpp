@@ -24,6 +24,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BrokenText{"drift_gain_per_s", "drift_gain",
                    "scene.yaml:5:3: task.drift_gain: ", "unknown key", "'drift_gain_per_s'"},
+        BrokenText{"controller:\n", "real_time: {priority: 70}\ncontroller:\n",
+                   "scene.yaml:10:13: real_time.priority: ", "unknown key here",
+                   "in the robot's file"},
+        BrokenText{"controller:\n", "tactile_modules: [{link: cover}]\ncontroller:\n",
+                   "scene.yaml:10:1: tactile_modules: ", "unknown key here", "in the robot's file"},
         BrokenText{"time_constant_s: 0.1", "time_constant_ms: 100",
                    "scene.yaml:12:3: controller.time_constant_ms: ", "unknown key",
                    "'time_constant_s'"},
