@@ -80,6 +80,7 @@ int runCommand(int argc, char** argv) {
   addReplayCommand(app, exit_code);
   addPlantCommand(app, exit_code);
   addCommissionCommand(app, exit_code);
+  addWhereCommand(app, exit_code);
   addBenchCommand(app, exit_code);
   addSweepCommand(app, exit_code);
   addKeysCommand(app, exit_code);

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -11,9 +12,11 @@
 #include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/daemon_program.h"
 #include "tactus/daemon/daemon_run.h"
+#include "tactus/daemon/measured_start.h"
 #include "tactus/daemon/named_file.h"
 #include "tactus/daemon/number_within.h"
 #include "tactus/record/log_size.h"
+#include "tactus/record/message.h"
 #include "tactus/record/run_folder.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/exit_code.h"
@@ -30,10 +33,30 @@ struct DaemonArguments {
   double duration_s = 0.0;
 };
 
+/// A start of the command line goes before one that is measured.
+bool readsStart(const Scene& scene) {
+  const bool is_given =
+      std::ranges::any_of(scene.overrides, [](const Override& it) { return it.key == "start"; });
+  const auto& commands = scene.controller.task.commands;
+  return commands && commands->start_measured && !is_given;
+}
+
+/// Where the arm is found stands in the log's settings, so that a replay begins there, too.
+Scene loadRunningScene(const DaemonArguments& options) {
+  constexpr const char* kPurpose = "to run on";
+  Scene scene = loadHardwareScene(options.scene, options.settings, kPurpose);
+  if (!readsStart(scene)) return scene;
+  const std::string start = startText(readJoints(scene));
+  say("begins where the arm is, start: {}", start);
+  std::vector<std::string> settings = options.settings;
+  settings.push_back("start=" + start);
+  return loadHardwareScene(options.scene, settings, kPurpose);
+}
+
 int runScene(const DaemonArguments& options) {
   if (options.name && options.folder.empty()) throw CLI::RequiresError("--name", "--output");
   if (options.name) checkRunName(*options.name);
-  const Scene scene = loadHardwareScene(options.scene, options.settings, "to run on");
+  const Scene scene = loadRunningScene(options);
   checkStability(scene);
   checkLogSize(scene);
   DaemonOptions run;

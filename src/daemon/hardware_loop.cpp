@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "tactus/io/bus_ids.h"
 #include "tactus/rt/periodic_timer.h"
 
 namespace tactus {
@@ -16,16 +15,7 @@ std::int64_t threadTime_ns() noexcept {
   return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
 }
 
-CanSocket openSocket(const HardwareConfig& hardware, int bus) {
-  const BusIds ids = busIds(hardware, bus);
-  return CanSocket(hardware.buses[bus].interface, ids.received, ids.sent,
-                   hardware.buses[bus].data_bit_rate_per_s.has_value());
-}
-
 }  // namespace
-
-HardwareLoop::Bus::Bus(const HardwareConfig& hardware, int index)
-    : lock(hardware.buses[index].interface), socket(openSocket(hardware, index)) {}
 
 HardwareLoop::HardwareLoop(const Scene& scene, long long max_task_cycles,
                            const SystemCallFilter& filter, LoopLink& link)
@@ -36,7 +26,7 @@ HardwareLoop::HardwareLoop(const Scene& scene, long long max_task_cycles,
       side_(link) {
   const HardwareConfig& hardware = *scene.hardware;
   for (std::size_t i = 0; i < hardware.buses.size(); ++i)
-    buses_.push_back(std::make_unique<Bus>(hardware, static_cast<int>(i)));
+    buses_.push_back(std::make_unique<BusPort>(hardware, static_cast<int>(i)));
   if (hardware.gpio) lines_.emplace(*hardware.gpio, scene.period_s);
 }
 
@@ -58,11 +48,8 @@ bool HardwareLoop::cycle(const Wake& wake) noexcept {
 
 void HardwareLoop::readAll(const Wake& wake) noexcept {
   for (std::size_t i = 0; i < buses_.size(); ++i) {
-    Bus& bus = *buses_[i];
-    bus.socket.receive(bus.frames);
-    bus.socket.monitor().update();
-    input_.bus_faults[i] = bus.socket.monitor().fault();
-    cycle_.receive(static_cast<int>(i), bus.frames.frames());
+    input_.bus_faults[i] = buses_[i]->receive();
+    cycle_.receive(static_cast<int>(i), buses_[i]->frames.frames());
   }
   if (lines_) input_.lines = lines_->read();
   const bool is_done = max_task_cycles_ > 0 && cycle_.taskCycles() + 1 >= max_task_cycles_;

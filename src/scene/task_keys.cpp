@@ -120,6 +120,10 @@ Table<TaskCommandsConfig> commandKeys() {
                   number("stream_timeout_s", "s", above(0, 60),
                          "a stream's tool stops unless the next target comes within this",
                          &Config::stream_timeout_s),
+                  boolean("start_measured",
+                          "tactusd begins where it finds the arm, in place of start, and checks "
+                          "the scene there",
+                          &Config::start_measured),
               });
 }
 

@@ -5,6 +5,7 @@ no request: no cycle is missed, nothing that was told outlives a stop, and the r
 usage: told_test.py --tactus FILE --tactusd FILE --out FOLDER [--keep]
 """
 
+import json
 import sys
 import unittest
 
@@ -22,6 +23,19 @@ class Told(AskedRun, unittest.TestCase):
         self.assertIn("tactusd: task: order 1 arrived\n", self.said)
         self.assertRegex(self.said, r"tactusd: task: order \d+ late\n")
         self.assertRegex(self.said, r"tactusd: task: order \d+ stopped\n")
+
+    def test_another_daemon_begins_where_the_arm_was_left(self):
+        again = (self.folder / "again.txt").read_text()
+        self.assertRegex(again, r"tactusd: begins where the arm is, start: \[.*\]\n")
+        self.assertIn("tactusd: task: order 1 arrived\n", again)
+        self.assertNotIn("fault", again)
+        self.assertIn("to the bit", (self.folder / "again_replay.txt").read_text())
+        start = json.loads("[" + again.split("start: [")[1].split("]")[0] + "]")
+        where = json.loads((self.folder / "where.json").read_text())
+        for position, joint in zip(start, where["joints"], strict=True):
+            self.assertAlmostEqual(position, joint["position"], places=6)
+        self.assertTrue(any(abs(joint["position"] - joint["start"]) > where["start_tolerance"]
+                            for joint in where["joints"]))
 
 
 if __name__ == "__main__":

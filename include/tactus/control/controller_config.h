@@ -33,6 +33,7 @@ struct TaskCommandsConfig {
   double arrival_rad = 0.005;     ///< and so close in orientation
   double give_up_after_s = 10.0;  ///< of being held off its way
   double stream_timeout_s = 0.1;  ///< a stream's next target has to come within this
+  bool start_measured = false;    ///< tactusd begins where it finds the arm
 };
 
 /// What the tool shall do. After a contact, TaskGains say how it gets back to its path; e, v and p

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "tactus/daemon/bus_port.h"
 #include "tactus/daemon/loop_side.h"
-#include "tactus/io/can_socket.h"
 #include "tactus/io/gpio_lines.h"
 #include "tactus/rt/periodic_schedule.h"
 #include "tactus/rt/system_call_filter.h"
@@ -39,20 +39,13 @@ class HardwareLoop {
   const CanRobot& robot() const noexcept { return cycle_.robot(); }
 
  private:
-  struct Bus {
-    Bus(const HardwareConfig& hardware, int index);
-    InterfaceLock lock;
-    CanSocket socket;
-    FrameBatch frames;
-  };
-
   void readAll(const Wake& wake) noexcept;
   void writeAll() noexcept;
 
   const std::atomic<bool>& stop_requested_;
   const SystemCallFilter& filter_;
   long long max_task_cycles_;
-  std::vector<std::unique_ptr<Bus>> buses_;
+  std::vector<std::unique_ptr<BusPort>> buses_;
   std::optional<GpioLines> lines_;
   ControlCycle cycle_;
   CycleInput input_;

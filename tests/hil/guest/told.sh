@@ -1,4 +1,5 @@
-# A tool that is told where to go: moves, waypoints, a stream that breaks off, a stop in between.
+# A tool that is told where to go: moves, waypoints, a stream that breaks off, a stop in between, and
+# a daemon that begins where the last one has left the arm.
 . "$ROOT/guest/common.sh"
 . "$ROOT/guest/daemon.sh"
 . "$ROOT/guest/asking.sh"
@@ -50,10 +51,25 @@ refused 'does not run' tactus move --relative --to 0,-0.1,0
 line $enable 1 >/dev/null
 wait_for running "$out/tactusd.txt" 2
 sleep 0.3
-told arrived tactus move --relative --to 0,-0.02,0 --wait
+told arrived tactus move --relative --to 0,-0.2,0 --wait  # out of the contact
 hostile_client 3 3000 $RUNTIME_DIRECTORY/control || fail "hostile_client exits with $?"
 
 kill $daemon
 wait $daemon || fail "tactusd exits with $?"
+
+# Another daemon begins where this one has left the arm, if its scene says so.
+tactusd "$scene" 2>"$out/refused.txt" & daemon=$!
+wait_for not_at_start "$out/refused.txt"
+kill $daemon
+wait $daemon && fail "a daemon that refused to start exits with 0"
+tactus where "$scene" --json >"$out/where.json" || fail "tactus where exits with $?"
+tactusd "$scene" --set task.commands.start_measured=true -o "$ROOT/out" --name again \
+  2>"$out/again.txt" & daemon=$!
+wait_for running "$out/again.txt"
+told arrived tactus move --relative --to 0,-0.02,0 --wait
+kill $daemon
+wait $daemon || fail "tactusd exits with $?"
 stop_plant
+tactus replay "$ROOT/out/again/run.ulg" >"$out/again_replay.txt" ||
+  fail "the replay differs: $(cat "$out/again_replay.txt")"
 tactus replay "$out/run.ulg" >"$out/replay.txt" || fail "the replay differs: $(cat "$out/replay.txt")"

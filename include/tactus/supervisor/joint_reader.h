@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+
+#include "tactus/canopen/can_robot.h"
+#include "tactus/supervisor/mode_report.h"
+
+namespace tactus {
+
+/// Where an arm is, before anything moves it: sets its drives up, which leaves them without torque,
+/// hears where they are and lets them go. In frames, as CanRobot. A cycle: receive() for each bus,
+/// update(), then the outboxes, also of the last one.
+class JointReader {
+ public:
+  JointReader(const HardwareConfig& hardware, double period_s);
+
+  void receive(int bus, std::span<const CanFrame> frames) noexcept { robot_.receive(bus, frames); }
+  void update(std::span<const Fault> bus_faults) noexcept;  ///< one a bus
+  const FrameBatch& outbox(int bus) const noexcept { return robot_.outbox(bus); }
+  const CanFrame& probe() const noexcept { return robot_.probe(); }
+
+  /// All positions are known, or report() says why not: within the drives' boot_timeout_s.
+  bool isDone() const noexcept { return is_done_; }
+  const FaultReport& report() const noexcept { return report_; }
+  const JointVector& q() const noexcept { return input_.q_measured; }  ///< m or rad
+
+ private:
+  void judge(std::span<const Fault> bus_faults) noexcept;
+
+  CanRobot robot_;
+  JointVector rest_;
+  RobotInput input_;
+  FaultReport report_;
+  bool is_first_ = true, is_done_ = false;
+};
+
+}  // namespace tactus

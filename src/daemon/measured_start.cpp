@@ -1,0 +1,69 @@
+#include "tactus/daemon/measured_start.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "tactus/daemon/bus_port.h"
+#include "tactus/record/fault_text.h"
+#include "tactus/record/run_error.h"
+#include "tactus/rt/periodic_timer.h"
+#include "tactus/supervisor/joint_reader.h"
+
+namespace tactus {
+namespace {
+
+std::vector<std::unique_ptr<BusPort>> openBuses(const HardwareConfig& hardware) {
+  std::vector<std::unique_ptr<BusPort>> buses;
+  try {
+    for (std::size_t bus = 0; bus < hardware.buses.size(); ++bus)
+      buses.push_back(std::make_unique<BusPort>(hardware, static_cast<int>(bus)));
+  } catch (const std::runtime_error& error) {
+    throw RunError(error.what());
+  }
+  return buses;
+}
+
+void exchange(std::vector<std::unique_ptr<BusPort>>& buses, JointReader& reader) {
+  std::array<Fault, kMaxBuses> faults{};
+  for (std::size_t i = 0; i < buses.size(); ++i) {
+    faults[i] = buses[i]->receive();
+    reader.receive(static_cast<int>(i), buses[i]->frames.frames());
+  }
+  reader.update(std::span(faults).first(buses.size()));
+  for (std::size_t i = 0; i < buses.size(); ++i) {
+    buses[i]->socket.send(reader.outbox(static_cast<int>(i)).frames());
+    buses[i]->socket.probe(reader.probe());
+  }
+}
+
+}  // namespace
+
+JointVector readJoints(const Scene& scene) {
+  const HardwareConfig& hardware = *scene.hardware;
+  auto buses = openBuses(hardware);
+  JointReader reader(hardware, scene.period_s);
+  PeriodicTimer timer(std::llround(1e9 * scene.period_s));
+  while (!reader.isDone()) {
+    timer.wait();
+    exchange(buses, reader);
+  }
+  if (reader.report().fault != Fault::kNone) throw RunError(describeFault(reader.report(), scene));
+  const JointLimits& limits = scene.controller.limits;
+  const JointVector within = reader.q().cwiseMax(limits.lower).cwiseMin(limits.upper);
+  const auto is_beside = (reader.q() - within).cwiseAbs().array() <= hardware.start_tolerance;
+  return is_beside.select(within, reader.q());
+}
+
+std::string startText(const JointVector& q) {
+  std::vector<std::string> numbers;
+  for (const double position : q) numbers.push_back(fmt::format("{:.9g}", position));
+  return fmt::format("[{}]", fmt::join(numbers, ", "));
+}
+
+}  // namespace tactus
