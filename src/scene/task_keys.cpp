@@ -122,7 +122,7 @@ Table<TaskCommandsConfig> commandKeys() {
                          &Config::stream_timeout_s),
                   boolean("start_measured",
                           "tactusd begins where it finds the arm, in place of start, and checks "
-                          "the scene there",
+                          "the scene there; encoders have to know where they are",
                           &Config::start_measured),
               });
 }

@@ -201,7 +201,7 @@ class Case(unittest.TestCase):
         limits = ("max_speed_m_per_s", "max_acceleration_m_per_s2", "max_jerk_m_per_s3",
                   "max_speed_rad_per_s", "max_acceleration_rad_per_s2", "max_jerk_rad_per_s3",
                   "arrival_m", "arrival_rad", "give_up_after_s", "stream_timeout_s")  # fmt: skip
-        told["task"] |= {"source": "commands", "commands": {key: 0.5 for key in limits}}
+        told["task"] |= {"source": "commands", "commands": {key: 0.5 for key in limits} | {"start_measured": True}}
         shaped = []
         for shape in SHAPES:
             shaped.append(copy.deepcopy(scene))
