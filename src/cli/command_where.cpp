@@ -23,7 +23,7 @@ struct WhereOptions {
 };
 
 std::string whereText(const Scene& scene, const JointVector& q) {
-  std::string text = fmt::format("start: {}\n", startText(q));
+  std::string text = fmt::format("start: {}\n", startText(startAt(scene, q)));
   for (int joint = 0; joint < q.size(); ++joint) {
     const double start = scene.controller.q_start[joint];
     text += fmt::format(

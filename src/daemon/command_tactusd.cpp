@@ -46,7 +46,7 @@ Scene loadRunningScene(const DaemonArguments& options) {
   constexpr const char* kPurpose = "to run on";
   Scene scene = loadHardwareScene(options.scene, options.settings, kPurpose);
   if (!readsStart(scene)) return scene;
-  const std::string start = startText(readJoints(scene));
+  const std::string start = startText(startAt(scene, readJoints(scene)));
   say("begins where the arm is, start: {}", start);
   std::vector<std::string> settings = options.settings;
   settings.push_back("start=" + start);

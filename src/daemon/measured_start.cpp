@@ -54,10 +54,14 @@ JointVector readJoints(const Scene& scene) {
     exchange(buses, reader);
   }
   if (reader.report().fault != Fault::kNone) throw RunError(describeFault(reader.report(), scene));
+  return reader.q();
+}
+
+JointVector startAt(const Scene& scene, const JointVector& q) {
   const JointLimits& limits = scene.controller.limits;
-  const JointVector within = reader.q().cwiseMax(limits.lower).cwiseMin(limits.upper);
-  const auto is_beside = (reader.q() - within).cwiseAbs().array() <= hardware.start_tolerance;
-  return is_beside.select(within, reader.q());
+  const JointVector within = q.cwiseMax(limits.lower).cwiseMin(limits.upper);
+  const auto is_beside = (q - within).cwiseAbs().array() <= scene.hardware->start_tolerance;
+  return is_beside.select(within, q);
 }
 
 std::string startText(const JointVector& q) {

@@ -1,5 +1,7 @@
 #include "tactus/supervisor/joint_reader.h"
 
+#include <algorithm>
+
 namespace tactus {
 
 JointReader::JointReader(const HardwareConfig& hardware, double period_s)
@@ -9,8 +11,8 @@ JointReader::JointReader(const HardwareConfig& hardware, double period_s)
 void JointReader::update(std::span<const Fault> bus_faults) noexcept {
   robot_.read(input_);
   judge(bus_faults);
-  const bool is_known = robot_.drives().are_configured && robot_.hasPositions();
-  is_done_ = is_known || report_.fault != Fault::kNone;
+  // Whose set-up is done has told where it is.
+  is_done_ = robot_.drives().are_configured || report_.fault != Fault::kNone;
   if (is_done_) return robot_.release();
   robot_.command(DriveGoal::kConfigure, is_first_, rest_);
   robot_.write(rest_);
@@ -19,17 +21,15 @@ void JointReader::update(std::span<const Fault> bus_faults) noexcept {
 
 void JointReader::judge(std::span<const Fault> bus_faults) noexcept {
   const DrivesReport drives = robot_.drives();
-  for (std::size_t bus = 0; bus < bus_faults.size(); ++bus) {
-    if (bus_faults[bus] == Fault::kNone) continue;
-    report_.fault = bus_faults[bus];
-    report_.bus = static_cast<int>(bus);
-    return;
+  const auto bus = std::ranges::find_if(bus_faults, [](Fault it) { return it != Fault::kNone; });
+  if (bus != bus_faults.end()) {
+    report_.fault = *bus;
+    report_.bus = static_cast<int>(bus - bus_faults.begin());
+  } else if (drives.fault != Fault::kNone) {
+    report_.fault = drives.fault;
+    report_.joint = drives.joint;
+    report_.drive = robot_.drive(drives.joint);
   }
-  if (drives.fault == Fault::kNone) return;
-  report_.fault = drives.fault;
-  report_.joint = drives.joint;
-  report_.drive = robot_.drive(drives.joint);
-  report_.detail = report_.drive.detail;
 }
 
 }  // namespace tactus

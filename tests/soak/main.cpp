@@ -146,8 +146,11 @@ void printCounts(const char* name, const std::map<std::string, int>& counts) {
 }
 
 void print(const Tally& tally) {
-  fmt::print("{:.3f} h of virtual time, {} cycles and {} missed, {} lives, {} losses of power\n",
-             tally.t_s / 3600.0, tally.cycles, tally.missed_cycles, tally.lives, tally.power_cuts);
+  fmt::print(
+      "{:.3f} h of virtual time, {} cycles and {} missed, {} lives, {} losses of power, {} "
+      "starts where the arm was found\n",
+      tally.t_s / 3600.0, tally.cycles, tally.missed_cycles, tally.lives, tally.power_cuts,
+      tally.found);
   fmt::print("{} episodes with {} troubles, {} stops, {} holds, {} times to running\n",
              tally.episodes, tally.troubles, tally.stops, tally.holds, tally.goings_on);
   printCounts("faults", tally.faults);

@@ -29,14 +29,22 @@ constexpr int kBoot_ms = 5000;
 constexpr int kAlone_ms = 1500;  ///< of the plant, after the end
 constexpr std::size_t kMostViolations = 100;
 
-Scene loadSoakScene(const std::string& path, const SoakScene& soak_scene) {
-  writeScene(path, soak_scene);
-  Scene scene = loadScene(path, {});
+}  // namespace
+
+Scene loadSoakScene(const std::string& path, const std::vector<Override>& settings) {
+  Scene scene = loadScene(path, settings);
   scene.hardware->gpio.emplace();
   scene.hardware->gpio->e_stop.emplace();
   scene.hardware->gpio->enable.emplace();
   scene.hardware->gpio->brake.emplace();
   return scene;
+}
+
+namespace {
+
+Scene beginScene(const std::string& path, const SoakScene& soak_scene) {
+  writeScene(path, soak_scene);
+  return loadSoakScene(path, {});
 }
 
 /// A life's, which has nothing in common with its neighbours'.
@@ -86,7 +94,7 @@ Life::Life(std::uint64_t seed, int number, const std::string& folder, Tally& tal
       random_(seed_),
       scene_{number % 2 == 0 ? "commands" : "scenario1_none",
              kVariantsOfSoak[number % kVariantsOfSoak.size()]},
-      stage_{loadSoakScene(folder + "/soak.yaml", scene_), {}, {}},
+      stage_{beginScene(folder + "/soak.yaml", scene_), {}, {}},
       began_s_(tally.t_s) {
   ++tally_.lives;
   cell_.emplace(stage_.scene);

@@ -29,7 +29,7 @@ struct Tally {
   long long stops = 0;      ///< faults
   long long holds = 0;      ///< without a fault
   long long goings_on = 0;  ///< to running, from a stop or a hold
-  int lives = 0, power_cuts = 0;
+  int lives = 0, power_cuts = 0, found = 0;
   std::map<std::string, int> faults;
   std::map<std::string, int> left;  ///< arms that had to be brought home: by the fault
   RequestCounts requests;
@@ -39,6 +39,9 @@ struct Tally {
   double peak = 0.0;  ///< of joints in the 3 s after going on, while nothing pushed, m/s or rad/s
   std::vector<std::string> violations;
 };
+
+/// With lines, which no bus has.
+Scene loadSoakScene(const std::string& path, const std::vector<Override>& settings);
 
 /// One life of a daemon, from its start with an arm at home to its end or the loss of power. All
 /// follows from seed and number.
@@ -73,6 +76,7 @@ class Life {
   void cutPower();
   double fastestJoint() const;  ///< m/s or rad/s
   void startAgain();
+  bool findArm();
   void stop();
   void finish();
   void takeReplay(long long expected_cycles);

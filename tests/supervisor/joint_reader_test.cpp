@@ -90,6 +90,7 @@ TEST_P(Reading, NamesADriveThatDoesNotAnswer) {
   readAll();
   EXPECT_EQ(reader->report().fault, Fault::kDriveSetupRefused) << faultName(reader->report().fault);
   EXPECT_EQ(reader->report().joint, 0);
+  EXPECT_NE(reader->report().drive.setup_failure.index, 0) << "what it was asked";
 }
 
 TEST_P(Reading, NamesABusThatIsDown) {

@@ -7,9 +7,11 @@
 namespace tactus {
 
 /// Where the arm is, m or rad: opens the scene's buses, sets the drives up without torque, and lets
-/// them go. Beside a limit by no more than start_tolerance counts as on it. Throws RunError with
-/// what is wrong, as the daemon would name it.
+/// them go. Throws RunError with what is wrong, as the daemon would name it.
 JointVector readJoints(const Scene& scene);
+
+/// Where an arm at q may start: beside a limit by no more than start_tolerance counts as on it.
+JointVector startAt(const Scene& scene, const JointVector& q);
 
 /// "[0.1, -0.25]", as a scene's `start` has it.
 std::string startText(const JointVector& q);
