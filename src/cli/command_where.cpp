@@ -39,7 +39,7 @@ Json whereJson(const Scene& scene, const JointVector& q) {
   Json joints = Json::array();
   for (int joint = 0; joint < q.size(); ++joint)
     joints.push_back({{"name", scene.joint_names[joint]},
-                      {"position", q[joint]},
+                      {"position", q[joint]},  // as measured, also beyond a limit
                       {"start", scene.controller.q_start[joint]},
                       {"unit", unitOf(scene.controller.chain.type(joint))}});
   return {{"joints", joints}, {"start_tolerance", scene.hardware->start_tolerance}};

@@ -33,21 +33,22 @@ struct DaemonArguments {
   double duration_s = 0.0;
 };
 
-/// A start of the command line goes before one that is measured.
+/// A start of the command line is taken instead of one that is measured.
 bool readsStart(const Scene& scene) {
-  const bool is_given =
-      std::ranges::any_of(scene.overrides, [](const Override& it) { return it.key == "start"; });
-  const auto& commands = scene.controller.task.commands;
-  return commands && commands->start_measured && !is_given;
+  const bool is_given = std::ranges::any_of(scene.overrides, [](const Override& it) {
+    return it.key == "start" || it.key.starts_with("start[");
+  });
+  return startsMeasured(scene) && !is_given;
 }
 
 /// Where the arm is found stands in the log's settings, so that a replay begins there, too.
 Scene loadRunningScene(const DaemonArguments& options) {
   constexpr const char* kPurpose = "to run on";
   Scene scene = loadHardwareScene(options.scene, options.settings, kPurpose);
+  checkMeasuredStart(scene);
   if (!readsStart(scene)) return scene;
   const std::string start = startText(startAt(scene, readJoints(scene)));
-  say("begins where the arm is, start: {}", start);
+  say("the arm is at start: {}; switch the enable line off and on", start);
   std::vector<std::string> settings = options.settings;
   settings.push_back("start=" + start);
   return loadHardwareScene(options.scene, settings, kPurpose);

@@ -5,7 +5,6 @@
 #include <time.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/hardware_loop.h"
 #include "tactus/daemon/service_watchdog.h"
+#include "tactus/daemon/stop_signals.h"
 #include "tactus/daemon/telemetry.h"
 #include "tactus/record/message.h"
 #include "tactus/record/run_error.h"
@@ -33,18 +33,7 @@ namespace {
 constexpr std::size_t kHeapBytes = std::size_t{16} << 20;
 constexpr std::chrono::milliseconds kDrainPeriod{20};
 
-/// Hazard: what ends or suspends a process would leave brakes open and drives enabled, with nobody
-/// who watches. Of a daemon that was started by hand the terminal sends SIGINT, SIGQUIT, and
-/// SIGTSTP (Ctrl-Z), which all bring the arm to rest.
-constexpr std::array kStopSignals = {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGTSTP};
-
-sigset_t stopSignals() noexcept {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : kStopSignals) sigaddset(&signals, signal);
-  return signals;
-}
-
+/// SIGINT, SIGQUIT and SIGTSTP of a terminal all bring the arm to rest.
 void blockStopSignals() noexcept {
   const sigset_t signals = stopSignals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tactus/daemon/measured_start.h"
 #include "tactus/rt/periodic_timer.h"
 
 namespace tactus {
@@ -22,6 +23,7 @@ HardwareLoop::HardwareLoop(const Scene& scene, long long max_task_cycles,
     : stop_requested_(link.stop_requested),
       filter_(filter),
       max_task_cycles_(max_task_cycles),
+      enable_wait_(startsMeasured(scene)),
       cycle_(scene.controller, *scene.hardware, scene.period_s),
       side_(link) {
   const HardwareConfig& hardware = *scene.hardware;
@@ -51,7 +53,7 @@ void HardwareLoop::readAll(const Wake& wake) noexcept {
     input_.bus_faults[i] = buses_[i]->receive();
     cycle_.receive(static_cast<int>(i), buses_[i]->frames.frames());
   }
-  if (lines_) input_.lines = lines_->read();
+  if (lines_) input_.lines = enable_wait_.update(lines_->read());
   const bool is_done = max_task_cycles_ > 0 && cycle_.taskCycles() + 1 >= max_task_cycles_;
   input_.are_lines_lost = !input_.lines.is_valid || !are_lines_written_;
   input_.stop_requested =

@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "tactus/daemon/bus_port.h"
+#include "tactus/daemon/stop_signals.h"
 #include "tactus/record/fault_text.h"
 #include "tactus/record/run_error.h"
 #include "tactus/rt/periodic_timer.h"
+#include "tactus/scene/located_error.h"
+#include "tactus/scene/yaml_tree.h"
 #include "tactus/supervisor/joint_reader.h"
 
 namespace tactus {
@@ -44,8 +47,21 @@ void exchange(std::vector<std::unique_ptr<BusPort>>& buses, JointReader& reader)
 
 }  // namespace
 
+bool startsMeasured(const Scene& scene) {
+  const auto& commands = scene.controller.task.commands;
+  return commands && commands->start_measured;
+}
+
+void checkMeasuredStart(const Scene& scene) {
+  if (!startsMeasured(scene) || (scene.hardware->gpio && scene.hardware->gpio->enable)) return;
+  failAt(locate(*scene.tree, "task.commands.start_measured"), "task.commands.start_measured",
+         "no enable line: a restart would move the arm from anywhere",
+         "expected gpio.enable in the robot's file");
+}
+
 JointVector readJoints(const Scene& scene) {
   const HardwareConfig& hardware = *scene.hardware;
+  const HeldSignals held;
   auto buses = openBuses(hardware);
   JointReader reader(hardware, scene.period_s);
   PeriodicTimer timer(std::llround(1e9 * scene.period_s));
@@ -53,7 +69,7 @@ JointVector readJoints(const Scene& scene) {
     timer.wait();
     exchange(buses, reader);
   }
-  if (reader.report().fault != Fault::kNone) throw RunError(describeFault(reader.report(), scene));
+  if (reader.report().fault != Fault::kNone) throw RunError(faultEvent(reader.report(), scene));
   return reader.q();
 }
 
@@ -66,7 +82,7 @@ JointVector startAt(const Scene& scene, const JointVector& q) {
 
 std::string startText(const JointVector& q) {
   std::vector<std::string> numbers;
-  for (const double position : q) numbers.push_back(fmt::format("{:.9g}", position));
+  for (const double position : q) numbers.push_back(fmt::format("{}", position));
   return fmt::format("[{}]", fmt::join(numbers, ", "));
 }
 

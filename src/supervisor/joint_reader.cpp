@@ -2,17 +2,23 @@
 
 #include <algorithm>
 
+#include "tactus/canopen/cycle_count.h"
+
 namespace tactus {
 
 JointReader::JointReader(const HardwareConfig& hardware, double period_s)
     : robot_(hardware, period_s),
-      rest_(JointVector::Zero(static_cast<int>(hardware.drives.size()))) {}
+      rest_(JointVector::Zero(static_cast<int>(hardware.drives.size()))),
+      stop_deadline_cycles_(cyclesLasting(hardware.canopen.stop_deadline_s, period_s)) {}
 
 void JointReader::update(std::span<const Fault> bus_faults) noexcept {
   robot_.read(input_);
+  const DrivesReport drives = robot_.drives();
+  if (drives.are_configured && !drives.are_disabled) ++stopping_cycles_;
   judge(bus_faults);
   // Whose set-up is done has told where it is.
-  is_done_ = robot_.drives().are_configured || report_.fault != Fault::kNone;
+  const bool is_known = drives.are_configured && drives.are_disabled;
+  is_done_ = is_known || report_.fault != Fault::kNone;
   if (is_done_) return robot_.release();
   robot_.command(DriveGoal::kConfigure, is_first_, rest_);
   robot_.write(rest_);
@@ -28,8 +34,12 @@ void JointReader::judge(std::span<const Fault> bus_faults) noexcept {
   } else if (drives.fault != Fault::kNone) {
     report_.fault = drives.fault;
     report_.joint = drives.joint;
-    report_.drive = robot_.drive(drives.joint);
+  } else if (stopping_cycles_ > stop_deadline_cycles_) {
+    report_.fault = Fault::kDriveStateLost;
+    for (int joint = 0; joint < rest_.size() && report_.joint < 0; ++joint)
+      if (robot_.hasPower(joint)) report_.joint = joint;
   }
+  if (report_.joint >= 0) report_.drive = robot_.drive(report_.joint);
 }
 
 }  // namespace tactus

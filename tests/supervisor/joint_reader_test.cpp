@@ -3,20 +3,23 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "support/shipped_scene.h"
 #include "support/virtual_robot_cell.h"
+#include "tactus/canopen/canopen.h"
 #include "tactus/plant/plant.h"
 
 /// Of both kinds of drives, of which the plant's stand elsewhere than the scene begins.
 namespace tactus {
 namespace {
 
-class Reading : public testing::TestWithParam<const char*> {
- protected:
-  Reading() : scene(test::shippedScene(GetParam())), q(scene.controller.q_start) {
+struct ReadingRig {
+  explicit ReadingRig(const char* name)
+      : scene(test::shippedScene(name)), q(scene.controller.q_start) {
     for (int joint = 0; joint < q.size(); ++joint) q[joint] += joint % 2 == 0 ? 0.11 : -0.07;
     ControllerConfig elsewhere = scene.controller;
     elsewhere.q_start = q;
@@ -30,7 +33,13 @@ class Reading : public testing::TestWithParam<const char*> {
     for (int bus = 0; bus < plant->buses(); ++bus) {
       FrameBatch frames;
       plant->take(bus, frames);
-      if (!is_silent || bus != 0) reader->receive(bus, frames.frames());
+      if (is_silent && bus == 0) continue;
+      FrameBatch heard;
+      for (CanFrame frame : frames) {
+        if (on_frame) on_frame(frame);
+        heard.push(frame);
+      }
+      reader->receive(bus, heard.frames());
     }
     reader->update(bus_faults);
     for (int bus = 0; bus < plant->buses(); ++bus)
@@ -59,8 +68,14 @@ class Reading : public testing::TestWithParam<const char*> {
   std::optional<Plant> plant;
   std::optional<JointReader> reader;
   std::vector<Fault> bus_faults;
+  std::function<void(CanFrame& frame)> on_frame;  ///< may change what is heard
   bool is_silent = false;
   std::int64_t t_ns = 0;
+};
+
+class Reading : public testing::TestWithParam<const char*>, public ReadingRig {
+ protected:
+  Reading() : ReadingRig(GetParam()) {}
 };
 
 TEST_P(Reading, FindsTheArm) {
@@ -71,9 +86,13 @@ TEST_P(Reading, FindsTheArm) {
     EXPECT_NEAR(reader->q()[joint], q[joint], 1e-4) << joint;
 }
 
-/// The daemon's set-up follows, and the arm begins where it was found.
+/// The daemon's set-up follows, and the arm begins where it was found. Without a farewell drives
+/// would miss the heartbeat meanwhile.
 TEST_P(Reading, LetsTheDrivesGoForWhoComesNext) {
   readAll();
+  plant->advance(t_ns += 1'000'000'000);
+  for (int joint = 0; joint < q.size(); ++joint)
+    EXPECT_EQ(plant->powerState(joint), PowerState::kSwitchOnDisabled) << joint;
   Scene found = scene;
   found.controller.q_start = reader->q();
   test::VirtualRobotCell cell(found);
@@ -83,6 +102,46 @@ TEST_P(Reading, LetsTheDrivesGoForWhoComesNext) {
   cell.step();
   for (int joint = 0; joint < q.size(); ++joint)
     EXPECT_NEAR(cell.cycle.robot().drive(joint).position, q[joint], 1e-3) << joint;
+}
+
+/// Of a daemon that was killed: the place is told once they have stopped, and are off.
+TEST_P(Reading, WaitsForDrivesThatStillMove) {
+  test::VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  for (int i = 0; i < 2500; ++i) cell.step();
+  plant = cell.plant;
+  t_ns = cell.t_ns;
+  ASSERT_TRUE(hasTorque());
+  while (!reader->isDone() && t_ns < cell.t_ns + 10'000'000'000) cycle();
+  ASSERT_EQ(reader->report().fault, Fault::kNone) << faultName(reader->report().fault);
+  EXPECT_FALSE(hasTorque());
+  const JointVector found = reader->q();
+  JointReader again(*scene.hardware, scene.period_s);
+  std::swap(again, *reader);
+  plant->advance(t_ns += 1'000'000'000);
+  while (!reader->isDone() && t_ns < cell.t_ns + 20'000'000'000) cycle();
+  EXPECT_LT((reader->q() - found).cwiseAbs().maxCoeff(), 1e-3) << "at rest";
+}
+
+TEST_P(Reading, EndsWithADriveThatObeysNothing) {
+  test::VirtualRobotCell cell(scene);
+  ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  plant = cell.plant;
+  t_ns = cell.t_ns;
+  const DriveConfig& drive = scene.hardware->drives[1];
+  plant->play({{.kind = Trouble::Kind::kIgnoreCommands,
+                .from_s = 0.0,
+                .until_s = 1e6,
+                .bus = drive.bus,
+                .id = static_cast<std::uint32_t>(drive.node_id)}},
+              t_ns);
+  while (!reader->isDone() && t_ns < cell.t_ns + 10'000'000'000) cycle();
+  ASSERT_TRUE(reader->isDone());
+  if (reader->report().fault != Fault::kNone) {
+    EXPECT_EQ(reader->report().joint, 1) << faultName(reader->report().fault);
+  } else {
+    EXPECT_FALSE(hasTorque()) << "it is off all the same";
+  }
 }
 
 TEST_P(Reading, NamesADriveThatDoesNotAnswer) {
@@ -99,6 +158,25 @@ TEST_P(Reading, NamesABusThatIsDown) {
   ASSERT_TRUE(reader->isDone());
   EXPECT_EQ(reader->report().fault, Fault::kBusDown);
   EXPECT_EQ(reader->report().bus, static_cast<int>(bus_faults.size()) - 1);
+}
+
+/// Its object 605A is one that stays in quick stop active.
+TEST(ReadingOfCanopen, NamesADriveThatIsNeverOff) {
+  ReadingRig rig("scenario1_tactus");
+  const auto id =
+      cob_id::kTpdo1 + static_cast<std::uint32_t>(rig.scene.hardware->drives[1].node_id);
+  int shown = 0;
+  rig.on_frame = [&](CanFrame& frame) {
+    if (frame.id != id) return;
+    frame.data[0] = 0x07;  // of the status word
+    ++shown;
+  };
+  rig.readAll();
+  EXPECT_EQ(rig.reader->report().fault, Fault::kDriveStateLost);
+  EXPECT_EQ(rig.reader->report().joint, 1) << "the first one, with such an id on each bus";
+  EXPECT_EQ(rig.reader->report().drive.state, DriveState::kQuickStopActive);
+  const double deadline_s = rig.scene.hardware->canopen.stop_deadline_s;
+  EXPECT_GE(shown, 3 * static_cast<int>(deadline_s / rig.scene.period_s)) << "it has its time";
 }
 
 INSTANTIATE_TEST_SUITE_P(Drives, Reading,

@@ -21,7 +21,7 @@ struct CommandedPlace {
 };
 
 /// Where all drives are commanded to be, cycle by cycle, and for some cycles after missed ones
-/// where they were before: feedback may be late.
+/// where they were before the last of these: feedback may be late.
 class CommandedPlaces {
  public:
   explicit CommandedPlaces(const JointVector& q) : q_now_(q), q_before_pause_(q) {}

@@ -12,6 +12,7 @@
 #include "tactus/rt/system_call_filter.h"
 #include "tactus/scene/scene.h"
 #include "tactus/supervisor/control_cycle.h"
+#include "tactus/supervisor/enable_wait.h"
 
 namespace tactus {
 
@@ -47,6 +48,7 @@ class HardwareLoop {
   long long max_task_cycles_;
   std::vector<std::unique_ptr<BusPort>> buses_;
   std::optional<GpioLines> lines_;
+  EnableWait enable_wait_;
   ControlCycle cycle_;
   CycleInput input_;
   bool are_lines_written_ = true;

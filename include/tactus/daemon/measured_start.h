@@ -6,11 +6,18 @@
 
 namespace tactus {
 
+/// Whether the scene begins where the arm is: task.commands.start_measured.
+bool startsMeasured(const Scene& scene);
+
+/// Throws InputError unless somebody can ask for the motion: a robot with an enable line.
+void checkMeasuredStart(const Scene& scene);
+
 /// Where the arm is, m or rad: opens the scene's buses, sets the drives up without torque, and lets
 /// them go. Throws RunError with what is wrong, as the daemon would name it.
 JointVector readJoints(const Scene& scene);
 
-/// Where an arm at q may start: beside a limit by no more than start_tolerance counts as on it.
+/// Where an arm at q may start: a joint beyond its limit by no more than start_tolerance counts as
+/// on it.
 JointVector startAt(const Scene& scene, const JointVector& q);
 
 /// "[0.1, -0.25]", as a scene's `start` has it.

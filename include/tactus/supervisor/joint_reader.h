@@ -7,9 +7,9 @@
 
 namespace tactus {
 
-/// Where an arm is, before anything moves it: sets its drives up, which leaves them without torque,
-/// hears where they are and lets them go. In frames, as CanRobot. A cycle: receive() for each bus,
-/// update(), then the outboxes, also of the last one.
+/// Where an arm is, before anything moves it: sets its drives up, which takes their torque, hears
+/// where they are once all of them are off, and lets them go. In frames, as CanRobot. A cycle:
+/// receive() for each bus, update(), then the outboxes, also of the last one.
 class JointReader {
  public:
   JointReader(const HardwareConfig& hardware, double period_s);
@@ -19,7 +19,8 @@ class JointReader {
   const FrameBatch& outbox(int bus) const noexcept { return robot_.outbox(bus); }
   const CanFrame& probe() const noexcept { return robot_.probe(); }
 
-  /// All positions are known, or report() says why not: within the drives' boot_timeout_s.
+  /// All positions are known, or report() says why not, by the drives' own limits of time and
+  /// stop_deadline_s.
   bool isDone() const noexcept { return is_done_; }
   const FaultReport& report() const noexcept { return report_; }
   const JointVector& q() const noexcept { return input_.q_measured; }  ///< m or rad
@@ -31,6 +32,8 @@ class JointReader {
   JointVector rest_;
   RobotInput input_;
   FaultReport report_;
+  int stopping_cycles_ = 0;  ///< since all drives are set up
+  int stop_deadline_cycles_;
   bool is_first_ = true, is_done_ = false;
 };
 

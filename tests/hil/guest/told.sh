@@ -65,8 +65,16 @@ wait $daemon && fail "a daemon that refused to start exits with 0"
 tactus where "$scene" --json >"$out/where.json" || fail "tactus where exits with $?"
 tactusd "$scene" --set task.commands.start_measured=true -o "$ROOT/out" --name again \
   2>"$out/again.txt" & daemon=$!
+wait_for ready "$out/again.txt"
+sleep 0.3
+grep -q running "$out/again.txt" && fail "runs by an enable line that was on before"
+line $enable 0 >/dev/null
+sleep 0.1
+line $enable 1 >/dev/null
 wait_for running "$out/again.txt"
 told arrived tactus move --relative --to 0,-0.02,0 --wait
+tactus set controller.damping=0.65 || fail "set exits with $?"
+tactus reload || fail "reload exits with $?"
 kill $daemon
 wait $daemon || fail "tactusd exits with $?"
 stop_plant

@@ -1,0 +1,36 @@
+#include "tactus/supervisor/enable_wait.h"
+
+#include <gtest/gtest.h>
+
+namespace tactus {
+namespace {
+
+GpioInputs linesWith(bool enable, bool is_valid = true) {
+  GpioInputs lines;
+  lines.enable = enable;
+  lines.is_valid = is_valid;
+  return lines;
+}
+
+TEST(EnableWait, CountsTheLineOnceItWasOff) {
+  EnableWait wait(true);
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(wait.update(linesWith(true)).enable);
+  EXPECT_FALSE(wait.update(linesWith(false, false)).enable);
+  EXPECT_FALSE(wait.update(linesWith(true)).enable) << "a chip that fails shows nothing";
+  EXPECT_FALSE(wait.update(linesWith(false)).enable);
+  EXPECT_TRUE(wait.update(linesWith(true)).enable);
+  EXPECT_FALSE(wait.update(linesWith(false)).enable);
+  EXPECT_TRUE(wait.update(linesWith(true)).enable);
+}
+
+TEST(EnableWait, ChangesNothingElse) {
+  EnableWait waits(true), none(false);
+  GpioInputs pressed = linesWith(true);
+  pressed.emergency_stop = true;
+  EXPECT_TRUE(waits.update(pressed).emergency_stop);
+  EXPECT_FALSE(waits.update(linesWith(true, false)).is_valid);
+  EXPECT_TRUE(none.update(linesWith(true)).enable);
+}
+
+}  // namespace
+}  // namespace tactus
