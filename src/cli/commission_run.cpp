@@ -177,8 +177,7 @@ class Commissioning {
       do {
         if (!confirm("Write this?")) return false;
         refuseChanges(robot.path, before, robot.text);
-      } while (!save(robot, state));
-      scene_ = std::move(next);
+      } while (!save(robot, state, next));
       state_ = std::move(state);
       return true;
     } catch (const InputError& error) {
@@ -187,13 +186,15 @@ class Commissioning {
     }
   }
 
-  /// False: it cannot be written now. What was found is still there, to be written later.
-  bool save(const SourceFile& robot, const Json& state) {
+  /// next: the scene with this robot. False: it cannot be written now. What was found is still
+  /// there, to be written later.
+  bool save(const SourceFile& robot, const Json& state, const Scene& next) {
     try {
       if (readFromDisk(robot.path) != robot.text) {
         writeRobot(robot, !is_copy_kept_);
         is_copy_kept_ = true;
       }
+      scene_ = next;  // as the file is now, whatever becomes of the state
       writeState(state_path_, state);
       return true;
     } catch (const std::runtime_error& error) {

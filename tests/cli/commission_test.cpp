@@ -69,7 +69,9 @@ class VirtualDesk final : public CommissionDesk {
   bool is_gone = false;     ///< types nothing else, and then goes away
   std::optional<std::pair<int, Fault>> bus_fault;
   bool stops_after_writing = false;
-  int cycles_to_stop = 0;  ///< of motion, until a line is typed
+  int no_to_writing = 0;        ///< the how manieth question to write is answered by no, from 1
+  const char* goes_on = "end";  ///< where a joint is not finished
+  int cycles_to_stop = 0;       ///< of motion, until a line is typed
   /// In this cycle after each answer, while drives are asked whether they are off.
   int reading_cycle_typed = 0;
   std::string typed_while_reading;
@@ -115,7 +117,8 @@ class VirtualDesk final : public CommissionDesk {
     const bool is_writing = said.ends_with("Write this? yes, no > ");
     if (is_writing && on_write) on_write();
     if (is_writing && stops_after_writing) is_stopped_ = true;
-    return asks_on ? "end" : " yes\r";
+    if (is_writing && --no_to_writing == 0) return "no";
+    return asks_on ? goes_on : " yes\r";
   }
 
  private:
@@ -329,6 +332,25 @@ TEST(Commission, FindingsAreStillThereAfterAFailedWrite) {
   EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
   EXPECT_EQ(writes, 4);  // of three joints
   EXPECT_NE(desk.said.find("cannot be opened for writing"), std::string::npos);
+  expectFileIsRight(folder);
+}
+
+/// The robot's file has the joint by then: that is no change by somebody else.
+TEST(Commission, NoAfterHalfAWriteCostsNoOtherJoint) {
+  const CommissionFolder folder;
+  VirtualDesk desk(folder.scene());
+  const std::string blocked = folder.path("robot.yaml.commission.json.next");
+  int writes = 0;
+  desk.on_write = [&] {
+    ++writes;
+    if (writes == 1) std::filesystem::create_directory(blocked);
+    if (writes == 2) std::filesystem::remove(blocked);
+  };
+  desk.no_to_writing = 2;
+  desk.goes_on = "next";
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitFault);
+  EXPECT_EQ(desk.said.find("was changed meanwhile"), std::string::npos) << desk.said;
+  EXPECT_TRUE(desk.said.ends_with("not finished: lift\n"));
   expectFileIsRight(folder);
 }
 
