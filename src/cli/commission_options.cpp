@@ -15,6 +15,10 @@ namespace {
 constexpr double kLeastTravel_errors = 15.0;
 /// Of what nobody need see: a motion of as much or less is never seen, and the next is no longer.
 constexpr double kLeastTravel_unseen = 1.5;
+/// Of the following error that ends a motion, by the fewest counts that a joint may have: of one
+/// whose counts are rounded by as much any motion would look stuck.
+constexpr double kLeastError_counts = 2.0;
+constexpr double kLeastFactor = 1.5;  ///< that the option takes
 
 /// Whoever filled them in: a comparison with NaN would bound nothing.
 void checkBounds(const MotionBounds& bounds, double most_travel, double most_speed,
@@ -58,6 +62,26 @@ void checkIsMeasurable(const MotionBounds& bounds, double most_travel, const Bou
       bounds.max_travel, names.unit, std::ceil(least / kDigit - kRounding) * kDigit, names.unit));
 }
 
+void checkIsCountable(const Scene& scene, const CommissionConfig& config) {
+  for (const DriveConfig& drive : config.hardware.drives) {
+    const double error = config.bounds(drive.joint).max_following_error;
+    const double most = drive.counts_per_unit * error / kLeastError_counts;
+    constexpr double kDigit = 0.01, kRounding = 1e-6;  // so that what is told is accepted
+    if (config.file_factor <= most * (1.0 + kRounding)) continue;
+    const auto& name = scene.joint_names[static_cast<std::size_t>(drive.joint)];
+    const std::string told = fmt::format(
+        "--file-factor: by {:g} the {:g} counts/{} of {} are too few to tell whether it "
+        "follows a motion",
+        config.file_factor, drive.counts_per_unit, unitOf(scene.controller.chain.type(drive.joint)),
+        escaped(name));
+    if (most >= kLeastFactor)
+      throw InputError(fmt::format("{}, expected at most {:g}", told,
+                                   std::floor(most / kDigit + kRounding) * kDigit));
+    throw InputError(fmt::format("{}, expected a finer encoder, of {:g} counts or more", told,
+                                 kLeastFactor * kLeastError_counts / error));
+  }
+}
+
 }  // namespace
 
 CommissionConfig commissionConfig(const Scene& scene, const CommissionOptions& options) {
@@ -75,6 +99,7 @@ CommissionConfig commissionConfig(const Scene& scene, const CommissionOptions& o
     throw InputError("--file-factor: is no factor, expected one from 1 to 10000");
   checkIsMeasurable(config.revolute, kMostTravel_rad, kRevoluteNames);
   checkIsMeasurable(config.prismatic, kMostTravel_m, kPrismaticNames);
+  if (!options.is_scan_alone) checkIsCountable(scene, config);
   return config;
 }
 

@@ -38,8 +38,8 @@ std::string strokeText(const Scene& scene, int joint, const StrokeReport& stroke
            refusalText(scene.hardware->drives[joint], stroke.drive);
   if (stroke.fault == Fault::kFollowingError)
     return fmt::format(
-        "it does not follow, {} behind the command; is it stuck, or its brake "
-        "closed?",
+        "it does not follow, up to {} behind the command; is it stuck, or its "
+        "brake closed?",
         lengthText(scene, joint, stroke.detail.value));
   std::string text =
       fmt::format("{}: {}", faultName(stroke.fault), faultRow(stroke.fault).detection);

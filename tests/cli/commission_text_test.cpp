@@ -152,6 +152,44 @@ TEST(CommissionText, TravelThatCannotBeMeasuredIsRefused) {
   EXPECT_EQ(refusal(options), "");
 }
 
+/// By so few counts as the file's divided by the factor, their rounding would be a following error,
+/// and any joint looks stuck.
+TEST(CommissionText, CountsThatAreTooFewToFollowAMotionAreRefused) {
+  const CommissionFolder folder;
+  const std::string robot = folder.content("robot.yaml");
+  CommissionOptions options;
+  const auto refusal = [&](const char* counts) -> std::string {
+    folder.put("robot.yaml", test::replaced(robot, "counts_per_rad: 1e6", counts));
+    try {
+      commissionConfig(folder.scene(), options);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal("counts_per_rad: 652"),
+            "--file-factor: by 10 the 652 counts/rad of shoulder are too few to tell whether it "
+            "follows a motion, expected at most 6.52");
+  EXPECT_EQ(refusal("counts_per_rad: 1000"), "");
+  options.file_factor = 6.52;
+  EXPECT_EQ(refusal("counts_per_rad: 652"), "");
+  EXPECT_TRUE(refusal("counts_per_rad: 149").ends_with("a finer encoder, of 150 counts or more"));
+  options.is_scan_alone = true;
+  EXPECT_EQ(refusal("counts_per_rad: 149"), "");
+}
+
+/// Which of the file's counts it has is not known yet: it is not as far behind as those would say.
+TEST(CommissionText, AJointThatDoesNotFollowIsBehindByUpToSoMuch) {
+  const CommissionFolder folder;
+  JointTrouble trouble{.kind = JointTroubleKind::kStroke, .bus = 0, .node_id = 2};
+  trouble.stroke.end = StrokeEnd::kFault;
+  trouble.stroke.fault = Fault::kFollowingError;
+  trouble.stroke.detail = {0.02, 0.02, "m or rad"};
+  const std::string text = troubleText(folder.scene(), kShoulderJoint, trouble);
+  EXPECT_NE(text.find("it does not follow, up to 1.146 deg behind the command"), std::string::npos)
+      << text;
+}
+
 TEST(CommissionText, BoundsThatAreNoNumbersAreRefused) {
   const CommissionFolder folder;
   const Scene scene = folder.scene();

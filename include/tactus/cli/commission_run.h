@@ -16,7 +16,8 @@ struct CommissionOptions {
   bool json = false;           ///< of the scan
 };
 
-/// Throws InputError if the motions would be too short to be seen and measured.
+/// Throws InputError if the motions would be too short to be seen and measured, or, unless the scan
+/// is all, a joint may have so few counts that nobody could tell whether it follows.
 CommissionConfig commissionConfig(const Scene& scene, const CommissionOptions& options);
 
 /// Commissions the joints of the scene's robot, which has hardware, until all are finished, the
