@@ -2,32 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace tactus {
 namespace {
 
-constexpr double kLeastJudgedSigma = 2.0;  ///< counts
+constexpr double kLeastJudgedSigma = 2.0;  ///< steps
 constexpr double kFlatShare = 0.2;         ///< of the samples at the outermost counts
 constexpr double kQuietShare = 0.2;        ///< of the noise without load
 constexpr double kOffZeroSigmas = 10.0;
 constexpr double kEndSigmas = 3.0;
-constexpr double kLeastMedianSigma = 10.0;  ///< counts: of channels that rustle
+constexpr double kLeastMedianSigma = 10.0;  ///< steps: of channels that rustle
 constexpr int kLeastSamples = 20;
 
 /// So far that it is no noise, by a channel that has some.
 bool isOff(int i, const ChannelFigures& now, const ChannelFigures& zero) noexcept {
-  return zero.sigma[i] >= kLeastJudgedSigma &&
+  return zero.sigma[i] >= kLeastJudgedSigma * std::max(now.step, zero.step) &&
          std::abs(now.mean[i] - zero.mean[i]) >= kOffZeroSigmas * zero.sigma[i];
 }
 
-/// 2^n - 1, or -2^n; some converters keep to +-(2^n - 1).
-bool isEndOfConverter(double counts) noexcept {
+/// 2^n - 1 steps, or -2^n; some converters keep to +-(2^n - 1).
+bool isEndOfConverter(double counts, double step) noexcept {
+  counts /= step;
   for (int bits = 11; bits <= 22; ++bits) {
     const double end = std::ldexp(1.0, bits);
     if (std::abs(counts) == end - 1.0 || counts == -end) return true;
   }
   return false;
 }
+
+/// The largest multiple of a step that 24 bits hold.
+double endOf(const ChannelFigures& now) noexcept { return kChannelEnd + 1.0 - now.step; }
 
 double medianOf(ChannelVector values) noexcept {
   std::sort(values.begin(), values.end());
@@ -38,11 +43,11 @@ double medianOf(ChannelVector values) noexcept {
 
 std::optional<ChannelDefect> figuresDefect(const ChannelFigures& now,
                                            const ChannelFigures* zero) noexcept {
-  const bool do_others_rustle = medianOf(now.sigma) >= kLeastMedianSigma;
+  const bool do_others_rustle = medianOf(now.sigma) >= kLeastMedianSigma * now.step;
   for (int i = 0; i < 8; ++i) {
     const double counts = now.mean[i], sigma = now.sigma[i];
-    const bool is_at_end = std::abs(counts) + kEndSigmas * sigma >= kChannelEnd ||
-                           (sigma == 0.0 && isEndOfConverter(counts));
+    const bool is_at_end = std::abs(counts) + kEndSigmas * sigma >= endOf(now) ||
+                           (sigma == 0.0 && isEndOfConverter(counts, now.step));
     if (is_at_end) return ChannelDefect{i, ChannelTrouble::kAtItsEnd, counts};
     const bool is_quiet = zero && isOff(i, now, *zero) && sigma < kQuietShare * zero->sigma[i];
     if (is_quiet || (sigma == 0.0 && do_others_rustle))
@@ -66,6 +71,7 @@ void ChannelWindow::add(const ChannelVector& counts, double t_s) noexcept {
   sum_ty_ += t * y;
   sum_squares_ += y.cwiseAbs2();
   for (int i = 0; i < 8; ++i) {
+    step_ = std::gcd(step_, std::llround(y[i]));
     if (counts[i] < low_[i]) at_low_[i] = 0.0;
     if (counts[i] > high_[i]) at_high_[i] = 0.0;
     low_[i] = std::min(low_[i], counts[i]);
@@ -83,6 +89,7 @@ ChannelFigures ChannelWindow::figures() const noexcept {
   figures.duration_s = last_s_ - first_s_;
   const ChannelVector mean = sum_ / n;
   figures.mean = first_ + mean;
+  if (samples_ >= kLeastSamples && step_ > 0) figures.step = static_cast<double>(step_);
   const double spread_t = sum_tt_ - sum_t_ * sum_t_ / n;
   if (spread_t > 0.0) figures.drift_per_s = (sum_ty_ - sum_t_ * mean) / spread_t;
   if (samples_ < 3) return figures;
@@ -102,8 +109,8 @@ bool ChannelWindow::isCut(int i, const ChannelFigures& now,
 std::optional<ChannelDefect> ChannelWindow::defect(const ChannelFigures* zero) const noexcept {
   const ChannelFigures now = figures();
   for (int i = 0; i < 8 && samples_ > 0; ++i) {
-    if (high_[i] >= kChannelEnd) return ChannelDefect{i, ChannelTrouble::kAtItsEnd, high_[i]};
-    if (low_[i] <= -kChannelEnd) return ChannelDefect{i, ChannelTrouble::kAtItsEnd, low_[i]};
+    if (high_[i] >= endOf(now)) return ChannelDefect{i, ChannelTrouble::kAtItsEnd, high_[i]};
+    if (low_[i] <= -endOf(now)) return ChannelDefect{i, ChannelTrouble::kAtItsEnd, low_[i]};
     if (zero && samples_ >= kLeastSamples && isCut(i, now, *zero))
       return ChannelDefect{i, ChannelTrouble::kFlatTopped,
                            now.mean[i] > zero->mean[i] ? high_[i] : low_[i]};

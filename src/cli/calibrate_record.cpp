@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "tactus/cli/push_file.h"
@@ -26,10 +27,14 @@ constexpr double kLeastSigma = 0.5;  ///< counts: of a channel that is quieter, 
 constexpr double kMaxChange = 0.2;   ///< of a push while it is held
 constexpr double kLargestSaid_N = 1e4;
 
+/// A comma ends a word, but within one it may be meant as a decimal point.
 std::vector<std::string> wordsOf(const std::string& line) {
+  constexpr std::string_view kSpaces = " \t\r";
   std::vector<std::string> words(1);
-  for (const char c : line) {
-    const bool is_space = c == ' ' || c == '\t' || c == ',' || c == '\r';
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    const bool ends = i + 1 == line.size() || kSpaces.find(line[i + 1]) != std::string_view::npos;
+    const bool is_space = kSpaces.find(c) != std::string_view::npos || (c == ',' && ends);
     if (is_space && !words.back().empty()) words.emplace_back();
     if (!is_space) words.back() += c;
   }

@@ -86,6 +86,7 @@ ChannelFigures readFigures(const PushSection& section) {
   ChannelFigures figures;
   figures.mean = section.channels("mean_counts");
   figures.sigma = section.channels("sigma_counts");
+  if (section.find("step_counts")) figures.step = section.number("step_counts", 1.0, kChannelEnd);
   if (figures.sigma.minCoeff() < 0.0)
     failAt(section.require("sigma_counts", "").at, section.pathOf("sigma_counts"), "is negative",
            "expected standard deviations");
@@ -104,8 +105,9 @@ void refuseDefect(const PushSection& section, const ChannelFigures& figures,
 }
 
 ChannelFigures readZero(const YamlNode& node, const std::string& path) {
-  const PushSection section(node, path,
-                            {"duration_s", "mean_counts", "sigma_counts", "drift_counts_per_s"});
+  const PushSection section(
+      node, path,
+      {"duration_s", "mean_counts", "sigma_counts", "drift_counts_per_s", "step_counts"});
   ChannelFigures figures = readFigures(section);
   figures.duration_s = section.number("duration_s", 0.0, 1e6);
   if (section.find("drift_counts_per_s"))
@@ -116,7 +118,8 @@ ChannelFigures readZero(const YamlNode& node, const std::string& path) {
 
 RecordedPush readPush(const YamlNode& node, const std::string& path, const ChannelFigures& zero) {
   const PushSection section(
-      node, path, {"force_N", "position_m", "moment_x_Nm", "mean_counts", "sigma_counts"});
+      node, path,
+      {"force_N", "position_m", "moment_x_Nm", "mean_counts", "sigma_counts", "step_counts"});
   RecordedPush recorded{{}, node.at};
   const std::vector<double> force_N = section.numbers("force_N", 3, kLargestForce_N);
   if (force_N[0] != 0.0)
@@ -142,6 +145,11 @@ std::string countsText(const ChannelVector& counts) {
   for (const double count : counts)
     words.push_back(fmt::format("{:.1f}", count == 0.0 ? 0.0 : count));
   return fmt::format("[{}]", fmt::join(words, ", "));
+}
+
+std::string stepText(const ChannelFigures& figures, const char* indentation) {
+  if (figures.step <= 1.0) return "";
+  return fmt::format("{}step_counts: {:.0f}\n", indentation, figures.step);
 }
 
 void readRecord(const YamlNode& record, const std::string& path, PushFile& file,
@@ -204,18 +212,20 @@ std::string pushFileBeginning(const std::string& link) {
 
 std::string zeroRecord(const ChannelFigures& figures) {
   return fmt::format(
-      "  - zero:\n      duration_s: {:.2f}\n      mean_counts: {}\n      sigma_counts: {}\n"
-      "      drift_counts_per_s: {}\n",
-      figures.duration_s, countsText(figures.mean), countsText(figures.sigma),
-      countsText(figures.drift_per_s));
+             "  - zero:\n      duration_s: {:.2f}\n      mean_counts: {}\n      sigma_counts: {}\n"
+             "      drift_counts_per_s: {}\n",
+             figures.duration_s, countsText(figures.mean), countsText(figures.sigma),
+             countsText(figures.drift_per_s)) +
+         stepText(figures, "      ");
 }
 
 std::string pushRecord(const KnownPush& push, const ChannelFigures& figures) {
   std::string text = fmt::format("  - force_N: [0, {:.6g}, {:.6g}]\n    position_m: {:.6g}\n",
                                  push.force_y_N, push.force_z_N, push.position_m);
   if (push.moment_x_Nm != 0.0) text += fmt::format("    moment_x_Nm: {:.6g}\n", push.moment_x_Nm);
-  return text + fmt::format("    mean_counts: {}\n    sigma_counts: {}\n", countsText(figures.mean),
-                            countsText(figures.sigma));
+  text += fmt::format("    mean_counts: {}\n    sigma_counts: {}\n", countsText(figures.mean),
+                      countsText(figures.sigma));
+  return text + stepText(figures, "    ");
 }
 
 std::vector<KnownPush> pushesOf(const PushFile& file) {

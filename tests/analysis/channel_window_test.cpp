@@ -21,7 +21,8 @@ double channelNoise(test::Random& random) {
 struct DrawnChannels {
   ChannelVector mean = ChannelVector::Zero(), sigma = ChannelVector::Constant(30.0);
   ChannelVector drift_per_s = ChannelVector::Zero();
-  double top = 1e9;  ///< of channel 2, where it is clipped
+  double top = 1e9;   ///< of channel 2, where it is clipped
+  double step = 1.0;  ///< counts
   bool is_filtered = false;
 };
 
@@ -34,7 +35,8 @@ ChannelWindow drawnWindow(test::Random& random, const DrawnChannels& drawn, int 
     for (int i = 0; i < 8; ++i) {
       double noise = drawn.sigma[i] * channelNoise(random);
       if (drawn.is_filtered) noise = 3.0 * filters[static_cast<std::size_t>(i)].update(noise);
-      counts[i] = std::round(drawn.mean[i] + drawn.drift_per_s[i] * (t_s - 3.5) + noise);
+      const double exact = drawn.mean[i] + drawn.drift_per_s[i] * (t_s - 3.5) + noise;
+      counts[i] = drawn.step * std::round(exact / drawn.step);
     }
     counts[2] = std::min(counts[2], drawn.top);
     window.add(counts, t_s);
@@ -159,6 +161,50 @@ TEST(ChannelWindow, FiguresOfAFileShowIt) {
   push.mean[1] = -kChannelEnd + 100.0;
   ASSERT_TRUE(figuresDefect(push, &zero));
   EXPECT_EQ(figuresDefect(push, &zero)->trouble, ChannelTrouble::kAtItsEnd);
+}
+
+/// As 16 bits in the upper ones of 24: with hardly any noise many samples are the outermost ones,
+/// and some channels are still while others change between two steps.
+TEST(ChannelWindow, HasNothingAgainstAGoodOneWhoseCountsComeInSteps) {
+  test::Random random(15);
+  for (int i = 0; i < 500; ++i) {
+    DrawnChannels drawn;
+    drawn.step = std::exp2(random.integer(1, 10));
+    drawn.mean = random.vector<ChannelVector>(8, -30.0, 30.0) * drawn.step;
+    drawn.sigma.setConstant(random.logUniform(0.15, 10.0) * drawn.step);
+    const ChannelWindow unloaded = drawnWindow(random, drawn, 500);
+    const ChannelFigures zero = unloaded.figures();
+    EXPECT_FALSE(unloaded.defect());
+    EXPECT_EQ(zero.step, drawn.step);
+    drawn.mean = random.vector<ChannelVector>(8, -1e3, 1e3) * drawn.step;
+    const ChannelWindow pushed = drawnWindow(random, drawn);
+    EXPECT_FALSE(pushed.defect(&zero)) << i;
+    EXPECT_FALSE(figuresDefect(pushed.figures(), &zero)) << i;
+  }
+}
+
+TEST(ChannelWindow, SeesTheEndAndTheFlatTopOfCountsThatComeInSteps) {
+  test::Random random(16);
+  DrawnChannels drawn;
+  drawn.step = 256.0;
+  drawn.sigma.setConstant(0.4 * drawn.step);
+  const ChannelFigures zero = drawnWindow(random, drawn).figures();
+  for (const double top : {kChannelEnd + 1.0 - drawn.step, 2047.0 * drawn.step}) {
+    drawn.top = top;
+    drawn.mean[2] = top + 1e4;
+    const std::optional<ChannelDefect> defect = drawnWindow(random, drawn).defect(&zero);
+    ASSERT_TRUE(defect);
+    EXPECT_EQ(defect->channel, 2);
+    EXPECT_EQ(defect->trouble, ChannelTrouble::kAtItsEnd);
+  }
+  drawn.sigma.setConstant(20.0 * drawn.step);
+  drawn.top = 1000.0 * drawn.step;
+  drawn.mean[2] = 0.0;
+  const ChannelFigures loud = drawnWindow(random, drawn).figures();
+  drawn.mean[2] = drawn.top;
+  const std::optional<ChannelDefect> defect = drawnWindow(random, drawn).defect(&loud);
+  ASSERT_TRUE(defect);
+  EXPECT_EQ(defect->trouble, ChannelTrouble::kFlatTopped);
 }
 
 /// A hand trembles, and noise comes filtered.

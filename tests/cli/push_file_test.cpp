@@ -26,6 +26,11 @@ TEST_F(PushFileTest, WhatIsSaidWrongIsAskedAgain) {
         "1 5 0 0.1", "0 0 0 0.1",   "0 5 0",        "5 +y 0.1 0 0", "nan +y 0.1",
         "5 +y inf",  "0 5 1e9 0.1", "5 +y 0,1 2 3", "z 5",          "0 5 0 0.1 0.1 0.1"})
     EXPECT_FALSE(isPush(line) || problem.empty()) << line;
+  // A decimal comma, by which 0.1 m would be 0 m and a moment of 1 Nm.
+  for (const char* line : {"5 +y 0,1", "5,5 +y 0.1", "0 5 0 0,1", "0,5,0,0.1"}) {
+    EXPECT_FALSE(isPush(line)) << line;
+    EXPECT_TRUE(problem.ends_with("is no number")) << problem;
+  }
   test::Random random(44);
   test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);
   const std::string said = record(
@@ -75,6 +80,22 @@ TEST_F(PushFileTest, MistakesInThePushesAreNamedWhereTheyStand) {
   EXPECT_NE(errorOf(pushFileBeginning("link4") + good).find("a push before any zero"),
             std::string::npos);
   EXPECT_NE(errorOf(pushFileText(good)).find("1 pushes do not tell 4 rows"), std::string::npos);
+}
+
+/// Of a converter whose counts come in steps, and hardly rustle: what was recorded is fitted.
+TEST_F(PushFileTest, StepsOfCountsAreKept) {
+  ChannelFigures zero;
+  zero.sigma.setConstant(100.0);
+  zero.step = 256.0;
+  ChannelFigures held = zero;
+  held.mean.setConstant(25600.0);
+  held.sigma.setZero();
+  const std::string records = zeroRecord(zero) + pushRecord({5.0, 0.0, 0.1}, held);
+  std::ofstream(path("pushes.yaml")) << pushFileBeginning("link4") << records;
+  const PushFile file = readPushFile(path("pushes.yaml"));
+  EXPECT_EQ(file.pushes.size(), 1u);
+  EXPECT_EQ(file.zero->step, 256.0);
+  EXPECT_EQ(zeroRecord({}).find("step"), std::string::npos);
 }
 
 /// As a hand wrote them down, or before a limit was known.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "tactus/math/types.h"
@@ -19,6 +20,9 @@ struct ChannelFigures {
   ChannelVector mean = ChannelVector::Zero();         ///< counts
   ChannelVector sigma = ChannelVector::Zero();        ///< counts, about the line of the drift
   ChannelVector drift_per_s = ChannelVector::Zero();  ///< counts/s, slope of the best line
+  /// Counts that all samples differ by multiples of: more than one of a converter of fewer bits
+  /// whose counts are shifted up.
+  double step = 1.0;
 };
 
 /// Why a channel says nothing of a force.
@@ -36,7 +40,7 @@ struct ChannelDefect {
 /// The first channel of which figures alone show one of these, as those of a file: a mean within
 /// three sigma of its end, without noise at the end of a converter of 11 to 22 bits and sign, or
 /// without any while the others have some; with figures of the time without load also off its zero
-/// by ten sigma and five times as quiet as there. A channel with less than two counts of noise
+/// by ten sigma and five times as quiet as there. A channel with less than two steps of noise
 /// cannot be judged by that.
 std::optional<ChannelDefect> figuresDefect(const ChannelFigures& now,
                                            const ChannelFigures* zero = nullptr) noexcept;
@@ -58,6 +62,7 @@ class ChannelWindow {
   bool isCut(int channel, const ChannelFigures& now, const ChannelFigures& zero) const noexcept;
 
   int samples_ = 0;
+  std::int64_t step_ = 0;  ///< counts, greatest common divisor of what samples differ by
   double first_s_ = 0.0, last_s_ = 0.0;
   double sum_t_ = 0.0, sum_tt_ = 0.0;
   ChannelVector first_ = ChannelVector::Zero();  ///< sums are of what differs from it
