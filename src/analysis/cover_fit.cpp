@@ -11,11 +11,15 @@ namespace tactus {
 namespace {
 
 constexpr double kBlock_s = 1.0;
+constexpr double kDrift_s = 10.0;  ///< so that all unknowns are of one size
 
 using Four = Eigen::Vector4d;
 
-/// Mass and centre of (m, m c).
-Four massAndCenter(const Four& x) { return {x[0], x[1] / x[0], x[2] / x[0], x[3] / x[0]}; }
+/// Mass and centre of (m, m c, ...).
+template <typename Unknowns>
+Four massAndCenter(const Unknowns& x) {
+  return {x[0], x[1] / x[0], x[2] / x[0], x[3] / x[0]};
+}
 
 Fitted fitted(double value, double square) { return {value, std::sqrt(square)}; }
 
@@ -42,23 +46,26 @@ void CoverFit::add(const JointVector& q, const TactileSample& sample, double ste
   const bool is_new = sample.sequence != sequence_;
   sequence_ = sample.sequence;
   block_s_ += step_s;
+  time_s_ += step_s;
   if (blocks_.empty() || block_s_ >= kBlock_s) {
     blocks_.emplace_back();
     block_s_ = 0.0;
   }
   if (!is_new) return;
   Normal& block = blocks_.back();
-  const double w = 1.0 / middle_m_;
-  addRow(Unknowns{{G_.y(), 0, 0, 0, 1, 0, 0, 0}}, sample.force_y_N, block);
-  addRow(Unknowns{{G_.z(), 0, 0, 0, 0, 1, 0, 0}}, sample.force_z_N, block);
-  addRow(w * Unknowns{{0, -G_.z(), 0, G_.x(), 0, 0, 1, 0}}, w * sample.moment_y_Nm, block);
-  addRow(w * Unknowns{{0, G_.y(), -G_.x(), 0, 0, 0, 0, 1}}, w * sample.moment_z_Nm, block);
+  const double w = 1.0 / middle_m_, t = time_s_ / kDrift_s;
+  addRow(Unknowns{{G_.y(), 0, 0, 0, 1, 0, 0, 0, t, 0, 0, 0}}, sample.force_y_N, block);
+  addRow(Unknowns{{G_.z(), 0, 0, 0, 0, 1, 0, 0, 0, t, 0, 0}}, sample.force_z_N, block);
+  addRow(w * Unknowns{{0, -G_.z(), 0, G_.x(), 0, 0, 1, 0, 0, 0, t, 0}}, w * sample.moment_y_Nm,
+         block);
+  addRow(w * Unknowns{{0, G_.y(), -G_.x(), 0, 0, 0, 0, 1, 0, 0, 0, t}}, w * sample.moment_z_Nm,
+         block);
   block.samples += 1.0;
   block.sum += G_;
   block.sum_of_squares += G_.cwiseAbs2();
 }
 
-void CoverFit::addRow(const Unknowns& row, double reading, Normal& normal) const {
+void CoverFit::addRow(const Unknowns& row, double reading, Normal& normal) {
   normal.A += row * row.transpose();
   normal.b += reading * row;
   normal.squares += reading * reading;
@@ -86,11 +93,11 @@ void CoverFit::follow(const JointVector& q, double step_s) {
   G_ += origin_;
 }
 
-/// The least squares' m and m c; squares: of what is left.
-Eigen::Vector4d CoverFit::solve(const Normal& normal, double& squares) {
+/// By least squares; squares: of what is left.
+CoverFit::Unknowns CoverFit::solve(const Normal& normal, double& squares) {
   const Unknowns x = normal.A.ldlt().solve(normal.b);
   squares = normal.squares - x.dot(normal.b);
-  return x.head<4>();
+  return x;
 }
 
 CoverEstimate CoverFit::estimate() const {
@@ -103,7 +110,11 @@ CoverEstimate CoverFit::estimate() const {
   estimate.change_along = std::sqrt(std::max(0.0, variance.x()));
   estimate.change_across = std::sqrt(std::max(0.0, variance.y() + variance.z()));
   double squares = 0.0;
-  const Four x = massAndCenter(solve(all, squares));
+  const Unknowns found = solve(all, squares);
+  const Four x = massAndCenter(found);
+  const Four drifts =
+      Four(1.0, 1.0, 1.0 / middle_m_, 1.0 / middle_m_).cwiseProduct(found.tail<4>());
+  estimate.drift_N_per_s = drifts.cwiseAbs().maxCoeff() / kDrift_s;
   estimate.residual_N = std::sqrt(std::max(0.0, squares) / (4.0 * all.samples));
   std::vector<Four> without;
   Four mean = Four::Zero();

@@ -32,6 +32,8 @@ struct IdentifyOptions {
 /// Of g - a in the module's frame, m/s^2: as it tilts by some two degrees.
 constexpr double kMinChange = 0.3;
 constexpr double kMaxRelativeDeviation = 0.1;
+/// What is faster is no channel that drifts.
+constexpr double kMaxDrift_N_per_s = 0.02;
 
 [[noreturn]] void refuse(const IdentifyOptions& options, const std::string& problem,
                          const std::string& expectation) {
@@ -133,6 +135,10 @@ void judge(const IdentifyOptions& options, const Identified& found) {
   if (!(estimate.residual_N <= found.threshold_N))
     refuse(options, fmt::format("{:.3g} N of the readings are of no cover", estimate.residual_N),
            fmt::format("no contact, and at most contact_threshold_N = {:g} N", found.threshold_N));
+  if (!(estimate.drift_N_per_s <= kMaxDrift_N_per_s))
+    refuse(
+        options, fmt::format("the readings drift by {:.3g} N/s", estimate.drift_N_per_s),
+        fmt::format("no contact, and at most {:g} N/s: a module that is warm", kMaxDrift_N_per_s));
   const Fitted& mass = estimate.mass_kg;
   // Readings that are all zero are a mass of 0 +- 0.
   if (!(mass.value > 0.0 && mass.deviation <= kMaxRelativeDeviation * mass.value))
@@ -157,11 +163,11 @@ std::string toText(const Identified& found) {
   return text + fmt::format(
                     "mass      {:.4f} +- {:.4f} kg\n"
                     "centre    x {:.4f} +- {:.4f}, y {:.4f} +- {:.4f}, z {:.4f} +- {:.4f} m\n"
-                    "left      {:.3g} N in root mean square\n"
+                    "left      {:.3g} N in root mean square, drift {:.2g} N/s\n"
                     "cover: {{mass_kg: {:.4f}, center_m: [{:.4f}, {:.4f}, {:.4f}]}}\n",
                     estimate.mass_kg.value, estimate.mass_kg.deviation, x.value, x.deviation,
                     y.value, y.deviation, z.value, z.deviation, estimate.residual_N,
-                    estimate.mass_kg.value, x.value, y.value, z.value);
+                    estimate.drift_N_per_s, estimate.mass_kg.value, x.value, y.value, z.value);
 }
 
 Json toJson(const Identified& found) {
@@ -183,6 +189,7 @@ Json toJson(const Identified& found) {
           {"gravity_change_m_per_s2",
            {{"across", estimate.change_across}, {"along", estimate.change_along}}},
           {"residual_N", estimate.residual_N},
+          {"drift_N_per_s", estimate.drift_N_per_s},
           {"duration_s", estimate.blocks}};
 }
 
