@@ -15,9 +15,10 @@ constexpr int kStopPeriod_cycles = 5;  ///< between NMT stop commands
 
 void Drive::coast(int missed_cycles) noexcept { stop_watch_.coast(missed_cycles); }
 
+/// Off is what it was before the last commands: one of them may have switched it on since.
 void Drive::release(FrameBatch& out) const noexcept {
-  const NmtCommand command =
-      report_.is_off ? NmtCommand::kResetCommunication : NmtCommand::kResetNode;
+  const bool stays_off = report_.is_off && goal_ != DriveGoal::kEnabled;
+  const NmtCommand command = stays_off ? NmtCommand::kResetCommunication : NmtCommand::kResetNode;
   out.push(nmtFrame({command, config_.node_id}));
 }
 

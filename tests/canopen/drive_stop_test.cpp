@@ -201,6 +201,17 @@ TEST(DriveStop, OnlyWhatWasSeenOffLosesItsWatchAtTheEnd) {
   EXPECT_EQ(released(rig), std::vector{kResetNode}) << "out of reach";
 }
 
+/// What it says is of before its last commands.
+TEST(DriveStop, OneThatIsToldToSwitchOnIsNotOffYet) {
+  DriveRig rig;
+  rig.configure();
+  rig.cycle(DriveGoal::kDisabled);
+  for (int cycle = 0; cycle < 4; ++cycle) {
+    rig.cycle(DriveGoal::kEnabled);
+    EXPECT_EQ(released(rig), std::vector{kResetNode});
+  }
+}
+
 TEST(DriveStop, FeedbackIsJudgedInTheCycleInWhichItComes) {
   DriveRig rig;
   rig.enable();

@@ -121,5 +121,28 @@ TEST(CommissionInterruption, WhateverInterruptsItEndsAtRestAndIsResumed) {
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) interrupt(interruption, seed);
 }
 
+/// What the drive says is of before the last command: it is not off because it was.
+TEST(CommissionInterruption, StopInAnyCycleOfSwitchingOnLeavesNoPower) {
+  constexpr std::uint16_t kShutdown = 0x06;  // the first control word towards power
+  for (int cycles_after = 0; cycles_after < 12; ++cycles_after) {
+    SCOPED_TRACE(cycles_after);
+    TroubledRig rig;
+    int cycles = -1;
+    rig.on_send = [&](int, CanFrame& frame) {
+      if (frame.id == 0x202 && frame.data[0] == kShutdown && cycles < 0) cycles = 0;
+      return true;
+    };
+    rig.on_cycle = [&] {
+      rig.watch();
+      if (cycles >= 0) rig.input.stop_requested = cycles++ == cycles_after;
+    };
+    rig.commission(test::kTroubledJoint, 3000);
+    EXPECT_GT(cycles, cycles_after);
+    rig.cycles(4000);
+    EXPECT_TRUE(rig.isAllOffAndAtRest());
+    EXPECT_TRUE(rig.cycle->question()) << "as after any motion that was stopped";
+  }
+}
+
 }  // namespace
 }  // namespace tactus
