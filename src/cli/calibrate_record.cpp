@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kLeastHeldSamples = 20;
 constexpr double kFeltSigmas = 10.0;
-constexpr double kLeastSigma = 0.5;  ///< counts: of a channel that is quieter, its rounding
+constexpr double kLeastSigma = 0.5;  ///< steps: of a channel that is quieter, its rounding
 constexpr double kMaxChange = 0.2;   ///< of a push while it is held
 constexpr double kLargestSaid_N = 1e4;
 
@@ -221,7 +221,8 @@ std::string pushProblem(const ChannelWindow& held, const ChannelFigures& zero) {
   if (now.samples < kLeastHeldSamples) return fmt::format("{} samples are too few", now.samples);
   if (const auto defect = held.defect(&zero)) return defectText(*defect) + ": push less";
   const ChannelVector moved = now.mean - zero.mean;
-  const double sigmas = moved.cwiseAbs().cwiseQuotient(zero.sigma.cwiseMax(kLeastSigma)).maxCoeff();
+  const double rounding = kLeastSigma * std::max(now.step, zero.step);
+  const double sigmas = moved.cwiseAbs().cwiseQuotient(zero.sigma.cwiseMax(rounding)).maxCoeff();
   if (sigmas < kFeltSigmas)
     return fmt::format(
         "no channel moved by more than {:.1f} times its noise: push more, or is the module on?",

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "tactus/record/output_file.h"
 #include "tactus/scene/located_error.h"
@@ -74,6 +75,26 @@ std::string withPlace(const Scene& scene, SourceFile file, int joint, int bus, i
   return file.text;
 }
 
+/// Of all joints: what is known; where that is another joint's place in the file, they change
+/// places. So no bus is empty or overloaded that would not be with all that is known.
+std::vector<JointPlace> placesOf(const Scene& scene, const JointFindings& found) {
+  std::vector<JointPlace> places;
+  for (const DriveConfig& drive : scene.hardware->drives)
+    places.push_back({drive.joint, drive.bus, drive.node_id});
+  const auto put = [&places](const JointPlace& known) {
+    JointPlace& own = *std::ranges::find(places, known.joint, &JointPlace::joint);
+    const JointPlace before = own;
+    const auto other = std::ranges::find_if(places, [&](const JointPlace& place) {
+      return place.bus == known.bus && place.node_id == known.node_id;
+    });
+    if (other != places.end()) *other = {other->joint, before.bus, before.node_id};
+    own = known;
+  };
+  for (const JointPlace& known : found.places) put(known);
+  put({found.joint, found.bus, found.node_id});
+  return places;
+}
+
 }  // namespace
 
 const SourceFile& robotFile(const Scene& scene) { return scene.sources[scene.scene_sources]; }
@@ -81,12 +102,8 @@ const SourceFile& robotFile(const Scene& scene) { return scene.sources[scene.sce
 std::string withFindings(const Scene& scene, const SourceFile& robot, const JointFindings& found) {
   SourceFile file = robot;
   const DriveConfig& given = driveOf(scene, found.joint);
-  for (const DriveConfig& other : scene.hardware->drives) {
-    const bool is_taken =
-        other.joint != found.joint && other.bus == found.bus && other.node_id == found.node_id;
-    if (is_taken) file.text = withPlace(scene, file, other.joint, given.bus, given.node_id);
-  }
-  file.text = withPlace(scene, file, found.joint, found.bus, found.node_id);
+  for (const JointPlace& place : placesOf(scene, found))
+    file.text = withPlace(scene, file, place.joint, place.bus, place.node_id);
   const std::string entry = entryOf(scene, file, found.joint);
   const std::string unit = unitOfJoint(scene, found.joint);
   const JointScale& scale = found.scale;

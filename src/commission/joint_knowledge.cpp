@@ -73,6 +73,7 @@ void JointCommission::finish() {
     return fail({.kind = JointTroubleKind::kCannotTell, .value = findings_.misfit, .limit = most});
   findings_.bus = node_->bus;
   findings_.node_id = node_->node_id;
+  findings_.places = uses_->known();
   const double margin = allowed().margin;
   if (upper_counts_) findings_.upper = scale.position(*upper_counts_) - margin;
   if (lower_counts_) findings_.lower = scale.position(*lower_counts_) + margin;

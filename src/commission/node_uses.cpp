@@ -32,6 +32,16 @@ void NodeUses::learn(int joint, int bus, int node_id) {
   drive_of_[joint] = indexOf(*node);
 }
 
+std::vector<JointPlace> NodeUses::known() const {
+  std::vector<JointPlace> places;
+  for (std::size_t joint = 0; joint < drive_of_.size(); ++joint) {
+    if (!drive_of_[joint]) continue;
+    const FoundNode& node = nodes_[*drive_of_[joint]];
+    places.push_back({static_cast<int>(joint), node.bus, node.node_id});
+  }
+  return places;
+}
+
 const FoundNode* NodeUses::candidate(int joint) const noexcept {
   const FoundNode* best = nullptr;
   int best_rank = kNever;

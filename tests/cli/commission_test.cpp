@@ -59,8 +59,8 @@ std::vector<test::HiddenJoint> trueArm() {
 /// An engineer who reads and types, at an arm in virtual time.
 class VirtualDesk final : public CommissionDesk {
  public:
-  explicit VirtualDesk(const Scene& scene)
-      : rig(trueArm(), commissionConfig(scene, {}), 3), scene_(scene) {}
+  explicit VirtualDesk(const Scene& scene, const std::vector<test::HiddenJoint>& arm = trueArm())
+      : rig(arm, commissionConfig(scene, {}), 3), scene_(scene) {}
 
   test::CommissionRig rig;
   std::string said;
@@ -187,6 +187,25 @@ TEST(Commission, WritesWhatItFindsAndKeepsTheRest) {
   EXPECT_EQ(folder.content("robot.yaml~"), before);  // of three that were written
   EXPECT_NE(desk.said.find("- "), std::string::npos);
   EXPECT_NE(before, after);
+}
+
+/// Else a bus might be empty or overloaded by what is written first, which is refused.
+TEST(Commission, JointsThatMovedOnTheWayGetTheirPlacesAtOnce) {
+  const CommissionFolder folder;
+  std::vector<test::HiddenJoint> arm = trueArm();
+  arm[kLift].bus = 1;
+  arm[kLift].node_id = 30;  // of which the file does not know
+  arm[kRoll].bus = 0;
+  arm[kRoll].node_id = 2;
+  VirtualDesk desk(folder.scene(), arm);
+  desk.stops_after_writing = true;
+  EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitFault);
+  EXPECT_EQ(readState(statePath(robotFile(folder.scene()))).at("joints").size(), 1u);
+  const Scene scene = folder.scene();
+  for (std::size_t j = 0; j < arm.size(); ++j) {
+    EXPECT_EQ(scene.hardware->drives[j].bus, arm[j].bus) << j;
+    EXPECT_EQ(scene.hardware->drives[j].node_id, arm[j].node_id) << j;
+  }
 }
 
 /// All joints go into the file that the link leads to, not the first one alone.

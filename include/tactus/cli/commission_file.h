@@ -15,8 +15,8 @@ namespace tactus {
 const SourceFile& robotFile(const Scene& scene);
 
 /// The file with what was found of a joint; all else of it stays, comments, too. Where another
-/// joint has the drive's place in the file, it gets the one that this joint had. Throws InputError
-/// where there is no room for it.
+/// joint has the drive's place in the file, it gets the one that this joint had; one that was seen
+/// to be moved by another drive gets that one's. Throws InputError where there is no room for it.
 std::string withFindings(const Scene& scene, const SourceFile& robot, const JointFindings& found);
 
 /// The file with the lag of the slowest drive.

@@ -16,6 +16,11 @@ enum class ScaleSource : std::uint8_t {
   kFile,      ///< robot.yaml, which the marks confirm
 };
 
+/// Which drive moves a joint.
+struct JointPlace {
+  int joint = 0, bus = 0, node_id = 0;
+};
+
 /// All that is known of a joint that was commissioned.
 struct JointFindings {
   int joint = 0, bus = 0, node_id = 0;
@@ -26,7 +31,8 @@ struct JointFindings {
   std::optional<double> lower, upper;           ///< the margin is taken off; absent: not reached
   double following_error = 0.0;                 ///< the largest, m or rad
   double lag_s = 0.0;
-  double acceleration = 0.0;  ///< the largest measured, m/s^2 or rad/s^2
+  double acceleration = 0.0;       ///< the largest measured, m/s^2 or rad/s^2
+  std::vector<JointPlace> places;  ///< of all joints of which it is known by then
 };
 
 /// Why a joint could not be finished.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tactus/commission/commission_config.h"
+#include "tactus/commission/joint_findings.h"
 #include "tactus/commission/node_scan.h"
 
 namespace tactus {
@@ -39,6 +40,7 @@ class NodeUses {
   }
 
   bool isKnown(int joint) const noexcept { return drive_of_[joint].has_value(); }
+  std::vector<JointPlace> known() const;
   /// Which drive to try for a joint: the one that is known to move it; the file's; the one that the
   /// file gives to a joint whose own drive turned out to be another, as they may be swapped; one
   /// that the file does not name; any. None that moves another joint, or that was dismissed.
