@@ -27,7 +27,7 @@ struct ChannelFigures {
 
 /// Why a channel says nothing of a force.
 enum class ChannelTrouble {
-  kAtItsEnd,    ///< a sample at +-(2^23 - 1) or beyond, or all at the end of a narrower converter
+  kAtItsEnd,    ///< a sample a step from +-2^23 or beyond, or all at a narrower converter's end
   kFlatTopped,  ///< stops short of that: below
 };
 

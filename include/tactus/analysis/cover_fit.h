@@ -28,11 +28,12 @@ struct CoverEstimate {
 
 /// Mass and centre of a tactile module's cover by least squares, from readings in a slow motion:
 ///   F_y = m G_y + b_1 + d_1 t,   M_y = m c_z G_x - m c_x G_z + b_3 + d_3 t
-///   F_z = m G_z + b_2 + d_2 t,   M_z = m c_x G_y - m c_y G_x + b_4 + d_4 t,   G = H [ R^T (g - a)
-///   ]
+///   F_z = m G_z + b_2 + d_2 t,   M_z = m c_x G_y - m c_y G_x + b_4 + d_4 t
+///   G = H [ R^T (g - a) ]
 /// with the module's filter H, constants b of the tare, d of channels that drift, a of the middle
 /// of the cover; moments count by half its length. Deviations by leaving out each second in turn
-/// (Tukey's jackknife of 1958), which also sees errors that last, as of a contact.
+/// (Tukey's jackknife of 1958), which also sees errors that last, as of a contact,
+/// but for what goes evenly with time.
 class CoverFit {
  public:
   static constexpr int kMinBlocks = 5;
