@@ -175,8 +175,9 @@ DriveGoal Stroke::goal() const noexcept {
     case Mode::kEnabling:
     case Mode::kRunning:
       return DriveGoal::kEnabled;
-    case Mode::kStopping:
-      return mayLetGo(brake_config_, brake_) ? DriveGoal::kDisabled : DriveGoal::kEnabled;
+    case Mode::kStopping:  // of a start cut short nothing has to be held, and no drive gets power
+      return mayLetGo(brake_config_, brake_) || !has_brake_opened_ ? DriveGoal::kDisabled
+                                                                   : DriveGoal::kEnabled;
     case Mode::kFault:
       return DriveGoal::kQuickStop;
     default:
@@ -190,6 +191,7 @@ void Stroke::updateBrakes() noexcept {
       brake_config_, mode_,
       {drives.are_enabled, drives.is_any_holding, drives.is_any_moving_on, velocity_.isZero(0.0)},
       brake_);
+  has_brake_opened_ = has_brake_opened_ || brake_.is_open;
 }
 
 void Stroke::note() noexcept {

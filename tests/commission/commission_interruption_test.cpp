@@ -127,7 +127,7 @@ TEST(CommissionInterruption, StopInAnyCycleOfSwitchingOnLeavesNoPower) {
   for (int cycles_after = 0; cycles_after < 12; ++cycles_after) {
     SCOPED_TRACE(cycles_after);
     TroubledRig rig;
-    int cycles = -1;
+    int cycles = -1, cycles_with_torque = 0;
     rig.on_send = [&](int, CanFrame& frame) {
       if (frame.id == 0x202 && frame.data[0] == kShutdown && cycles < 0) cycles = 0;
       return true;
@@ -135,9 +135,15 @@ TEST(CommissionInterruption, StopInAnyCycleOfSwitchingOnLeavesNoPower) {
     rig.on_cycle = [&] {
       rig.watch();
       if (cycles >= 0) rig.input.stop_requested = cycles++ == cycles_after;
+      const bool is_stopping = cycles > cycles_after && cycles < 100;
+      const PowerState state = rig.drive(test::kTroubledJoint).powerState();
+      if (is_stopping && state == PowerState::kOperationEnabled) ++cycles_with_torque;
     };
     rig.commission(test::kTroubledJoint, 3000);
     EXPECT_GT(cycles, cycles_after);
+    if (cycles_after < 3) {
+      EXPECT_EQ(cycles_with_torque, 0) << "of a start cut short";
+    }
     rig.cycles(4000);
     EXPECT_TRUE(rig.isAllOffAndAtRest());
     EXPECT_TRUE(rig.cycle->question()) << "as after any motion that was stopped";

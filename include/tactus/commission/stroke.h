@@ -112,6 +112,7 @@ class Stroke {
   bool is_first_ = true;
   bool is_over_ = false;  ///< to be ended: done, or stopped
   bool was_stopped_ = false;
+  bool has_brake_opened_ = false;
 };
 
 }  // namespace tactus
