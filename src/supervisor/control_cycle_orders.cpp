@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "tactus/supervisor/control_cycle.h"
 
@@ -85,7 +84,6 @@ void ControlCycle::goOnWithGains() noexcept {
 void ControlCycle::forgetOrders() noexcept {
   ++runs_;
   state_.tool_motion.emplace(toolPose(), state_.tool_motion->plan().number + 1);
-  prepared_.path_time_s = std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace tactus
