@@ -49,12 +49,14 @@ std::vector<TouchReport> touchesOf(const Scene& scene, const PathContacts& conta
   std::vector<TouchReport> reports;
   for (std::size_t i = 0; i < contacts.touches.size(); ++i) {
     const std::optional<PathTouch>& touch = contacts.touches[i];
-    if (!touch || touch->t_s == 0.0 || touch->speed_m_per_s <= 0.0) continue;
+    if (!touch || touch->t_s == 0.0) continue;
     const TouchedSpring touched = touchedSpring(scene, touch->module, scene.plant.obstacles[i],
                                                 scene.plant.robot_stiffness_N_per_m);
-    // One that appears in the arm pushes at once, however slow that is.
-    const double approach_N = touchPeak_N(touched, touch->speed_m_per_s);
+    // One that appears in the arm pushes at once, however slow that is, or if it rests.
+    const bool comes = touch->speed_m_per_s > 0.0;
+    const double approach_N = comes ? touchPeak_N(touched, touch->speed_m_per_s) : 0.0;
     const double at_once_N = touched.spring.force_N(touch->depth_m);
+    if (!comes && at_once_N <= touched.threshold_N) continue;
     const double peak_N = pushOf_N(scene.plant.obstacles[i], std::max(approach_N, at_once_N));
     TouchReport report{static_cast<int>(i), *touch, peak_N, {}};
     if (approach_N >= at_once_N)

@@ -202,6 +202,30 @@ TEST(TouchCheck, WarnsOfObstaclesInTheArmAtItsStart) {
       << warnings[0];
 }
 
+/// Before the arm moves: no speed tells of it.
+TEST(TouchCheck, TellsOfWhatAppearsInAnArmThatRests) {
+  const Scene scene = test::shippedScene("scenario1_null_space");
+  ChainPose pose;
+  scene.controller.chain.computePose(scene.controller.q_start, pose);
+  const Pose X = framePose(pose, scene.controller.tactile_modules[0].link);
+  const Vector3 side = Vector3::UnitZ().cross(X.R_AB.col(0)).normalized();
+  const auto expected = [&](double depth_m) {  // in the side of the cover
+    const Vector3 p = X.p_AB + 0.2 * X.R_AB.col(0) + (0.06 - depth_m) * side;
+    return expectedOf("scenario1_null_space",
+                      {{"redundancy", "~"},  // which would move it a little
+                       obstacle(std::to_string(p.x()), std::to_string(p.y()), ", appears_s: 0.2")});
+  };
+  const ExpectedContact deep = expected(0.05);
+  ASSERT_EQ(deep.touches.size(), 1u);
+  EXPECT_EQ(deep.touches[0].touch.speed_m_per_s, 0.0);
+  const double both_N_per_m = 1.0 / (1.0 / 5000.0 + 1.0 / 7000.0);
+  EXPECT_NEAR(deep.touches[0].peak_N, both_N_per_m * 0.05, 1.0);
+  EXPECT_FALSE(deep.touches[0].softer);
+  EXPECT_TRUE(hasWarning(deep.warnings, "the touch of obstacle 0 may come to 14"))
+      << "the sensor shows 100 N";
+  EXPECT_TRUE(expected(0.0003).touches.empty()) << "below the contact's threshold";
+}
+
 TEST(TouchCheck, WarnsOfMoreFrictionThanTheLawBears) {
   const auto warns = [](const std::string& name, const std::string& of_obstacle,
                         const std::string& of_law) {
