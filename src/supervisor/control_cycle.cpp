@@ -205,8 +205,10 @@ void ControlCycle::control(const CycleInput& input, Mode before) noexcept {
   applyMode(controller_, mode_.mode, before, input_, gains_, state_);
   const bool goes_on = is_running && before != Mode::kRunning;
   if (goes_on && state_.tool_motion) forgetOrders();
-  // Ahead its way out of joint limits' zones was that of where it stood, and of the gains, before.
-  if (goes_on) prepared_.path_time_s = std::numeric_limits<double>::quiet_NaN();
+  // The way out of joint limits' zones, from where the arm is put, was ahead that of the gains
+  // before.
+  const bool is_placed = !isCommanding(mode_.mode) || !isCommanding(before);
+  if (is_placed || goes_on) prepared_.path_time_s = std::numeric_limits<double>::quiet_NaN();
   controller_.update(input_, gains_, taskTime_s(), period_s_, prepared_, state_, output_);
 }
 
