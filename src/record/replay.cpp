@@ -55,8 +55,8 @@ CycleRecord Replayer::replay(const CycleRecord& recorded) {
   return replayed;
 }
 
-/// Where the arm was commanded to be next, and where it was touched at last, whatever the
-/// controller makes of a state that is unknown: a reset keeps that.
+/// Where the arm was commanded to be next, and where and how hard it was touched at last, whatever
+/// the controller makes of a state that is unknown: a reset keeps that.
 void Replayer::follow(const CycleRecord& recorded) noexcept {
   const JointLimits& limits = controller_.config().limits;
   for (int i = 0; i < joints_; ++i) {
@@ -66,6 +66,7 @@ void Replayer::follow(const CycleRecord& recorded) noexcept {
   }
   for (std::size_t i = 0; i < controller_.config().tactile_modules.size(); ++i) {
     ContactPointState& contact = state_.modules[i].contact;
+    contact.force_N = recorded.force_sensor_N[i];
     contact.position_m = recorded.contact_position_m[i];
     contact.direction = {recorded.contact_dir_x[i], recorded.contact_dir_y[i],
                          recorded.contact_dir_z[i]};

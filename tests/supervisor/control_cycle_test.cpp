@@ -305,13 +305,13 @@ TEST(ControlCycleReplay, EveryOutputIsEqualToTheBit) {
 }
 
 /// With an e-stop at one time, after which the drives are configured anew and the task goes on.
-std::vector<CycleRecord> restartedRun(const Scene& scene) {
+std::vector<CycleRecord> restartedRun(const Scene& scene, int stop) {
   VirtualRobotCell cell(scene);
   std::vector<CycleRecord> records;
   for (int i = 0; i < 8000; ++i) {
-    cell.input.lines.emergency_stop = i >= 4000 && i < 4100;
-    cell.input.missed_cycles = i == 4000 ? 3 : 0;
-    cell.input.lines.enable = i < 4000 || i > 4500;
+    cell.input.lines.emergency_stop = i >= stop && i < stop + 100;
+    cell.input.missed_cycles = i == stop ? 3 : 0;
+    cell.input.lines.enable = i < stop || i > stop + 500;
     cell.step();
     if (cell.cycle.isRecorded()) records.push_back(cell.record());
   }
@@ -319,11 +319,12 @@ std::vector<CycleRecord> restartedRun(const Scene& scene) {
   return records;
 }
 
-TEST(ControlCycleReplay, GoesOnToTheBitWhereTheControllerBeginsAnewBehindMissingRecords) {
-  Scene scene = shippedScene("scenario2_estimated");
+/// With 400 records missing some time before the fault.
+void replayWithAGap(const std::string& name, int stop) {
+  Scene scene = shippedScene(name);
   scene.hardware->gpio.emplace();
   scene.hardware->gpio->enable.emplace();
-  std::vector<CycleRecord> records = restartedRun(scene);
+  std::vector<CycleRecord> records = restartedRun(scene, stop);
   const auto fault = std::find_if(records.begin(), records.end(), [](const CycleRecord& record) {
     return record.mode == static_cast<std::uint64_t>(Mode::kFault);
   });
@@ -345,6 +346,16 @@ TEST(ControlCycleReplay, GoesOnToTheBitWhereTheControllerBeginsAnewBehindMissing
   ASSERT_EQ(replayer.unknown().size(), 1u);
   EXPECT_NEAR(replayer.unknown()[0].from_s, fault_s - 2.703, 1e-9);
   EXPECT_NEAR(replayer.unknown()[0].to_s, fault_s - 0.004, 1e-9);
+}
+
+TEST(ControlCycleReplay, GoesOnToTheBitWhereTheControllerBeginsAnewBehindMissingRecords) {
+  replayWithAGap("scenario2_estimated", 4000);
+}
+
+/// Which it took the weight of its cover out of by what it knew of the arm's motion.
+TEST(ControlCycleReplay, ThenKnowsTheForceOfTheLastSample) {
+  for (int stop = 4000; stop < 4004; ++stop)  // samples come each fourth cycle
+    replayWithAGap("whole_arm/crops9_skin_two_links", stop);
 }
 
 TEST(ControlCycleReplay, MissedCyclesAreNoMissingRecords) {
