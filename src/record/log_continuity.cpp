@@ -35,8 +35,10 @@ bool LogContinuity::add(const CycleRecord& recorded) {
   // A reference that has waited goes on where it was, which no reset tells to the bit.
   const bool has_waited = recorded.path_time_s != recorded.task_time_s;
   const bool is_reset = resetsController(mode, is_gap ? mode : mode_before_);
+  const bool has_samples = hasNewSamples(recorded, is_gap);
   if (is_gap) running_cycles_ = 0.0;
-  if (is_reset && running_cycles_ >= settled_cycles_ && !has_waited) is_known_ = true;
+  if (is_reset && running_cycles_ >= settled_cycles_ && !has_waited && has_samples)
+    is_known_ = true;
   // What goes on after a retreat returns as gently as after a reset.
   if (is_reset || mode == Mode::kRetreating) running_cycles_ = 0.0;
   if (mode == Mode::kRunning)
@@ -46,6 +48,20 @@ bool LogContinuity::add(const CycleRecord& recorded) {
   cycle_before_ = cycle;
   mode_before_ = mode;
   return is_known_;
+}
+
+bool LogContinuity::hasNewSamples(const CycleRecord& recorded, bool is_gap) noexcept {
+  if (is_gap) {
+    std::copy_n(recorded.tactile_sequence, kMaxTactileModules, sequence_at_gap_.begin());
+    new_samples_ = 0;
+  }
+  bool all = true;
+  for (int i = 0; i < kMaxTactileModules; ++i) {
+    const std::uint64_t sequence = recorded.tactile_sequence[i];
+    if (sequence != sequence_at_gap_[i]) new_samples_ |= 1U << i;
+    all = all && (sequence == 0 || (new_samples_ >> i & 1U) != 0);
+  }
+  return all;
 }
 
 void LogContinuity::lose(double cycle) {

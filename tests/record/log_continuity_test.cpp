@@ -37,6 +37,25 @@ TEST_F(LogContinuityTest, MissedCyclesLoseNothing) {
   EXPECT_TRUE(continuity_.stretches().empty());
 }
 
+/// Of a module that is silent since before.
+TEST_F(LogContinuityTest, TheAgeOfASampleFromBeforeMissingRecordsIsUnknown) {
+  CycleRecord record;
+  const auto addWith = [&](int cycle, Mode mode, std::uint64_t first, std::uint64_t second) {
+    record.t_s = 0.001 * cycle;
+    record.mode = static_cast<std::uint64_t>(mode);
+    record.tactile_sequence[0] = first;
+    record.tactile_sequence[1] = second;
+    return continuity_.add(record);
+  };
+  EXPECT_TRUE(addWith(0, Mode::kRunning, 7, 3));
+  EXPECT_FALSE(addWith(5, Mode::kRunning, 8, 3));
+  EXPECT_FALSE(addWith(6, Mode::kRunning, 9, 3));
+  EXPECT_FALSE(addWith(7, Mode::kFault, 9, 3)) << "nothing new of the second module";
+  EXPECT_FALSE(addWith(8, Mode::kRunning, 9, 4));
+  EXPECT_TRUE(addWith(9, Mode::kFault, 9, 4));
+  EXPECT_TRUE(addWith(10, Mode::kRunning, 9, 4)) << "it may be silent now";
+}
+
 TEST_F(LogContinuityTest, MissingRecordsLoseTheStateUntilAModeResetsIt) {
   EXPECT_TRUE(add(0));
   EXPECT_FALSE(add(10, Mode::kRunning, 3));  // three of nine

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,7 +20,7 @@ struct UnknownStretch {
 /// Follows, cycle by cycle, whether the controller's state follows from what was logged before:
 /// from the run's start on, but behind missing records only once a mode has reset it. What a reset
 /// keeps of joint limits' ways out follows from where the arm was once it has run for
-/// kReturnRise_s.
+/// kReturnRise_s, and the age of a module's sample from the log once a new one has come.
 class LogContinuity {
  public:
   /// has_missed: the log says how many cycles the loop missed. One of an older version does not:
@@ -40,6 +42,8 @@ class LogContinuity {
 
  private:
   void lose(double cycle);
+  /// Whether each module that has told anything has told something new since the last gap.
+  bool hasNewSamples(const CycleRecord& recorded, bool is_gap) noexcept;
 
   double period_s_;
   bool has_missed_;
@@ -50,6 +54,8 @@ class LogContinuity {
   bool is_known_ = true;
   double cycle_before_ = -1.0;
   double running_cycles_ = 0.0;  ///< since the last reset or gap
+  std::array<std::uint64_t, kMaxTactileModules> sequence_at_gap_{};
+  unsigned new_samples_ = 0;  ///< bit i: of module i, since the last gap
   Mode mode_before_ = Mode::kBoot;
   int missed_ = 0;
   std::vector<UnknownStretch> stretches_;
