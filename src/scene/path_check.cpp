@@ -13,6 +13,8 @@ namespace tactus {
 namespace {
 
 constexpr double kMaxLag = 1e-3;  ///< m or rad; discretisation alone stays far below
+/// Behind the path's end: what leads the joints on in the null space may take the tool away.
+constexpr double kRest_s = 10.0;
 
 std::string singularStart(const ControllerConfig& config) {
   const double smallest = smallestSingularValueAtStart(config, config.weights);
@@ -40,7 +42,8 @@ std::string slowestJoint(const Scene& scene, const JointVector& velocity) {
 std::string laggingPath(const Scene& scene) {
   const ControllerConfig config = undisturbed(scene.controller);
   const double end_s = Trajectory(config.task.trajectory, Pose{}).end_s();
-  const auto cycles = std::llround(std::min(end_s / scene.period_s, kMaxFollowedCycles));
+  const double last_s = std::max(end_s, std::min(end_s + kRest_s, scene.duration_s));
+  const auto cycles = std::llround(std::min(last_s / scene.period_s, kMaxFollowedCycles));
   const Controller controller(config);
   ControllerState state = controller.initialState();
   ControllerOutput output;

@@ -45,6 +45,33 @@ TEST(PathCheck, WarnsOfAPathThatTheArmWouldHaveToTouchItselfFor) {
   EXPECT_NE(warnings[0].find("the clearance or a singular pose"), std::string::npos);
 }
 
+/// At its end the tool is where it shall be. Then joints that are led off their limits lean on what
+/// the arm keeps clear of.
+TEST(PathCheck, WarnsOfATargetThatTheClearanceTakesTheToolAwayFrom) {
+  const std::string scene = TACTUS_SOURCE_DIR "/config/scenes/whole_arm/planar3_clutter.yaml";
+  const auto warnings = [&](const std::string& duration_s) {
+    return checkPath(loadScene(
+        scene,
+        {{"task.trajectory.start_s", "0.3"},
+         {"task.trajectory.line", "{displacement_m: [-0.0208, 0.2349, 0], speed_m_per_s: 0.288}"},
+         {"task.drift_gain_per_s", "1.8"},
+         {"redundancy", "{joint_limit_avoidance: {}}"},
+         {"robot.collision_capsules",
+          "[{link: base, from_m: [0, 0, 0.3], to_m: [0, 0, 0.55], radius_m: 0.03}]"},
+         {"clearance",
+          "{safe_distance_m: 0.0155, influence_distance_m: 0.0373, self_collision: false, "
+          "keep_out: [{post: {foot_m: [0.44705, -0.07663, 0.64422], height_m: 0.3093, "
+          "axis: [-0.71781, -0.33696, -0.60927], radius_m: 0.043}}, {post: {foot_m: [0.32542, "
+          "-0.19983, 0.28072], height_m: 0.4395, radius_m: 0.0487}, for: tool}]}"},
+         {"simulation.obstacles", "[]"},
+         {"simulation.duration_s", duration_s}}));
+  };
+  EXPECT_EQ(warnings("1.62"), Warnings{}) << "the path ends then";
+  const Warnings later = warnings("12");
+  ASSERT_EQ(later.size(), 1u);
+  EXPECT_NE(later[0].find("path not followed: at 1.6"), std::string::npos) << later[0];
+}
+
 TEST(PathCheck, WarnsOfASpeedBeyondThatOfAJoint) {
   const auto warningsAt = [](const std::string& speed_m_per_s) {
     const std::string line = "task.trajectory.line.";
