@@ -71,7 +71,9 @@ bool isAtItsLimit(const ControllerConfig& config, const JointVector& q) {
 
 Reach followTo(const ControllerConfig& config, const JointVector& q, const Pose& X_BaseTool,
                const ToolMotionLimits& limits, double period_s) {
-  const ControllerConfig alone = undisturbed(config);
+  ControllerConfig alone = undisturbed(config);
+  // A reference that waits for a tool that is kept off something leads it no further round that.
+  alone.gains.task.wait_beyond_m = config.gains.task.wait_beyond_m;
   const Controller controller(alone);
   ControllerState state = controller.initialState(q);
   ControllerOutput output;

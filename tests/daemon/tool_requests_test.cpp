@@ -151,6 +151,35 @@ TEST(SlowToolRequests, ReachWhatIsReachedFaster) {
   }
 }
 
+/// A reference that ran ahead would pull the tool round what the arm keeps clear of. One that waits
+/// for the tool waits before it for good.
+TEST(BlockedToolRequests, AreRefusedWhereTheReferenceWouldWait) {
+  const auto problem = [](const std::string& wait_beyond_m) {
+    const Scene scene = test::shippedScene(
+        "whole_arm/crops9_skin_two_links",
+        {{"robot.limits.acceleration", "[2, 2, 2, 2, 2, 2, 2, 2, 2]"},
+         {"task.source", "commands"},
+         {"task.trajectory", "~"},
+         {"task.drift_gain_per_s", "6.48"},
+         {"task.max_return_speed_m_per_s", "0.113"},
+         {"task.wait_beyond_m", wait_beyond_m},
+         {"task.commands",
+          "{max_speed_m_per_s: 0.203, max_acceleration_m_per_s2: 1.844, max_jerk_m_per_s3: 7.35}"},
+         {"redundancy", "{joint_limit_avoidance: {}}"},
+         {"clearance",
+          "{safe_distance_m: 0.023, influence_distance_m: 0.0679, keep_out: [{post: {foot_m: "
+          "[1.17548, 0.61132, 0.08303], axis: [-0.28508, -0.68783, 0.66755], height_m: 0.5251, "
+          "radius_m: 0.0489}}]}"}});
+    Pose target = tipPose(scene.controller.chain, scene.controller.q_start);
+    target.p_AB += Vector3(0.37784, 0.02673, 0.08538);
+    return followTo(scene.controller, scene.controller.q_start, target,
+                    scene.controller.task.commands->limits, scene.period_s)
+        .problem;
+  };
+  EXPECT_EQ(problem("0.5"), "");
+  EXPECT_NE(problem("0.0059").find("out of reach"), std::string::npos);
+}
+
 /// The tool is still on its way when the reference has ended.
 TEST(SlowJointRequests, ReachWhatFastOnesReach) {
   Scene scene = test::shippedScene("commands");
