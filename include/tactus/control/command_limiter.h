@@ -9,10 +9,10 @@ namespace tactus {
 ///
 /// Velocity and acceleration limits shorten the whole command, so that the arm keeps its direction;
 /// only where no multiple of the command is admissible does each joint go by itself, towards the
-/// command that limits of speed shorten, so that the direction is lost until the slowest of them has
-/// got there by its own acceleration. Near a position limit a joint is slowed by itself, so that it
-/// can still brake (|v| <= sqrt(2 a d) - a period / 2): scaling the others with it would freeze the
-/// arm in contact.
+/// command that limits of speed shorten, so that the direction is lost until the slowest of them
+/// has got there by its own acceleration. Near a position limit a joint is slowed by itself, so
+/// that it can still brake (|v| <= sqrt(2 a d) - a period / 2): scaling the others with it would
+/// freeze the arm in contact.
 class CommandLimiter {
  public:
   explicit CommandLimiter(const JointLimits& limits);
