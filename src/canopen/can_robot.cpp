@@ -127,7 +127,7 @@ void CanRobot::release() noexcept {
 /// pause.
 double CanRobot::placeToTrack(int joint) const noexcept {
   const auto [now, before] = places_.at(joint);
-  if (now == before || !std::isfinite(now)) return now;
+  if (!std::isfinite(now)) return now;
   return std::clamp(drive(joint).position, std::min(before, now), std::max(before, now));
 }
 
