@@ -46,9 +46,10 @@ Scene loadRunningScene(const DaemonArguments& options) {
   constexpr const char* kPurpose = "to run on";
   Scene scene = loadHardwareScene(options.scene, options.settings, kPurpose);
   checkMeasuredStart(scene);
+  if (startsMeasured(scene)) say("waits until the enable line was off and is on");
   if (!readsStart(scene)) return scene;
   const std::string start = startText(startAt(scene, readJoints(scene)));
-  say("the arm is at start: {}; switch the enable line off and on", start);
+  say("the arm is at start: {}", start);
   std::vector<std::string> settings = options.settings;
   settings.push_back("start=" + start);
   return loadHardwareScene(options.scene, settings, kPurpose);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tactus/canopen/cycle_count.h"
 #include "tactus/daemon/measured_start.h"
 #include "tactus/rt/periodic_timer.h"
 
@@ -16,6 +17,14 @@ std::int64_t threadTime_ns() noexcept {
   return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
 }
 
+/// Of the enable line, before an arm that begins where it is may move.
+int offCycles(const Scene& scene) {
+  constexpr double kLeastOff_s = 0.05;
+  if (!startsMeasured(scene) || !scene.hardware->gpio) return 0;
+  const auto& line = scene.hardware->gpio->enable;
+  return cyclesLasting(std::max(kLeastOff_s, line ? line->debounce_s : 0.0), scene.period_s);
+}
+
 }  // namespace
 
 HardwareLoop::HardwareLoop(const Scene& scene, long long max_task_cycles,
@@ -23,7 +32,7 @@ HardwareLoop::HardwareLoop(const Scene& scene, long long max_task_cycles,
     : stop_requested_(link.stop_requested),
       filter_(filter),
       max_task_cycles_(max_task_cycles),
-      enable_wait_(startsMeasured(scene)),
+      enable_wait_(offCycles(scene)),
       cycle_(scene.controller, *scene.hardware, scene.period_s),
       side_(link) {
   const HardwareConfig& hardware = *scene.hardware;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -32,13 +33,24 @@ std::vector<std::unique_ptr<BusPort>> openBuses(const HardwareConfig& hardware) 
   return buses;
 }
 
-void exchange(std::vector<std::unique_ptr<BusPort>>& buses, JointReader& reader) {
+/// Of a stop signal that waits for the drives to be let go.
+bool isStopped() noexcept {
+  sigset_t pending;
+  sigemptyset(&pending);
+  sigpending(&pending);
+  return std::ranges::any_of(kStopSignals, [&](int it) { return sigismember(&pending, it) == 1; });
+}
+
+void exchange(std::vector<std::unique_ptr<BusPort>>& buses, JointReader& reader, bool is_stopped) {
   std::array<Fault, kMaxBuses> faults{};
   for (std::size_t i = 0; i < buses.size(); ++i) {
     faults[i] = buses[i]->receive();
     reader.receive(static_cast<int>(i), buses[i]->frames.frames());
   }
-  reader.update(std::span(faults).first(buses.size()));
+  if (is_stopped)
+    reader.leave();
+  else
+    reader.update(std::span(faults).first(buses.size()));
   for (std::size_t i = 0; i < buses.size(); ++i) {
     buses[i]->socket.send(reader.outbox(static_cast<int>(i)).frames());
     buses[i]->socket.probe(reader.probe());
@@ -67,7 +79,9 @@ JointVector readJoints(const Scene& scene) {
   PeriodicTimer timer(std::llround(1e9 * scene.period_s));
   while (!reader.isDone()) {
     timer.wait();
-    exchange(buses, reader);
+    const bool is_stopped = isStopped();
+    exchange(buses, reader, is_stopped);
+    if (is_stopped) throw RunError("stopped while the drives were read");
   }
   if (reader.report().fault != Fault::kNone) throw RunError(faultEvent(reader.report(), scene));
   return reader.q();

@@ -122,7 +122,8 @@ Table<TaskCommandsConfig> commandKeys() {
                          &Config::stream_timeout_s),
                   boolean("start_measured",
                           "tactusd begins where it finds the arm, in place of start, and checks "
-                          "the scene there; encoders have to know where they are",
+                          "the scene there; encoders have to know where they are, and gpio.enable "
+                          "has to be switched off and on",
                           &Config::start_measured),
               });
 }

@@ -115,7 +115,7 @@ constexpr auto kHazards = std::to_array<Hazard>({
      "mode `ready`"},
     {kUnasked, "an encoder has lost its counts, where the scene begins wherever the arm is",
      Fault::kNone, "`MeasuredStart.PutsAJointBesideItsLimitOnIt`",
-     "a start beyond limits or `clearance`, else nothing", "none", "",
+     "a start beyond limits or `clearance`, else nothing", "refused, else none", "before motion",
      "**the arm is believed to be elsewhere**: home its drives first", "the journal's `start`"},
     {kUnasked, "the cause of a fault goes by itself", Fault::kNone,
      "`FaultInContact.RestartsByTheEnableLineOnly`, `python.mode_model`", "the latched fault",

@@ -89,7 +89,9 @@ bool Life::findArm() {
   const std::string start = startText(startAt(scene, reader.q()));
   try {
     stage_.scene = loadSoakScene(folder_ + "/soak.yaml", {{"start", start}});
-  } catch (const InputError&) {
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    if (what.find("outside the limits") == std::string::npos) complain("is not accepted: " + what);
     ++tally_.left["beyond limits at a restart"];
     return false;
   }

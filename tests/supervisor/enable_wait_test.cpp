@@ -13,18 +13,23 @@ GpioInputs linesWith(bool enable, bool is_valid = true) {
 }
 
 TEST(EnableWait, CountsTheLineOnceItWasOff) {
-  EnableWait wait(true);
+  EnableWait wait(3);
   for (int i = 0; i < 1000; ++i) EXPECT_FALSE(wait.update(linesWith(true)).enable);
   EXPECT_FALSE(wait.update(linesWith(false, false)).enable);
   EXPECT_FALSE(wait.update(linesWith(true)).enable) << "a chip that fails shows nothing";
-  EXPECT_FALSE(wait.update(linesWith(false)).enable);
+  for (const auto& flicker : {linesWith(true), linesWith(false, false)}) {
+    for (int i = 0; i < 2; ++i) EXPECT_FALSE(wait.update(linesWith(false)).enable);
+    EXPECT_FALSE(wait.update(flicker).enable);
+    EXPECT_FALSE(wait.update(linesWith(true)).enable) << "off for a moment alone";
+  }
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(wait.update(linesWith(false)).enable);
   EXPECT_TRUE(wait.update(linesWith(true)).enable);
   EXPECT_FALSE(wait.update(linesWith(false)).enable);
   EXPECT_TRUE(wait.update(linesWith(true)).enable);
 }
 
 TEST(EnableWait, ChangesNothingElse) {
-  EnableWait waits(true), none(false);
+  EnableWait waits(3), none(0);
   GpioInputs pressed = linesWith(true);
   pressed.emergency_stop = true;
   EXPECT_TRUE(waits.update(pressed).emergency_stop);

@@ -57,9 +57,10 @@ class Drive {
   void update(DriveGoal goal, bool restart, double velocity, double position,
               FrameBatch& out) noexcept;
 
-  /// At the end, in place of update(): a drive that was seen off forgets mapping, heartbeat watch
-  /// and setpoints, so that the end of the master's heartbeat is no fault to it. Any other keeps
-  /// its watch, which stops it, and starts anew if it hears that.
+  /// At the end, in place of update(): a drive that was seen off, and was not told since to switch
+  /// on, forgets mapping, heartbeat watch and setpoints, so that the end of the master's heartbeat
+  /// is no fault to it. Any other keeps its watch, which stops it, and starts anew if it hears
+  /// that.
   void release(FrameBatch& out) const noexcept;
 
   const DriveReport& report() const noexcept { return report_; }

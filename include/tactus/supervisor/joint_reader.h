@@ -19,6 +19,8 @@ class JointReader {
   const FrameBatch& outbox(int bus) const noexcept { return robot_.outbox(bus); }
   const CanFrame& probe() const noexcept { return robot_.probe(); }
 
+  void leave() noexcept { robot_.release(); }  ///< in place of update(): lets the drives go
+
   /// All positions are known, or report() says why not, by the drives' own limits of time and
   /// stop_deadline_s.
   bool isDone() const noexcept { return is_done_; }

@@ -66,7 +66,7 @@ tactus where "$scene" --json >"$out/where.json" || fail "tactus where exits with
 tactusd "$scene" --set task.commands.start_measured=true -o "$ROOT/out" --name again \
   2>"$out/again.txt" & daemon=$!
 wait_for ready "$out/again.txt"
-sleep 0.3
+sleep 2
 grep -q running "$out/again.txt" && fail "runs by an enable line that was on before"
 line $enable 0 >/dev/null
 sleep 0.1
