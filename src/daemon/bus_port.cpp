@@ -22,4 +22,16 @@ Fault BusPort::receive() noexcept {
   return socket.monitor().fault();
 }
 
+void BusPort::send(const FrameBatch& outbox, const CanFrame& probe) noexcept {
+  socket.send(outbox.frames());
+  socket.probe(probe);
+}
+
+std::vector<std::unique_ptr<BusPort>> openBuses(const HardwareConfig& hardware) {
+  std::vector<std::unique_ptr<BusPort>> buses;
+  for (std::size_t bus = 0; bus < hardware.buses.size(); ++bus)
+    buses.push_back(std::make_unique<BusPort>(hardware, static_cast<int>(bus)));
+  return buses;
+}
+
 }  // namespace tactus

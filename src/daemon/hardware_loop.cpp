@@ -32,12 +32,11 @@ HardwareLoop::HardwareLoop(const Scene& scene, long long max_task_cycles,
     : stop_requested_(link.stop_requested),
       filter_(filter),
       max_task_cycles_(max_task_cycles),
+      buses_(openBuses(*scene.hardware)),
       enable_wait_(offCycles(scene)),
       cycle_(scene.controller, *scene.hardware, scene.period_s),
       side_(link) {
   const HardwareConfig& hardware = *scene.hardware;
-  for (std::size_t i = 0; i < hardware.buses.size(); ++i)
-    buses_.push_back(std::make_unique<BusPort>(hardware, static_cast<int>(i)));
   if (hardware.gpio) lines_.emplace(*hardware.gpio, scene.period_s);
 }
 
@@ -73,10 +72,8 @@ void HardwareLoop::readAll(const Wake& wake) noexcept {
 }
 
 void HardwareLoop::writeAll() noexcept {
-  for (std::size_t i = 0; i < buses_.size(); ++i) {
-    buses_[i]->socket.send(cycle_.outbox(static_cast<int>(i)).frames());
-    buses_[i]->socket.probe(cycle_.probe());
-  }
+  for (std::size_t i = 0; i < buses_.size(); ++i)
+    buses_[i]->send(cycle_.outbox(static_cast<int>(i)), cycle_.probe());
   if (lines_) are_lines_written_ = lines_->write(cycle_.lines());
 }
 

@@ -22,15 +22,12 @@
 namespace tactus {
 namespace {
 
-std::vector<std::unique_ptr<BusPort>> openBuses(const HardwareConfig& hardware) {
-  std::vector<std::unique_ptr<BusPort>> buses;
+std::vector<std::unique_ptr<BusPort>> openOrRefuse(const HardwareConfig& hardware) {
   try {
-    for (std::size_t bus = 0; bus < hardware.buses.size(); ++bus)
-      buses.push_back(std::make_unique<BusPort>(hardware, static_cast<int>(bus)));
+    return openBuses(hardware);
   } catch (const std::runtime_error& error) {
     throw RunError(error.what());
   }
-  return buses;
 }
 
 /// Of a stop signal that waits for the drives to be let go.
@@ -51,10 +48,8 @@ void exchange(std::vector<std::unique_ptr<BusPort>>& buses, JointReader& reader,
     reader.leave();
   else
     reader.update(std::span(faults).first(buses.size()));
-  for (std::size_t i = 0; i < buses.size(); ++i) {
-    buses[i]->socket.send(reader.outbox(static_cast<int>(i)).frames());
-    buses[i]->socket.probe(reader.probe());
-  }
+  for (std::size_t i = 0; i < buses.size(); ++i)
+    buses[i]->send(reader.outbox(static_cast<int>(i)), reader.probe());
 }
 
 }  // namespace
@@ -74,7 +69,7 @@ void checkMeasuredStart(const Scene& scene) {
 JointVector readJoints(const Scene& scene) {
   const HardwareConfig& hardware = *scene.hardware;
   const HeldSignals held;
-  auto buses = openBuses(hardware);
+  auto buses = openOrRefuse(hardware);
   JointReader reader(hardware, scene.period_s);
   PeriodicTimer timer(std::llround(1e9 * scene.period_s));
   while (!reader.isDone()) {

@@ -15,7 +15,7 @@ void JointReader::update(std::span<const Fault> bus_faults) noexcept {
   robot_.read(input_);
   const DrivesReport drives = robot_.drives();
   if (drives.are_configured && !drives.are_disabled) ++stopping_cycles_;
-  judge(bus_faults);
+  judge(bus_faults, drives);
   // Whose set-up is done has told where it is.
   const bool is_known = drives.are_configured && drives.are_disabled;
   is_done_ = is_known || report_.fault != Fault::kNone;
@@ -25,8 +25,7 @@ void JointReader::update(std::span<const Fault> bus_faults) noexcept {
   is_first_ = false;
 }
 
-void JointReader::judge(std::span<const Fault> bus_faults) noexcept {
-  const DrivesReport drives = robot_.drives();
+void JointReader::judge(std::span<const Fault> bus_faults, const DrivesReport& drives) noexcept {
   const auto bus = std::ranges::find_if(bus_faults, [](Fault it) { return it != Fault::kNone; });
   if (bus != bus_faults.end()) {
     report_.fault = *bus;

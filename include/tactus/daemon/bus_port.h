@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "tactus/canopen/can_frame.h"
 #include "tactus/canopen/hardware_config.h"
 #include "tactus/io/can_socket.h"
@@ -12,10 +15,15 @@ struct BusPort {
 
   /// What has come since, into `frames`; returns the bus's fault.
   Fault receive() noexcept;
+  /// probe: what may go onto a bus that is dead.
+  void send(const FrameBatch& outbox, const CanFrame& probe) noexcept;
 
   InterfaceLock lock;
   CanSocket socket;
   FrameBatch frames;
 };
+
+/// All of the robot's, or none.
+std::vector<std::unique_ptr<BusPort>> openBuses(const HardwareConfig& hardware);
 
 }  // namespace tactus

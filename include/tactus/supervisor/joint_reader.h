@@ -28,7 +28,7 @@ class JointReader {
   const JointVector& q() const noexcept { return input_.q_measured; }  ///< m or rad
 
  private:
-  void judge(std::span<const Fault> bus_faults) noexcept;
+  void judge(std::span<const Fault> bus_faults, const DrivesReport& drives) noexcept;
 
   CanRobot robot_;
   JointVector rest_;
