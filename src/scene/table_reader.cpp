@@ -11,6 +11,7 @@
 
 #include "tactus/scene/key_table.h"
 #include "tactus/scene/number_text.h"
+#include "tactus/scene/unknown_keys.h"
 
 namespace tactus {
 namespace {
@@ -24,8 +25,7 @@ constexpr const char* kFillIn = "FILL_IN";
 struct File {
   const YamlNode& root;
   NamedNumbers& numbers;
-  const std::vector<KeySpec>& other_keys;  ///< of the other file
-  const char* other_file;
+  OtherFile other;
 };
 
 /// One value on its way from a node to a config.
@@ -56,10 +56,6 @@ std::from_chars_result fromChars(std::string_view text, std::int64_t& value) {
   const std::string_view digits = text.substr(is_hex ? 2 : 0);
   if (is_hex && digits.starts_with('-')) return {digits.data(), std::errc::invalid_argument};
   return std::from_chars(digits.data(), text.data() + text.size(), value, is_hex ? 16 : 10);
-}
-
-bool areDigits(std::string_view text) {
-  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 /// "0.1" of "0,1"; empty if the text is no number with a decimal comma.
@@ -234,46 +230,6 @@ void readAbsent(const KeySpec& spec, const SourcePosition& at, const std::string
   std::visit(NumberAdder{path, file.numbers}, spec.target(owner));
 }
 
-/// {x_m: 0,7} is x_m: 0 and a key 7 without a value.
-void refuseDecimalComma(const YamlNode& node, const YamlEntry& entry, const std::string& prefix) {
-  if (!areDigits(entry.key) || &entry == &node.entries.front()) return;
-  const YamlEntry& before = *(&entry - 1);
-  if (entry.value.kind != Kind::kEmpty || !areDigits(before.value.text)) return;
-  const std::string digits = before.value.text + "," + entry.key;
-  failAt(before.value.at, prefix + before.key, inQuotes(digits) + " has a decimal comma",
-         "expected a decimal point: " + before.value.text + "." + entry.key);
-}
-
-/// path: dotted, entries of lists with their index.
-bool hasKey(const std::vector<KeySpec>& keys, std::string_view path) {
-  const std::size_t dot = path.find('.');
-  const std::string_view key = path.substr(0, std::min(dot, path.find('[')));
-  const auto found = std::ranges::find(keys, key, &KeySpec::key);
-  if (found == keys.end()) return false;
-  return dot == std::string_view::npos || hasKey(found->keys, path.substr(dot + 1));
-}
-
-void rejectUnknownKeys(const YamlNode& node, const std::vector<KeySpec>& keys,
-                       const std::string& prefix, const File& file) {
-  std::vector<std::string> known;
-  known.reserve(keys.size());
-  for (const KeySpec& spec : keys) known.push_back(spec.key);
-  for (const YamlEntry& entry : node.entries) {
-    if (std::ranges::count(known, entry.key) > 0) continue;
-    refuseDecimalComma(node, entry, prefix);
-    if (hasKey(file.other_keys, prefix + entry.key)) {
-      failAt(entry.key_at, prefix + entry.key, "unknown key here",
-             std::string("expected in ") + file.other_file);
-    }
-    const std::string within = keyWithin(keys, entry.key);
-    const std::string nearest = within.empty() ? nearestWord(entry.key, known) : within;
-    failAt(entry.key_at, prefix + entry.key, "unknown key",
-           known.empty()     ? "expected none here"
-           : nearest.empty() ? fmt::format("expected one of {}", fmt::join(known, ", "))
-                             : fmt::format("expected perhaps '{}'", nearest));
-  }
-}
-
 void readSection(const YamlNode& node, const std::vector<KeySpec>& keys, const std::string& path,
                  void* owner, File& file) {
   if (node.kind != Kind::kMap) {
@@ -281,7 +237,7 @@ void readSection(const YamlNode& node, const std::vector<KeySpec>& keys, const s
            "expected a section of keys ({} for none)");
   }
   const std::string prefix = path.empty() ? "" : path + ".";
-  rejectUnknownKeys(node, keys, prefix, file);
+  rejectUnknownKeys(node, keys, prefix, file.other);
   for (const KeySpec& spec : keys) {
     const YamlNode* value = node.find(spec.key);
     if (value && value->kind != Kind::kNull) {
@@ -303,11 +259,11 @@ Config readConfig(const std::vector<KeySpec>& keys, File file) {
 
 SceneConfig readSceneConfig(const YamlNode& root, NamedNumbers& numbers) {
   return readConfig<SceneConfig>(
-      sceneKeys(), {root, numbers, robotKeys(), "the robot's file, which the key robot names"});
+      sceneKeys(), {root, numbers, {robotKeys(), "the robot's file, which the key robot names"}});
 }
 
 RobotConfig readRobotConfig(const YamlNode& root, NamedNumbers& numbers) {
-  return readConfig<RobotConfig>(robotKeys(), {root, numbers, sceneKeys(), "a scene"});
+  return readConfig<RobotConfig>(robotKeys(), {root, numbers, {sceneKeys(), "a scene"}});
 }
 
 }  // namespace tactus
