@@ -337,17 +337,22 @@ TEST(Commission, WhatCannotBeWrittenIsSaidBeforeAnythingMoves) {
   }
 }
 
-/// A disk that is full for a while costs no measured joint.
-TEST(Commission, FindingsAreStillThereAfterAFailedWrite) {
-  const CommissionFolder folder;
-  VirtualDesk desk(folder.scene());
-  const std::string blocked = folder.path("robot.yaml.commission.json.next");
-  int writes = 0;
-  desk.on_write = [&] {
+/// A disk that is full when the first joint is written, and no more from the second try on. Counts
+/// the writes.
+void fillDiskForAWhile(const CommissionFolder& folder, VirtualDesk& desk, int& writes) {
+  desk.on_write = [blocked = folder.path("robot.yaml.commission.json.next"), &writes] {
     ++writes;
     if (writes == 1) std::filesystem::create_directory(blocked);
     if (writes == 2) std::filesystem::remove(blocked);
   };
+}
+
+/// A disk that is full for a while costs no measured joint.
+TEST(Commission, FindingsAreStillThereAfterAFailedWrite) {
+  const CommissionFolder folder;
+  VirtualDesk desk(folder.scene());
+  int writes = 0;
+  fillDiskForAWhile(folder, desk, writes);
   EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitDone) << desk.said;
   EXPECT_EQ(writes, 4);  // of three joints
   EXPECT_NE(desk.said.find("cannot be opened for writing"), std::string::npos);
@@ -358,13 +363,8 @@ TEST(Commission, FindingsAreStillThereAfterAFailedWrite) {
 TEST(Commission, NoAfterHalfAWriteCostsNoOtherJoint) {
   const CommissionFolder folder;
   VirtualDesk desk(folder.scene());
-  const std::string blocked = folder.path("robot.yaml.commission.json.next");
   int writes = 0;
-  desk.on_write = [&] {
-    ++writes;
-    if (writes == 1) std::filesystem::create_directory(blocked);
-    if (writes == 2) std::filesystem::remove(blocked);
-  };
+  fillDiskForAWhile(folder, desk, writes);
   desk.no_to_writing = 2;
   desk.goes_on = "next";
   EXPECT_EQ(runCommission(folder.scene(), {}, desk), kExitFault);

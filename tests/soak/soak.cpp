@@ -29,19 +29,6 @@ constexpr int kBoot_ms = 5000;
 constexpr int kAlone_ms = 1500;  ///< of the plant, after the end
 constexpr std::size_t kMostViolations = 100;
 
-}  // namespace
-
-Scene loadSoakScene(const std::string& path, const std::vector<Override>& settings) {
-  Scene scene = loadScene(path, settings);
-  scene.hardware->gpio.emplace();
-  scene.hardware->gpio->e_stop.emplace();
-  scene.hardware->gpio->enable.emplace();
-  scene.hardware->gpio->brake.emplace();
-  return scene;
-}
-
-namespace {
-
 Scene beginScene(const std::string& path, const SoakScene& soak_scene) {
   writeScene(path, soak_scene);
   return loadSoakScene(path, {});
@@ -82,6 +69,15 @@ Injection mended(test::Random& random, Injection x) {
 }
 
 }  // namespace
+
+Scene loadSoakScene(const std::string& path, const std::vector<Override>& settings) {
+  Scene scene = loadScene(path, settings);
+  scene.hardware->gpio.emplace();
+  scene.hardware->gpio->e_stop.emplace();
+  scene.hardware->gpio->enable.emplace();
+  scene.hardware->gpio->brake.emplace();
+  return scene;
+}
 
 Life::Life(std::uint64_t seed, int number, const std::string& folder, Tally& tally,
            std::function<bool()> minutely)

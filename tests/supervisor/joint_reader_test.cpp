@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "support/shipped_scene.h"
@@ -116,8 +115,7 @@ TEST_P(Reading, WaitsForDrivesThatStillMove) {
   ASSERT_EQ(reader->report().fault, Fault::kNone) << faultName(reader->report().fault);
   EXPECT_FALSE(hasTorque());
   const JointVector found = reader->q();
-  JointReader again(*scene.hardware, scene.period_s);
-  std::swap(again, *reader);
+  reader.emplace(*scene.hardware, scene.period_s);
   plant->advance(t_ns += 1'000'000'000);
   while (!reader->isDone() && t_ns < cell.t_ns + 20'000'000'000) cycle();
   EXPECT_LT((reader->q() - found).cwiseAbs().maxCoeff(), 1e-3) << "at rest";
