@@ -98,6 +98,15 @@ bool isRaised(const Gains& from, const Gains& to) {
          to.task.max_return_speed_rad_per_s > from.task.max_return_speed_rad_per_s;
 }
 
+/// The paper's laws of two spaces bounce on stiff obstacles. Their gains decide, in no simple
+/// order, how fast the arm gets there: on the way between two sets it may push several times harder
+/// than with either.
+bool mayPushHarderOnTheWay(const ControllerConfig& config) {
+  if (!config.force_control) return false;
+  const Variant variant = config.force_control->variant;
+  return variant == Variant::kNullTask || variant == Variant::kNullJoint;
+}
+
 /// From its end, which is what was asked for, so that a refusal names that.
 void checkRamp(const Scene& running, const Scene& changed, double least_deg) {
   const Gains& from = running.controller.gains;
@@ -152,6 +161,7 @@ GainPlan planChange(const Scene& running, Scene changed, double least_deg) {
     plan.waits_for_free |= gain->spec.context == KeyContext::kFree;
   }
   plan.waits_for_free |= isRaised(running.controller.gains, plan.scene.controller.gains);
+  plan.waits_for_free |= !plan.keys.empty() && mayPushHarderOnTheWay(plan.scene.controller);
   checkRamp(running, plan.scene, least_deg);
   return plan;
 }

@@ -18,6 +18,9 @@ constexpr double kWindow_s = 1.0;   ///< of the figures
 constexpr double kMemory_s = 10.0;  ///< of how they were before a change
 constexpr double kMoreThanBefore = 1.3;
 
+/// Slow at both ends: a force that follows its limit would overshoot where that stops at once.
+double eased(double share) noexcept { return share * share * (3.0 - 2.0 * share); }
+
 }  // namespace
 
 GainChange::GainChange(const Gains& gains, double period_s) noexcept
@@ -79,7 +82,7 @@ void GainChange::begin() noexcept {
 void GainChange::advance(GainState next) noexcept {
   passed_s_ += period_s_;
   is_changing_ = true;
-  gains_ = gainsBetween(from_, to_, passed_s_ / duration_s_);
+  gains_ = gainsBetween(from_, to_, eased(std::min(1.0, passed_s_ / duration_s_)));
   if (passed_s_ < duration_s_) return;
   passed_s_ = 0.0;
   report_.state = next;

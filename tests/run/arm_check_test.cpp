@@ -206,5 +206,17 @@ TEST(ArmCheck, WarnsOfDrivesThatGiveWayForGood) {
   EXPECT_FALSE(has(checkArm(test::shippedScene(name)), part));
 }
 
+TEST(ArmCheck, TellsOfAStartThatTheDaemonRefuses) {
+  Scene scene = test::shippedScene("commands", {{"task.commands.start_measured", "true"}});
+  ASSERT_FALSE(scene.hardware->gpio);
+  EXPECT_TRUE(has(checkArm(scene), "tactusd refuses task.commands.start_measured"));
+  scene.hardware->gpio.emplace();
+  EXPECT_TRUE(has(checkArm(scene), "gpio.enable"));
+  scene.hardware->gpio->enable.emplace();
+  EXPECT_FALSE(has(checkArm(scene), "start_measured"));
+  scene.hardware.reset();
+  EXPECT_FALSE(has(checkArm(scene), "start_measured")) << "it is simulated alone";
+}
+
 }  // namespace
 }  // namespace tactus

@@ -72,6 +72,20 @@ TEST(GainPlan, SpeedLimitsAreLoweredAtOnceAndRaisedWithoutContact) {
   EXPECT_TRUE(waits("6"));
 }
 
+/// The paper's laws of two spaces bounce on stiff obstacles, and between two sets of gains some
+/// push several times harder.
+TEST(GainPlan, LawsOfTwoSpacesWaitForAMomentWithoutContact) {
+  for (const char* variant : {"null_task", "null_joint", "null_space", "task_space"}) {
+    const Scene running =
+        test::shippedScene("scenario2_estimated", {{"controller.variant", variant}});
+    const bool has_two =
+        std::string(variant) == "null_task" || std::string(variant) == "null_joint";
+    EXPECT_EQ(plan(running, {{"controller.time_constant_s", "0.2"}}).waits_for_free, has_two)
+        << variant;
+    EXPECT_FALSE(plan(running, {}).waits_for_free) << "nothing changes";
+  }
+}
+
 TEST(GainPlan, RefusesWhatNeedsARestart) {
   const Scene running = test::shippedScene("scenario2_estimated");
   const Settings live = {{"controller.damping", "0.6"}};

@@ -108,17 +108,12 @@ Settings drawSettings(test::Random& random, const std::string& variant) {
   return settings;
 }
 
-std::optional<Scene> accepted(const Scene& scene, const Settings& settings) {
+std::optional<GainPlan> accepted(const Scene& scene, const Settings& settings) {
   try {
-    return planSettings(scene, settings, kMinPhaseMargin_deg).scene;
+    return planSettings(scene, settings, kMinPhaseMargin_deg);
   } catch (const InputError&) {
     return std::nullopt;
   }
-}
-
-/// The paper's laws of two spaces bounce on stiff obstacles, with one set of gains already.
-bool bounces(const std::string& variant) {
-  return variant == "null_task" || variant == "null_joint";
 }
 
 /// How the pairs of a variant compare.
@@ -133,8 +128,13 @@ void add(double ratio, PairCount& count) {
   count.worst = std::max(count.worst, ratio);
 }
 
-/// The second of two sets of gains is taken over in contact: the force is hardly above what it is
-/// with one of them alone, and no joint accelerates faster than it may.
+/// Until what is said at the path's end rests: a soft contact is still on its way to its limit, and
+/// there sooner with gains that change.
+constexpr double kRest_s = 10.0;
+
+/// The second of two sets of gains is ordered in contact: the force is hardly above what it is with
+/// one of them alone, and no joint accelerates faster than it may. What waits for a moment without
+/// contact does so here, too.
 TEST(GainsInContact, SwitchingPushesNoHarderThanEither) {
   test::Random random(1931);
   int switched = 0;
@@ -144,24 +144,28 @@ TEST(GainsInContact, SwitchingPushesNoHarderThanEither) {
     const Settings one = drawSettings(random, variant), other = drawSettings(random, variant);
     Scene scene = test::shippedScene(name, one);
     if (phaseMargin_deg(scene) < 30.0) continue;
-    const std::optional<Scene> changed = accepted(scene, Settings(other.begin() + 1, other.end()));
+    std::optional<GainPlan> changed = accepted(scene, Settings(other.begin() + 1, other.end()));
     if (!changed) continue;
-    const Outcome first = run(scene, {}), second = run(*changed, {});
+    const double last_s = scene.duration_s - 2.0;
+    scene.duration_s += kRest_s;
+    changed->scene.duration_s += kRest_s;
+    const Outcome first = run(scene, {}), second = run(changed->scene, {});
     if (first.first_contact_s < 0.0) continue;
     ++switched;
     Change change;
-    change.order = {.number = 1, .gains = changed->controller.gains};
-    change.at_s = random.uniform(first.first_contact_s, scene.duration_s - 2.0);
+    change.order = {.number = 1,
+                    .gains = changed->scene.controller.gains,
+                    .waits_for_free = changed->waits_for_free};
+    change.at_s = random.uniform(first.first_contact_s, last_s);
     const Outcome both = run(scene, change);
     const double most_N = std::max(first.peak_N, second.peak_N);
     add(both.peak_N / most_N, counts[variant]);
-    const double most_ratio = bounces(variant) ? kNoLimit : 1.15;
-    EXPECT_LE(both.peak_N, most_ratio * most_N) << name << " " << variant << " draw " << i;
+    EXPECT_LE(both.peak_N, 1.15 * most_N) << name << " " << variant << " draw " << i;
     EXPECT_LE(both.largest_acceleration, 1.0 + 1e-9) << name << " " << variant;
   }
   EXPECT_EQ(switched, pairs(14));
   for (const auto& [variant, count] : counts) {
-    EXPECT_LE(count.above, count.switched / (bounces(variant) ? 12 : 50) + 1) << variant;
+    EXPECT_LE(count.above, count.switched / 200) << variant;
     std::printf("%s: %d of %d pairs push more than 2 %% harder, at most %.3f times as hard\n",
                 variant.c_str(), count.above, count.switched, count.worst);
   }
@@ -185,7 +189,11 @@ TEST(GainsInContact, UnstableOnesAreTakenBackInTime) {
     if (alone.first_contact_s < 0.0) continue;
     ++unstable;
     Change change;
-    change.order = {.number = 1, .gains = wild.controller.gains};
+    change.order = {
+        .number = 1,
+        .gains = wild.controller.gains,
+        .waits_for_free =
+            planSettings(scene, {{"controller.time_constant_s", "0.2"}}, 0.0).waits_for_free};
     change.at_s =
         random.uniform(alone.peak_s + 0.2, std::max(alone.peak_s + 0.3, scene.duration_s - 3.0));
     const Outcome both = run(scene, change);
@@ -196,7 +204,6 @@ TEST(GainsInContact, UnstableOnesAreTakenBackInTime) {
     counts[variant].switched += 1;
     counts[variant].above += both.peak_N > F_most ? 1 : 0;
     counts[variant].worst = std::max(counts[variant].worst, both.peak_N);
-    if (bounces(variant)) continue;
     EXPECT_LE(both.peak_N, F_most) << name << " " << variant;
     if (both.report.trouble == GainTrouble::kNone) continue;
     EXPECT_LE(both.final_N, 1.02 * std::max(alone.final_N, F_rest)) << name << " " << variant;

@@ -18,7 +18,7 @@ std::vector<CoverReport> coversAtStart(const Scene& scene);
 
 /// What is doubtful about an arm: links and covers of a size or in a place that no robot has,
 /// joint limits that look like degrees, accelerations that its drives have no torque for, drives
-/// that lag behind for good. For people, to be printed as warnings.
+/// that lag behind for good, a start that tactusd refuses. For people, to be printed as warnings.
 std::vector<std::string> checkArm(const Scene& scene);
 
 }  // namespace tactus
