@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kLeastDuration_s = 0.5;
 constexpr double kTimeConstants = 5.0;
+constexpr double kReturns = 8.0;
+constexpr double kMostOfReturn_s = 10.0;  ///< a beta of nearly zero would take for ever
 
 constexpr std::size_t kWords = sizeof(Gains) / sizeof(double);
 using Words = std::array<double, kWords>;
@@ -53,7 +55,10 @@ Gains gainsBetween(const Gains& from, const Gains& to, double share) noexcept {
 
 double gainRampDuration_s(const Gains& from, const Gains& to) noexcept {
   const double T_s = std::max(from.force.time_constant_s, to.force.time_constant_s);
-  return std::max(kLeastDuration_s, kTimeConstants * T_s);
+  const double least_s = std::max(kLeastDuration_s, kTimeConstants * T_s);
+  if (!(to.force.activation_force_N > from.force.activation_force_N)) return least_s;
+  const double beta_per_s = std::min(from.task.drift_gain_per_s, to.task.drift_gain_per_s);
+  return std::max(least_s, std::min(kReturns / beta_per_s, kMostOfReturn_s));
 }
 
 }  // namespace tactus

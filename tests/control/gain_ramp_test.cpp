@@ -88,6 +88,20 @@ TEST(GainRamp, TakesFiveTimeConstants) {
   EXPECT_EQ(gainRampDuration_s(quick, quick), 0.5);
 }
 
+/// The tool that is let go comes back with beta, and shall not be faster than the limit rises.
+TEST(GainRamp, RaisesTheActivationForceSlowly) {
+  Gains low, high;
+  low.force.time_constant_s = high.force.time_constant_s = 0.1;
+  low.task.drift_gain_per_s = 4.0;
+  high.task.drift_gain_per_s = 2.0;
+  low.force.activation_force_N = 3.0;
+  high.force.activation_force_N = 5.0;
+  EXPECT_EQ(gainRampDuration_s(low, high), 4.0);
+  EXPECT_EQ(gainRampDuration_s(high, low), 0.5);
+  high.task.drift_gain_per_s = 0.0;
+  EXPECT_EQ(gainRampDuration_s(low, high), 10.0);
+}
+
 /// There is no ratio to or from zero: it is gone through in equal steps.
 TEST(GainRamp, WhatMayBeZeroGoesInSteps) {
   Gains none, some;
