@@ -66,7 +66,7 @@ Identified fit(const IdentifyOptions& options, const Scene& scene, const Run& ru
   run([&](const CycleRecord& record) {
     const RobotInput input = recordedInput(record, config.chain.size());
     const double step_s = scene.period_s * (1.0 + static_cast<double>(record.missed_cycles));
-    if (record.t_s - before_s > 1.5 * step_s) fit.skip();
+    if (record.t_s - before_s > 1.5 * step_s) fit.skip(record.t_s - before_s - step_s);
     before_s = record.t_s;
     fit.add(input.q_measured, input.tactile[options.module], step_s);
   });

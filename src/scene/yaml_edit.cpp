@@ -54,13 +54,20 @@ std::string flowText(const Words& words, std::size_t first, const std::string& v
   return text + std::string(words.size() - first - 1, '}');
 }
 
-/// "a:\n  b: value\n", as deep as `indentation`.
+/// That of the first line.
+std::string lineEnd(const std::string& text) {
+  const std::size_t end = text.find('\n');
+  return end != std::string::npos && end > 0 && text[end - 1] == '\r' ? "\r\n" : "\n";
+}
+
+/// "a:\n  b: value\n", as deep as `indentation`; line_end in place of \n.
 std::string blockText(const Words& words, std::size_t first, std::size_t indentation,
-                      const std::string& value) {
+                      const std::string& value, const std::string& line_end) {
   std::string text;
   for (std::size_t i = first; i < words.size(); ++i) {
     text += std::string(indentation + 2 * (i - first), ' ') + words[i] + ":";
-    text += i + 1 == words.size() ? " " + value + "\n" : "\n";
+    if (i + 1 == words.size()) text += " " + value;
+    text += line_end;
   }
   return text;
 }
@@ -68,9 +75,10 @@ std::string blockText(const Words& words, std::size_t first, std::size_t indenta
 std::string withNew(const SourceFile& file, const YamlNode& section, const Words& words,
                     std::size_t first, const std::string& value) {
   std::string text = file.text;
+  const std::string line_end = lineEnd(text);
   if (first == 0) {
-    if (!text.empty() && text.back() != '\n') text += '\n';
-    return text + blockText(words, 0, 0, value);
+    if (!text.empty() && text.back() != '\n') text += line_end;
+    return text + blockText(words, 0, 0, value, line_end);
   }
   const std::size_t begin = offsetAt(text, section.at);
   if (text[begin] == '{') {
@@ -87,9 +95,9 @@ std::string withNew(const SourceFile& file, const YamlNode& section, const Words
     failAt(section.at, words[first], "cannot be written here",
            "expected an entry that begins with a plain value");
   if (follows_dash) ++entry.line;
-  if (follows_dash && text.back() != '\n') text += '\n';
+  if (follows_dash && text.back() != '\n') text += line_end;
   return text.insert(offsetAt(text, {entry.file, entry.line, 1}),
-                     blockText(words, first, indentation, value));
+                     blockText(words, first, indentation, value, line_end));
 }
 
 }  // namespace

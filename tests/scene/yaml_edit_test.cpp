@@ -43,6 +43,14 @@ TEST(YamlEdit, PutsANewOneIntoItsSection) {
   EXPECT_EQ(edited("", "controller.damping"), "controller:\n  damping: 0.6\n");
 }
 
+/// As editors of Windows write them.
+TEST(YamlEdit, EndsLinesAsTheFileDoes) {
+  EXPECT_EQ(edited("a:\r\n  b: 1 # x\r\n", "a.b"), "a:\r\n  b: 0.6 # x\r\n");
+  EXPECT_EQ(edited("a:\r\n  b: 1\r\n", "a.c"), "a:\r\n  c: 0.6\r\n  b: 1\r\n");
+  EXPECT_EQ(edited("a: 1\r\nb: 2", "c.d"), "a: 1\r\nb: 2\r\nc:\r\n  d: 0.6\r\n");
+  EXPECT_EQ(edited("a:\r\n  - b: 1", "a[0].c"), "a:\r\n  - b: 1\r\n    c: 0.6\r\n");
+}
+
 TEST(YamlEdit, GoesIntoListsThatAreThere) {
   const std::string block =
       "a:\n  b:\n    - name: x\n      # sign\n      sign: 1\n    - {name: y}\n";

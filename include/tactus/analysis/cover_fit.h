@@ -42,8 +42,11 @@ class CoverFit {
 
   /// The next cycle, step_s after the one before. q: measured.
   void add(const JointVector& q, const TactileSample& sample, double step_s);
-  /// Cycles are missing before the next one.
-  void skip() noexcept { poses_ = 0; }
+  /// So much time is missing before the next cycle.
+  void skip(double missing_s) noexcept {
+    poses_ = 0;
+    time_s_ += missing_s;
+  }
 
   CoverEstimate estimate() const;
 
