@@ -46,7 +46,8 @@ Keys that are called live or free can be changed while
 .BR tactusd (8)
 runs, by
 .BR tactus\~set :
-a live one at once, a free one at the next moment without contact, both on a ramp.
+a live one at once, a free one once nothing was touched for half a second, both on a ramp.
+With null_task and null_joint, and as a limit of speed that is raised, a live one waits as a free one does.
 All others need a restart.
 )",
     R"(.SH EXAMPLES

@@ -17,6 +17,7 @@ constexpr double kAtLimit = 0.5;
 constexpr double kWindow_s = 1.0;   ///< of the figures
 constexpr double kMemory_s = 10.0;  ///< of how they were before a change
 constexpr double kMoreThanBefore = 1.3;
+constexpr double kFree_s = 0.5;  ///< longer than a bounce
 
 /// Slow at both ends: a force that follows its limit would overshoot where that stops at once.
 double eased(double share) noexcept { return share * share * (3.0 - 2.0 * share); }
@@ -24,7 +25,12 @@ double eased(double share) noexcept { return share * share * (3.0 - 2.0 * share)
 }  // namespace
 
 GainChange::GainChange(const Gains& gains, double period_s) noexcept
-    : period_s_(period_s), kept_(gains), from_(gains), to_(gains), gains_(gains) {}
+    : period_s_(period_s),
+      kept_(gains),
+      from_(gains),
+      to_(gains),
+      gains_(gains),
+      free_s_(kFree_s) {}
 
 void GainChange::order(const GainOrder& order) noexcept {
   const bool brings_back = report_.trouble != GainTrouble::kNone && order.over >= report_.number;
@@ -69,10 +75,11 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
   }
 }
 
-bool GainChange::mustWait() const noexcept { return order_.waits_for_free && is_in_contact_; }
+bool GainChange::mustWait() const noexcept { return order_.waits_for_free && free_s_ < kFree_s; }
 
 void GainChange::begin() noexcept {
   if (mustWait()) return;
+  if (isSame(gains_, kept_)) before_ = largest_;  // it may have waited for hours
   ramp(order_.gains, gainRampDuration_s(gains_, order_.gains));
   contact_s_ = 0.0;
   for_s_ = order_.for_s;
@@ -131,6 +138,7 @@ void GainChange::observe(const GainWatchInput& seen) noexcept {
   if (seen.force_N > force.contact_threshold_N) is_in_contact_ = true;
   if (seen.force_N <= std::min(force.transition.release_force_N, force.contact_threshold_N))
     is_in_contact_ = false;
+  free_s_ = is_in_contact_ ? 0.0 : std::min(kFree_s, free_s_ + period_s_);
   const double share = period_s_ / kWindow_s;
   figures_.swing_N = swings_.swing_N();
   figures_.losses_per_s = flushed((1.0 - share) * figures_.losses_per_s);

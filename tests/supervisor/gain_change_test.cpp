@@ -81,9 +81,29 @@ TEST_F(GainChangeTest, WaitsForAMomentWithoutContact) {
   pass(10.0);
   EXPECT_EQ(state(), GainState::kWaiting);
   EXPECT_EQ(T_s(), 0.1);
-  pass(1.1, {.force_N = 0.1});
+  pass(1.6, {.force_N = 0.1});
   EXPECT_EQ(state(), GainState::kOnTrial);
   EXPECT_EQ(T_s(), 0.2);
+}
+
+/// The next one comes before the ramp would be at its end.
+TEST_F(GainChangeTest, TakesNoBounceForAMomentWithoutContact) {
+  GainOrder free = order(1, 0.2);
+  free.waits_for_free = true;
+  passForce(1.0, every(0.3));
+  change_.order(free);
+  passForce(5.0, every(0.3));
+  EXPECT_EQ(state(), GainState::kWaiting);
+  EXPECT_EQ(T_s(), 0.1);
+}
+
+/// A force that follows its limit would overshoot where that stops at once.
+TEST_F(GainChangeTest, BeginsAndEndsItsRampSlowly) {
+  change_.order(order(1, 0.2));
+  pass(0.101);
+  EXPECT_NEAR(T_s(), 0.1 * std::pow(2.0, 0.028), 1e-4);
+  pass(0.8);
+  EXPECT_NEAR(T_s(), 0.1 * std::pow(2.0, 0.972), 1e-4);
 }
 
 TEST_F(GainChangeTest, GoesBackByItselfAfterItsTime) {
@@ -255,7 +275,7 @@ TEST_F(GainChangeTest, WhatWaitsDoesNotHoldUpTheRampBeforeIt) {
     pass(5.0);
     EXPECT_EQ(state(), GainState::kWaiting);
     EXPECT_EQ(T_s(), 0.3);
-    pass(2.0, {});
+    pass(2.5, {});
     EXPECT_EQ(T_s(), 0.2);
   }
 }

@@ -118,12 +118,14 @@ std::optional<GainPlan> accepted(const Scene& scene, const Settings& settings) {
 
 /// How the pairs of a variant compare.
 struct PairCount {
-  int switched = 0, above = 0;  ///< above: by more than 2 %
-  double worst = 0.0;           ///< peak over the larger one of both alone
+  int switched = 0, begun = 0, above = 0;  ///< above: by more than 2 %
+  double worst = 0.0;                      ///< peak over the larger one of both alone
 };
 
-void add(double ratio, PairCount& count) {
+void add(const Outcome& both, double most_N, PairCount& count) {
+  const double ratio = both.peak_N / most_N;
   ++count.switched;
+  count.begun += both.report.state != GainState::kWaiting ? 1 : 0;
   count.above += ratio > 1.02 ? 1 : 0;
   count.worst = std::max(count.worst, ratio);
 }
@@ -159,15 +161,16 @@ TEST(GainsInContact, SwitchingPushesNoHarderThanEither) {
     change.at_s = random.uniform(first.first_contact_s, last_s);
     const Outcome both = run(scene, change);
     const double most_N = std::max(first.peak_N, second.peak_N);
-    add(both.peak_N / most_N, counts[variant]);
+    add(both, most_N, counts[variant]);
     EXPECT_LE(both.peak_N, 1.15 * most_N) << name << " " << variant << " draw " << i;
     EXPECT_LE(both.largest_acceleration, 1.0 + 1e-9) << name << " " << variant;
   }
   EXPECT_EQ(switched, pairs(14));
   for (const auto& [variant, count] : counts) {
     EXPECT_LE(count.above, count.switched / 200) << variant;
-    std::printf("%s: %d of %d pairs push more than 2 %% harder, at most %.3f times as hard\n",
-                variant.c_str(), count.above, count.switched, count.worst);
+    std::printf(
+        "%s: %d of %d pairs push more than 2 %% harder, at most %.3f times; %d have begun\n",
+        variant.c_str(), count.above, count.switched, count.worst, count.begun);
   }
 }
 
@@ -202,6 +205,7 @@ TEST(GainsInContact, UnstableOnesAreTakenBackInTime) {
     taken_back += both.report.trouble != GainTrouble::kNone ? 1 : 0;
     const double F_most = std::max(alone.peak_N, 2.0 * F_act);
     counts[variant].switched += 1;
+    counts[variant].begun += both.report.state != GainState::kWaiting ? 1 : 0;
     counts[variant].above += both.peak_N > F_most ? 1 : 0;
     counts[variant].worst = std::max(counts[variant].worst, both.peak_N);
     EXPECT_LE(both.peak_N, F_most) << name << " " << variant;
@@ -212,8 +216,8 @@ TEST(GainsInContact, UnstableOnesAreTakenBackInTime) {
   EXPECT_GT(taken_back, 0);
   std::printf("%d of %d unstable sets taken back\n", taken_back, unstable);
   for (const auto& [variant, count] : counts)
-    std::printf("%s: %d of %d push harder than 2 F_act and before, at most %.1f N\n",
-                variant.c_str(), count.above, count.switched, count.worst);
+    std::printf("%s: %d of %d push harder than 2 F_act and before, at most %.1f N; %d have begun\n",
+                variant.c_str(), count.above, count.switched, count.worst, count.begun);
 }
 
 }  // namespace

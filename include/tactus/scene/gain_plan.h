@@ -29,7 +29,8 @@ GainPlan planSettings(const Scene& running, const std::vector<Override>& setting
 /// The same of the scene as its files are now, with these settings alone, those of its start.
 GainPlan planReload(const Scene& running, const std::vector<Override>& overrides, double least_deg);
 
-/// The same of a scene that was made otherwise.
+/// The same of a scene that was made otherwise. Of what is live limits of speed that are raised
+/// wait for a moment without contact, and all of null_task and null_joint.
 GainPlan planChange(const Scene& running, Scene changed, double least_deg);
 
 /// The keys whose values differ between two scenes, by dotted path; "robot" for all that is in

@@ -11,7 +11,7 @@ namespace tactus {
 struct GainOrder {
   std::uint32_t number = 0;  ///< of whoever orders, to know the report by; not 0
   Gains gains;
-  bool waits_for_free = false;  ///< begins at the next moment without contact
+  bool waits_for_free = false;  ///< begins once nothing was touched for half a second
   double for_s = kNoLimit;      ///< once it is there, it goes back by itself after this time
   std::uint32_t over = 0;       ///< the order whose gains it keeps otherwise; 0: those kept
 };
@@ -100,6 +100,7 @@ class GainChange {
   bool is_changing_ = false;
   SwingWatch swings_;
   bool is_in_contact_ = false;
+  double free_s_;             ///< without contact, counted as far as an order waits for
   Figures figures_, before_;  ///< now, and the largest of late when the change began
   Figures largest_;           ///< of late
 };
