@@ -37,7 +37,6 @@ void GainChange::order(const GainOrder& order) noexcept {
   report_.number = order.number;
   if (brings_back) return;
   order_ = order;
-  if (isSame(gains_, kept_)) before_ = largest_;
   report_ = {
       .number = order.number, .kept_number = report_.kept_number, .state = GainState::kWaiting};
 }

@@ -241,8 +241,10 @@ TEST(GainWatch, KnowsContactByBothForces) {
     change.update({.force_N = before_N});
     GainOrder order{.number = 1, .gains = gains, .waits_for_free = true};
     change.order(order);
-    for (int i = 0; i < std::lround(0.6 / kWatchPeriod_s); ++i) change.update({.force_N = force_N});
-    return change.report().state != GainState::kWaiting;
+    int cycles_left = static_cast<int>(std::lround(0.6 / kWatchPeriod_s));
+    do change.update({.force_N = force_N});
+    while (--cycles_left > 0 && change.report().state == GainState::kWaiting);
+    return change.report().state == GainState::kRamping;
   };
   EXPECT_TRUE(begins(0.0, 1.2, 1.15)) << "at the threshold there is none";
   EXPECT_FALSE(begins(0.0, 1.21, 1.15));
