@@ -52,7 +52,7 @@ enum class Presence {
 /// When a running daemon takes a new value.
 enum class KeyContext {
   kRestart,  ///< at its next start
-  kFree,     ///< at the next moment without contact
+  kFree,     ///< once nothing was touched for half a second
   kLive,     ///< at once; all that are not kRestart are gains, and go there on a ramp
 };
 const char* contextName(KeyContext context) noexcept;
