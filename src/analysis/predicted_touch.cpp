@@ -48,9 +48,7 @@ class TouchRun {
     return gain / (force_.time_constant_s * touch_.law_stiffness_N_per_m);
   }
 
-  bool hasSecondSpace() const {
-    return touch_.variant == Variant::kNullTask || touch_.variant == Variant::kNullJoint;
-  }
+  bool hasSecondSpace() const { return isOfTwoSpaces(touch_.variant); }
 
   bool isLimited() const { return touch_.variant == Variant::kNullLimit; }
 

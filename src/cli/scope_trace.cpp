@@ -106,9 +106,7 @@ void predict(const Scene& scene, int module, const CycleRecord* felt, ScopeTrace
 
 double restForce_N(const Scene& scene, const ForceGains& gains) {
   if (!scene.controller.force_control) return std::numeric_limits<double>::quiet_NaN();
-  const Variant variant = scene.controller.force_control->variant;
-  const bool is_above = variant == Variant::kNullTask || variant == Variant::kNullJoint ||
-                        variant == Variant::kNullLimit;
+  const bool is_above = hasActivationForce(scene.controller.force_control->variant);
   return gains.contact_threshold_N + (is_above ? gains.activation_force_N : 0.0);
 }
 

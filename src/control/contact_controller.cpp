@@ -73,8 +73,7 @@ ContactController::ContactController(const ControllerConfig& config,
       initial_position_m_(0.5 * config.tactile_modules.front().length_m),
       task_(config.task),
       is_joint_space_(config.force_control->variant == Variant::kJointSpace),
-      is_multi_space_(config.force_control->variant == Variant::kNullTask ||
-                      config.force_control->variant == Variant::kNullJoint),
+      is_multi_space_(isOfTwoSpaces(config.force_control->variant)),
       has_estimator_(config.force_control->has_estimator),
       inv_sqrt_weights_(inv_sqrt_weights),
       law_(*config.force_control, config.chain, inv_sqrt_weights) {

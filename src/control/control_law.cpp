@@ -33,8 +33,7 @@ ControlLaw::ControlLaw(const ForceControlConfig& config, const SerialChain& chai
       order_(config.order),
       has_null_space_(config.variant != Variant::kJointSpace &&
                       config.variant != Variant::kTaskSpace),
-      has_second_space_(config.variant == Variant::kNullTask ||
-                        config.variant == Variant::kNullJoint),
+      has_second_space_(isOfTwoSpaces(config.variant)),
       null_speed_limit_(chain, inv_sqrt_weights) {}
 
 double ControlLaw::proportionalGain(const ForceGains& gains,

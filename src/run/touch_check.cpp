@@ -17,11 +17,6 @@ namespace {
 
 constexpr double kLeastFriction = 0.05;  ///< of obstacles: less adds a tenth to a force at most
 
-bool hasActivationForce(Variant variant) {
-  return variant == Variant::kNullTask || variant == Variant::kNullJoint ||
-         variant == Variant::kNullLimit;
-}
-
 /// A touch of this spring by the scene's arm, whose loop of one space has its delays.
 TouchedSpring touchedSpring(const Scene& scene, int module, const ObstacleConfig& obstacle,
                             double robot_stiffness_N_per_m) {

@@ -98,13 +98,21 @@ bool isRaised(const Gains& from, const Gains& to) {
          to.task.max_return_speed_rad_per_s > from.task.max_return_speed_rad_per_s;
 }
 
-/// The paper's laws of two spaces bounce on stiff obstacles. Their gains decide, in no simple
-/// order, how fast the arm gets there: on the way between two sets it may push several times harder
-/// than with either.
+/// Laws of two spaces bounce on stiff obstacles. Their gains decide, in no simple order, how fast
+/// the arm gets there: on the way between two sets it may push several times harder than with
+/// either.
 bool mayPushHarderOnTheWay(const ControllerConfig& config) {
-  if (!config.force_control) return false;
-  const Variant variant = config.force_control->variant;
-  return variant == Variant::kNullTask || variant == Variant::kNullJoint;
+  return config.force_control && isOfTwoSpaces(config.force_control->variant);
+}
+
+bool waitsForFree(const Scene& running, const GainPlan& plan) {
+  if (plan.keys.empty()) return false;
+  const ControllerConfig& changed = plan.scene.controller;
+  const auto isOfFreeSpace = [](const std::string& key) {
+    return findGain(key)->spec.context == KeyContext::kFree;
+  };
+  return std::ranges::any_of(plan.keys, isOfFreeSpace) ||
+         isRaised(running.controller.gains, changed.gains) || mayPushHarderOnTheWay(changed);
 }
 
 /// From its end, which is what was asked for, so that a refusal names that.
@@ -155,13 +163,10 @@ GainPlan planChange(const Scene& running, Scene changed, double least_deg) {
   GainPlan plan{.scene = std::move(changed), .keys = {}};
   plan.keys = differingKeys(running, plan.scene);
   for (const std::string& key : plan.keys) {
-    const GainKey* const gain = findGain(key);
-    if (!gain || makesSection(running, key) || makesSection(plan.scene, key))
+    if (!findGain(key) || makesSection(running, key) || makesSection(plan.scene, key))
       refuse(running, plan.scene, key);
-    plan.waits_for_free |= gain->spec.context == KeyContext::kFree;
   }
-  plan.waits_for_free |= isRaised(running.controller.gains, plan.scene.controller.gains);
-  plan.waits_for_free |= !plan.keys.empty() && mayPushHarderOnTheWay(plan.scene.controller);
+  plan.waits_for_free = waitsForFree(running, plan);
   checkRamp(running, plan.scene, least_deg);
   return plan;
 }

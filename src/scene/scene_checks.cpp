@@ -22,15 +22,10 @@ void checkJointSpace(const CheckedScene& c) {
   }
 }
 
-bool needsActivationForce(Variant variant) {
-  return variant == Variant::kNullTask || variant == Variant::kNullJoint ||
-         variant == Variant::kNullLimit;
-}
-
 /// At rest the sensor shows F_th, or F_act + F_th: what it cannot show is a fault.
 void checkSensorRange(const CheckedScene& c) {
   const ForceGains& gains = c.scene.gains.force;
-  const bool has_second = needsActivationForce(c.scene.controller->variant);
+  const bool has_second = hasActivationForce(c.scene.controller->variant);
   const double rest_N = gains.contact_threshold_N + (has_second ? gains.activation_force_N : 0.0);
   for (std::size_t i = 0; i < c.robot.config.tactile_modules.size(); ++i) {
     const double max_force_N = c.robot.config.tactile_modules[i].config.max_force_N;
@@ -91,7 +86,7 @@ void checkController(const CheckedScene& c) {
   checkLevel(c);
   const Variant variant = c.scene.controller->variant;
   const std::string name = wordOf(kVariantWords, variant);
-  if (needsActivationForce(variant) && !findGiven(c.root, "controller.activation_force_N")) {
+  if (hasActivationForce(variant) && !findGiven(c.root, "controller.activation_force_N")) {
     c.fail("controller.activation_force_N", "is missing",
            fmt::format("a number > 0 in N with the variant {}", name));
   }

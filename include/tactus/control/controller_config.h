@@ -90,6 +90,16 @@ enum class Variant {
   kNullLimit,  ///< not the paper's: null space, and the approach-speed limit of approach_limit.h
 };
 
+/// The paper's, in which a second space gives way above F_act + F_th.
+constexpr bool isOfTwoSpaces(Variant variant) {
+  return variant == Variant::kNullTask || variant == Variant::kNullJoint;
+}
+
+/// In contact the arm rests at F_act + F_th at most, where the null space cannot do more.
+constexpr bool hasActivationForce(Variant variant) {
+  return isOfTwoSpaces(variant) || variant == Variant::kNullLimit;
+}
+
 /// What the law answers a contact with.
 enum class ControlLevel {
   kVelocity,      ///< the paper's: control_law.h
