@@ -54,13 +54,8 @@ void exchange(std::vector<std::unique_ptr<BusPort>>& buses, JointReader& reader,
 
 }  // namespace
 
-bool startsMeasured(const Scene& scene) {
-  const auto& commands = scene.controller.task.commands;
-  return commands && commands->start_measured;
-}
-
 void checkMeasuredStart(const Scene& scene) {
-  if (!startsMeasured(scene) || (scene.hardware->gpio && scene.hardware->gpio->enable)) return;
+  if (!startsMeasured(scene) || hasEnableLine(scene)) return;
   failAt(locate(*scene.tree, "task.commands.start_measured"), "task.commands.start_measured",
          "no enable line: a restart would move the arm from anywhere",
          "expected gpio.enable in the robot's file");

@@ -156,11 +156,8 @@ void checkDrives(const Scene& scene, Warnings& warnings) {
       fmt::join(joints, " ")));
 }
 
-/// As checkMeasuredStart() of the daemon.
 void checkStart(const Scene& scene, Warnings& warnings) {
-  const auto& commands = scene.controller.task.commands;
-  if (!commands || !commands->start_measured || !scene.hardware) return;
-  if (scene.hardware->gpio && scene.hardware->gpio->enable) return;
+  if (!startsMeasured(scene) || !scene.hardware || hasEnableLine(scene)) return;
   warnings.emplace_back(
       "tactusd refuses task.commands.start_measured: without a line gpio.enable in the robot's "
       "file a restart would move the arm from anywhere");

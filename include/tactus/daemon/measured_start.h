@@ -6,10 +6,7 @@
 
 namespace tactus {
 
-/// Whether the scene begins where the arm is: task.commands.start_measured.
-bool startsMeasured(const Scene& scene);
-
-/// Throws InputError unless somebody can ask for the motion: a robot with an enable line.
+/// Throws InputError if the scene starts measured without an enable line.
 void checkMeasuredStart(const Scene& scene);
 
 /// Where the arm is, m or rad: opens the scene's buses, sets the drives up without torque, and lets

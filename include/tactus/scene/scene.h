@@ -76,6 +76,12 @@ struct Scene {
   std::shared_ptr<const YamlNode> tree{};
 };
 
+/// Whether the scene begins where the arm is: task.commands.start_measured.
+bool startsMeasured(const Scene& scene);
+
+/// Whether somebody has to ask for each motion: a robot on hardware with gpio.enable.
+bool hasEnableLine(const Scene& scene);
+
 /// The stages that exist in this scene, in the order of a cycle, by the names of the contract.
 std::vector<std::string> stageNames(const ControllerConfig& config);
 
