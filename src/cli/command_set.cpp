@@ -108,7 +108,9 @@ int save(bool as_json) {
     fmt::print("{} written, as it was is {}~\n", escaped(saved.path), escaped(saved.path));
   else
     fmt::print("{} has all that runs\n", escaped(saved.path));
-  if (!as_json && !saved.is_kept)
+  if (!as_json && saved.state == "waiting")
+    fmt::print("these gains still wait for a moment without contact\n");
+  else if (!as_json && saved.state != "kept")
     fmt::print("these gains are still on trial: `tactus diff` shows whether they go back\n");
   return kExitDone;
 }

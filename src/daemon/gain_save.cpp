@@ -76,13 +76,13 @@ SavedGains saveGains(const ControlClient& daemon) {
         fmt::format("{}: was changed since the daemon read it, expected no change; "
                     "`tactus diff` shows what differs, `tactus reload` takes it",
                     escaped(path)));
-  const bool is_kept = answer.at("state") == "kept";
+  const std::string state = answer.at("state");
   const std::string changed = withGains(path, text, answer.at("ordered"));
-  if (changed == text) return {path, false, is_kept};
+  if (changed == text) return {path, false, state};
   replaceFile(path, changed,
               [&](const std::string& next) { checkGains(next, answer.at("ordered")); });
   takeNote(daemon, path, text);
-  return {path, true, is_kept};
+  return {path, true, state};
 }
 
 }  // namespace tactus

@@ -12,9 +12,9 @@ namespace tactus {
 Json gainDifferences(const std::string& path, const Json& running);
 
 struct SavedGains {
-  std::string path;      ///< of the daemon's scene file
-  bool is_new = false;   ///< it was written; as it was is now path~
-  bool is_kept = false;  ///< the gains are no longer on trial
+  std::string path;     ///< of the daemon's scene file
+  bool is_new = false;  ///< it was written; as it was is now path~
+  std::string state;    ///< of the gains, as the daemon names it: "kept" once they stay
 };
 
 /// Writes the gains that run into the daemon's scene file, with the rights of who calls this.
