@@ -52,7 +52,8 @@ std::string laggingPath(const Scene& scene) {
     controller.update(RobotInput{}, config.gains, t_s, scene.period_s, state, output);
     const double lag = output.error.norm();
     if (lag > kMaxLag)
-      return fmt::format("path not followed: at {:.3f} s the tool lags by {:g} mm or mrad; {}", t_s,
+      return fmt::format("{}: at {:.3f} s the tool lags by {:g} mm or mrad; {}",
+                         t_s > end_s ? "end of the path not kept" : "path not followed", t_s,
                          1e3 * kMaxLag, slowestJoint(scene, output.velocity));
   }
   return "";
