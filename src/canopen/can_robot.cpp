@@ -157,6 +157,12 @@ bool CanRobot::isHolding(int joint) const noexcept {
 
 bool CanRobot::hasPower(int joint) const noexcept { return isPowered(drive(joint)); }
 
+int CanRobot::firstWithPower() const noexcept {
+  for (int joint = 0; joint < static_cast<int>(drives_.size()); ++joint)
+    if (hasPower(joint)) return joint;
+  return -1;
+}
+
 bool CanRobot::hasPositions() const noexcept {
   return std::all_of(drives_.begin(), drives_.end(),
                      [](const AnyDrive& drive) { return reportOf(drive).has_position; });

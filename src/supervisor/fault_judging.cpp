@@ -103,17 +103,11 @@ int ControlCycle::firstNotFollowing() const noexcept {
   return -1;
 }
 
-int ControlCycle::firstWithPower() const noexcept {
-  for (int joint = 0; joint < places_.commanded().size(); ++joint)
-    if (robot_.hasPower(joint)) return joint;
-  return -1;
-}
-
 /// Of the mode that has ended: whom it waited for.
 void ControlCycle::judgeTimeLimit(Mode mode) noexcept {
   judged_ = {};
   if (mode == Mode::kEnabling) judged_.joint = firstNotFollowing();
-  if (mode == Mode::kStopping) judged_.joint = firstWithPower();
+  if (mode == Mode::kStopping) judged_.joint = robot_.firstWithPower();
 }
 
 Fault ControlCycle::judgeTactile() noexcept {

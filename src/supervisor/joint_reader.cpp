@@ -35,8 +35,7 @@ void JointReader::judge(std::span<const Fault> bus_faults, const DrivesReport& d
     report_.joint = drives.joint;
   } else if (stopping_cycles_ > stop_deadline_cycles_) {
     report_.fault = Fault::kDriveStateLost;
-    for (int joint = 0; joint < rest_.size() && report_.joint < 0; ++joint)
-      if (robot_.hasPower(joint)) report_.joint = joint;
+    report_.joint = robot_.firstWithPower();
   }
   if (report_.joint >= 0) report_.drive = robot_.drive(report_.joint);
 }

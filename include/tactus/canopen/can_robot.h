@@ -59,6 +59,7 @@ class CanRobot final : public Robot {
   bool isHolding(int joint) const noexcept;
   /// What keeps this joint from being off: it can be reached, and is not seen without power.
   bool hasPower(int joint) const noexcept;
+  int firstWithPower() const noexcept;  ///< a joint; -1: none
   bool hasPositions() const noexcept;
   /// Of all drives: frames of wrong size.
   long long malformedFrames() const noexcept;

@@ -74,7 +74,6 @@ class ControlCycle {
   Fault judgeDrives() noexcept;
   bool isHeldByDrives() const noexcept;
   int firstNotFollowing() const noexcept;
-  int firstWithPower() const noexcept;
   void judgeTimeLimit(Mode mode) noexcept;
   Fault judgeTactile() noexcept;
   Fault judgeModule(int module) noexcept;
