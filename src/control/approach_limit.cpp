@@ -83,17 +83,18 @@ double ApproachLimit::excess(const ForceGains& gains, double F_p_N, double v_res
   return state.is_limiting ? excess_N / Tm : 0.0;
 }
 
-void ApproachLimit::limitRows(const ForceGains& gains, double F_p_N, double cosine,
+void ApproachLimit::limitRows(const ForceGains& gains, double F_p_N, double cosine, double presence,
                               const ApproachLimitState& state, int first,
                               SpeedRows& rows) const noexcept {
   const double m = state.memory_N_per_m;
   const double F_ahead_N = std::max(0.0, F_p_N + m * state.way_ahead_m);
   const double Tm = gains.time_constant_s * m;
+  const double v_max_m_per_s =
+      cosine * ((gains.activation_force_N - F_ahead_N) / Tm - state.obstacle.v_m_per_s);
   for (int i = first; i < rows.size; ++i) {
-    rows.row[i].v_max_m_per_s =
-        cosine * ((gains.activation_force_N - F_ahead_N) / Tm - state.obstacle.v_m_per_s);
+    rows.row[i].v_max_m_per_s = v_max_m_per_s;
     rows.row[i].damping_N_s_per_m = Tm;
-    rows.row[i].presence = 1.0;
+    rows.row[i].presence = presence;
   }
 }
 

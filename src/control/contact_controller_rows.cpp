@@ -21,7 +21,7 @@ void ContactController::addContactRows(const ForceGains& gains, const TaskKinema
     rows.row[0].a_task = space.a_task;
     rows.size = 1;
   }
-  approach_limit_->limitRows(gains, F_p_N, cosine, approach, 0, rows);
+  approach_limit_->limitRows(gains, F_p_N, cosine, 1.0, approach, 0, rows);
 }
 
 double ContactController::limitRows(const ForceGains& gains, const TaskKinematics& kinematics,

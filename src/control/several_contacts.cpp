@@ -51,8 +51,8 @@ void addHoldSpeeds(const ForceGains& gains, const ApproachLimitState& state, dou
   const double m = state.memory_N_per_m;
   const double F_left_N =
       gains.contact_threshold_N - state.smoother.contact.force_N - m * state.way_ahead_m;
-  for (int i = first; i < rows.size; ++i)
-    v_hold[i] = cosine * (F_left_N / rows.row[i].damping_N_s_per_m);
+  const double v_m_per_s = cosine * (F_left_N / (gains.time_constant_s * m));
+  for (int i = first; i < rows.size; ++i) v_hold[i] = v_m_per_s;
 }
 
 void tell(const ForceGains& gains, const ModuleContactState& state,
@@ -102,8 +102,8 @@ void SeveralContacts::locate(const TaskKinematics& kinematics, const Module& mod
 }
 
 /// Without speed, damping and presence.
-void SeveralContacts::project(const TaskKinematics& kinematics, const ScaledVector& a,
-                              SpeedRow& row) const noexcept {
+inline void SeveralContacts::project(const TaskKinematics& kinematics, const ScaledVector& a,
+                                     SpeedRow& row) const noexcept {
   row.a_scaled = inv_sqrt_weights_.cwiseProduct(a);
   row.a_task = kinematics.pseudoinverse.project(row.a_scaled);
 }
@@ -118,9 +118,9 @@ void SeveralContacts::addRowAt(const TaskKinematics& kinematics, const Module& m
 }
 
 /// Where rows stand: the resultant does not say where its contacts are. place: the resultant's.
-void SeveralContacts::addPlaces(const TaskKinematics& kinematics, const Module& module,
-                                const ModuleContactState& state, const Place& place,
-                                SpeedRows& rows) const noexcept {
+inline void SeveralContacts::addPlaces(const TaskKinematics& kinematics, const Module& module,
+                                       const ModuleContactState& state, const Place& place,
+                                       SpeedRows& rows) const noexcept {
   const ContactPointState& contact = state.approach.smoother.contact;
   const double shift_m = state.centre.shift_m;
   if (module.cone) {
@@ -171,15 +171,13 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
 }
 
 /// The second level's.
-void SeveralContacts::addRow(const ForceGains& gains, const TaskKinematics& kinematics,
-                             const Module& module, const ModuleContactState& state,
-                             const Place& place, SpeedRows& rows) const noexcept {
+inline void SeveralContacts::addRow(const ForceGains& gains, const TaskKinematics& kinematics,
+                                    const Module& module, const ModuleContactState& state,
+                                    const Place& place, SpeedRows& rows) const noexcept {
   const int first = rows.size;
   addPlaces(kinematics, module, state, place, rows);
-  module.limit.limitRows(gains, contactForce_N(gains, state), module.cosine(), state.approach,
-                         first, rows);
-  const double share = presence(gains, state.approach);
-  for (int i = first; i < rows.size; ++i) rows.row[i].presence = share;
+  module.limit.limitRows(gains, contactForce_N(gains, state), module.cosine(),
+                         presence(gains, state.approach), state.approach, first, rows);
 }
 
 void SeveralContacts::addRows(const ForceGains& gains, const TaskKinematics& kinematics,
@@ -199,7 +197,8 @@ double SeveralContacts::holdInNullSpace(const ForceGains& gains, const SpeedRows
                                         const RowVector& v_hold, int contacts, RowProblem& problem,
                                         NullSpeedLimits& limits, Motion& motion) const noexcept {
   if (rows.size == 0) return 0.0;
-  const RowVector l = problem.solve(v_hold, kNullSpaceAlone, motion, kFirstShare).l;
+  const RowMultipliers found = problem.solve(v_hold, kNullSpaceAlone, motion, kFirstShare);
+  const RowVector& l = found.l;
   Motion push;
   push.y.setZero();
   push.v_scaled.setZero();
@@ -242,7 +241,8 @@ void SeveralContacts::update(const Gains& gains, const TaskKinematics& kinematic
       -holdInNullSpace(gains.force, rows, v_hold, contacts, problem, state.null_speed, motion);
   const RowVector l = problem.keep(motion);
   for (int i = 0; i < static_cast<int>(modules_.size()); ++i) {
-    const double sum = l.segment(first[i], first[i + 1] - first[i]).sum();
+    double sum = 0.0;
+    for (int row = first[i]; row < first[i + 1]; ++row) sum += l[row];
     state.modules[i].approach.is_limiting = sum > 0.0;
     report.u_t -= sum;
   }

@@ -23,7 +23,7 @@ using Lanes = Eigen::Matrix<double, 2 * kPairs, 1>;
 /// is zero: so that sums end at the same zero as over the whole room. The compiler knows n, so that
 /// nothing asks which joints there are.
 template <typename Work>
-auto withPairs(int joints, Work work) {
+[[gnu::always_inline]] inline auto withPairs(int joints, Work work) {
   if (joints < 8) return work(std::integral_constant<int, 4>());
   if (joints < 10) return work(std::integral_constant<int, 5>());
   if (joints < 12) return work(std::integral_constant<int, 6>());

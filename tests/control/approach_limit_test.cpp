@@ -191,10 +191,10 @@ TEST(ApproachLimit, TakesTheObstaclesSpeedOffTheApproach) {
   EXPECT_NEAR(limit.excess(kGains, 1.8, -0.0125, state), -0.0045, 1e-15);
   SpeedRows rows;
   rows.size = 1;
-  limit.limitRows(kGains, 1.8, 0.5, state, 0, rows);
+  limit.limitRows(kGains, 1.8, 0.5, 1.0, state, 0, rows);
   EXPECT_NEAR(rows.row[0].v_max_m_per_s, 0.5 * 0.008, 1e-15);
   EXPECT_EQ(rows.row[0].presence, 1.0);
-  limit.limitRows(kGains, 0.0, 0.5, state, 0, rows);
+  limit.limitRows(kGains, 0.0, 0.5, 1.0, state, 0, rows);
   EXPECT_NEAR(rows.row[0].v_max_m_per_s, 0.5 * (kLimit_N / 200.0 - 0.002), 1e-15);
   const ScaledVector a = -ScaledVector::Unit(0);
   limit.observe(kGains, a, {0.0, 0.0}, JointVector::Zero(2), kPeriod_s, state);

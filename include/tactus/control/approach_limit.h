@@ -71,7 +71,7 @@ class ApproachLimit {
   /// For rows, from the first of them on, that limit the approach instead: v_max of (1) times the
   /// cosine of the angle between a row and F^, see docs/approach_speed_limit.md, and T m, of all
   /// alike.
-  void limitRows(const ForceGains& gains, double F_p_N, double cosine,
+  void limitRows(const ForceGains& gains, double F_p_N, double cosine, double presence,
                  const ApproachLimitState& state, int first, SpeedRows& rows) const noexcept;
 
  private:

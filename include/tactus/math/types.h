@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "tactus/math/pair.h"
+
 /// Fixed-capacity types. A robot has 2 to kMaxJoints moving joints, known when it is loaded; the
 /// storage is always that of the largest one, so nothing in the cycle touches the heap.
 namespace tactus {
@@ -78,10 +80,15 @@ ScaledVector scaled(const Eigen::MatrixBase<Derived>& v, const ScaledVector& fac
 
 /// a^T b. Every second pair of joints is added up in a row, and then both rows.
 inline double dot(const ScaledVector& a, const ScaledVector& b) noexcept {
-  using Four = Eigen::Vector4d;
-  Four rows = a.head<4>().cwiseProduct(b.head<4>());
-  for (int i = 4; i < kMaxJoints; i += 4) rows += a.segment<4>(i).cwiseProduct(b.segment<4>(i));
-  return (rows[0] + rows[2]) + (rows[1] + rows[3]);
+  const auto product = [&](int i) { return alignedPairAt(&a[i]) * alignedPairAt(&b[i]); };
+  Pair even = product(0);
+  Pair odd = product(2);
+  for (int i = 4; i < kMaxJoints; i += 4) {
+    even += product(i);
+    odd += product(i + 2);
+  }
+  const Pair sums = even + odd;
+  return sums[0] + sums[1];
 }
 
 /// A rigid pose: maps coordinates in frame B to frame A.
