@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/math/few_complementarity.h"
 #include "tactus/math/pair.h"
 
 namespace tactus {
@@ -25,17 +26,24 @@ void slowDown(const SpeedRows& rows, int task_size, Motion& motion) {
   motion.y *= share;
 }
 
-/// d = lacking + delta l; false if it was that.
-bool passOn(const RowVector& lacking, const RowVector& delta, const RowVector& l, RowVector& d) {
-  double most = 0.0;
-  double change = 0.0;
-  for (int i = 0; i < d.size(); ++i) {
-    const double before = d[i];
-    d[i] = lacking[i] + delta[i] * l[i];
-    most = std::max(most, lacking[i]);
-    change = std::max(change, std::abs(d[i] - before));
+/// Of a whole number of fours, which is worked on at once.
+void zeroRest(RowVector& v) {
+  for (auto i = v.size(); i % 4 != 0; ++i) v.data()[i] = 0.0;
+}
+
+/// d = lacking + delta l; false if it is what it was before, but for so much. What is beyond the
+/// rows is zero, or was in the first place.
+bool passOn(const RowVector& lacking, const RowVector& delta, const RowVector& l, double negligible,
+            const RowVector& before, RowVector& d) {
+  Pair change{0.0, 0.0};
+  for (int i = 0; i < d.size(); i += 4) {
+    for (int k = i; k < i + 4; k += 2) {
+      const Pair d_k = pairAt(lacking.data() + k) + pairAt(delta.data() + k) * pairAt(l.data() + k);
+      change = larger(change, magnitude(d_k - pairAt(before.data() + k)));
+      storePair(d_k, d.data() + k);
+    }
   }
-  return change > kFound * most;
+  return std::max(change[0], change[1]) > negligible;
 }
 
 }  // namespace
@@ -55,7 +63,7 @@ void RowProblem::multiply() noexcept {
   }
 }
 
-/// K and delta.
+/// K + diag(delta), and delta.
 void RowProblem::respond(const RowSpace& space, RowMatrix& K, RowVector& delta) const noexcept {
   const double difference = space.task - space.null_space;
   const Pair null_spaces{space.null_space, space.null_space};
@@ -65,76 +73,84 @@ void RowProblem::respond(const RowSpace& space, RowMatrix& K, RowVector& delta) 
   RowVector presence(rows_.size);
   RowVector opposition(rows_.size);
   for (int i = 0; i < rows_.size; ++i) {
-    const double length_squared = in_all_(i, i);
-    own[i] = std::max({space.null_space * length_squared + difference * in_task_(i, i),
-                       1e-3 * length_squared, 1e-4});
+    const double* const all = &in_all_(0, i);
+    const double* const task = &in_task_(0, i);
+    double* const K_i = &K(0, i);
+    const double length_squared = all[i];
+    own[i] = std::max(space.null_space * length_squared + difference * task[i],
+                      std::max(1e-3 * length_squared, 1e-4));
     const Pair own_i{own[i], own[i]};
-    const Pair presence_i{rows_.row[i].presence, rows_.row[i].presence};
+    const double p = rows_.row[i].presence;
     Pair sum{0.0, 0.0};
     presence[i] = opposition[i] = 0.0;  // i itself may be of the last pair
     for (int j = 0; j < i; j += 2) {
-      const Pair K_ij =
-          null_spaces * pairAt(&in_all_(j, i)) + differences * pairAt(&in_task_(j, i));
-      storePair(K_ij, &K(j, i));
+      const Pair K_ij = null_spaces * pairAt(all + j) + differences * pairAt(task + j);
+      storePair(K_ij, K_i + j);
+      K(i, j) = K_ij[0];
+      K(i, j + 1) = K_ij[1];
+      if (!isAny(K_ij < 0.0)) continue;
       const Pair against = K_ij < 0.0 ? K_ij : Pair{0.0, 0.0};
       const Pair o_ij =
-          presence_i * pairAt(&presence[j]) * (against * against / (own_i * pairAt(&own[j])));
+          Pair{p, p} * pairAt(&presence[j]) * (against * against / (own_i * pairAt(&own[j])));
       storePair(pairAt(&opposition[j]) + o_ij, &opposition[j]);
       sum += o_ij;
     }
     opposition[i] = sum[0] + sum[1];
-    presence[i] = rows_.row[i].presence;
-    K(i, i) = own[i];
-    for (int j = 0; j < i; ++j) K(i, j) = K(j, i);
+    presence[i] = p;
   }
   delta.resize(rows_.size);
   for (int i = 0; i < rows_.size; ++i) {
-    delta[i] = space.proximal * K(i, i);
-    if (opposition[i] == 0.0) continue;
-    const double most =
-        std::min(kYielding_N_s_m / rows_.row[i].damping_N_s_per_m, space.max_yielding * K(i, i));
-    delta[i] += most * std::min(1.0, opposition[i]);
+    delta[i] = space.proximal * own[i];
+    if (opposition[i] != 0.0) {
+      const double most =
+          std::min(kYielding_N_s_m / rows_.row[i].damping_N_s_per_m, space.max_yielding * own[i]);
+      delta[i] += most * std::min(1.0, opposition[i]);
+    }
+    K(i, i) = own[i] + delta[i];
   }
+  zeroRest(delta);
 }
 
-/// K: with delta. False if no products were left.
-bool RowProblem::repeat(const RowMatrix& K, const RowVector& delta, const RowVector& lacking,
-                        RowVector& l) noexcept {
-  Complementarity problem(K);
-  RowVector d = lacking;
-  bool is_whole = problem.solve(d, products_left_);
+/// K: with delta. negligible: change of what lacks.
+template <typename Problem>
+RowMultipliers RowProblem::repeat(const RowMatrix& K, const RowVector& delta,
+                                  const RowVector& lacking, double negligible) noexcept {
+  Problem problem(K);
+  RowVector d(rows_.size);
+  bool is_whole = problem.solve(lacking, products_left_);
   for (int i = 1; i < kRepetitions && is_whole; ++i) {
-    const bool is_new = passOn(lacking, delta, problem.l(), d);
+    const bool is_new = passOn(lacking, delta, problem.l(), negligible, i == 1 ? lacking : d, d);
     if (rows_.is_of_one_contact)
       problem.forget();
     else if (!is_new)
       break;
     is_whole = problem.solve(d, products_left_);
   }
-  l = problem.l();
-  return is_whole;
+  return {problem.l(), is_whole};
 }
 
 RowMultipliers RowProblem::solve(const RowVector& v_max_m_per_s, const RowSpace& space,
                                  const Motion& motion, double share) noexcept {
   RowVector lacking(rows_.size);
-  bool is_kept = true;
+  double most = 0.0;
   for (int i = 0; i < rows_.size; ++i) {
     const SpeedRow& row = rows_.row[i];
     lacking[i] = -v_max_m_per_s[i] - dot(row.a_scaled, motion.v_scaled) -
                  dot(row.a_task, motion.y, task_size_);
-    is_kept = is_kept && lacking[i] <= 0.0;
+    most = std::max(most, lacking[i]);
   }
-  if (is_kept) return {RowVector::Zero(rows_.size)};
+  if (most == 0.0) return {RowVector::Zero(rows_.size)};
+  zeroRest(lacking);
   multiply();
   RowMatrix K;
   RowVector delta;
   respond(space, K, delta);
-  for (int i = 0; i < rows_.size; ++i) K(i, i) += delta[i];
-  RowMultipliers found;
   const int for_others = products_left_ - static_cast<int>(share * products_left_);
   products_left_ -= for_others;
-  found.is_whole = repeat(K, delta, lacking, found.l);
+  const bool are_few = rows_.size <= FewComplementarity::kMost && !rows_.is_of_one_contact;
+  const RowMultipliers found = are_few
+                                   ? repeat<FewComplementarity>(K, delta, lacking, kFound * most)
+                                   : repeat<Complementarity>(K, delta, lacking, kFound * most);
   products_left_ += for_others;
   return found;
 }

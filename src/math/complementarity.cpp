@@ -17,7 +17,7 @@ constexpr int kStepProducts = 20;
 constexpr double kLeastPivot = 1e-15;  ///< of K_ii: rounding must not make K indefinite
 
 /// Where a row of a triangle begins.
-constexpr int rowAt(int i) noexcept { return i * (i + 1) / 2; }
+constexpr int rowAt(int i) noexcept { return (i * (i + 1)) >> 1; }
 
 /// The last ones by themselves: a pair of numbers that have only just been stored one by one waits
 /// until they have reached memory.
@@ -42,7 +42,9 @@ void subtract(double factor, const double* b, int size, double* a) noexcept {
 }  // namespace
 
 Complementarity::Complementarity(const RowMatrix& K) noexcept
-    : K_(K), l_(RowVector::Zero(K.rows())) {}
+    : K_(K), l_(RowVector::Zero(K.rows())) {
+  for (auto i = l_.size(); i % 4 != 0; ++i) l_.data()[i] = 0.0;
+}
 
 /// L of K = L L^T gets one row more.
 void Complementarity::hold(int row) noexcept {
@@ -146,12 +148,16 @@ inline bool Complementarity::goToZ() noexcept {
     const double from = l_[held_[i]];
     share = std::min(share, from / (from - z_[i]));
   }
+  if (is_whole) {
+    for (int i = 0; i < size_; ++i) l_[held_[i]] = z_[i];
+    return true;
+  }
   for (int i = 0; i < size_; ++i) {
     double& from = l_[held_[i]];
-    from = is_whole ? z_[i] : from + share * (z_[i] - from);
-    if (!is_whole && z_[i] <= 0.0 && from <= kTolerance * std::abs(z_[i])) from = 0.0;
+    from += share * (z_[i] - from);
+    if (z_[i] <= 0.0 && from <= kTolerance * std::abs(z_[i])) from = 0.0;
   }
-  return is_whole;
+  return false;
 }
 
 /// Until all that are held have multipliers.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "support/random.h"
+#include "tactus/math/few_complementarity.h"
 
 namespace tactus {
 namespace {
@@ -45,7 +46,8 @@ std::optional<Eigen::VectorXd> bruteForce(const Problem& p) {
 
 constexpr int kPlenty = 10'000'000;
 
-bool solve(const RowVector& d, Complementarity& problem) {
+template <typename Solver>
+bool solve(const RowVector& d, Solver& problem) {
   int products_left = kPlenty;
   return problem.solve(d, products_left);
 }
@@ -128,6 +130,82 @@ TEST(Complementarity, TakesNoMoreThanItsProductsAndOneStep) {
     ASSERT_LE((p.d - p.K * problem.l()).maxCoeff(), 1e-9 * (1.0 + p.K.norm() * problem.l().norm()));
   }
   EXPECT_GT(cut, 500);
+}
+
+TEST(FewComplementarity, FindsTheOneSolution) {
+  test::Random random(306);
+  int with_active = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const int rows = random.integer(1, FewComplementarity::kMost);
+    const Problem p(random, rows, random.chance(0.5) ? 0.0 : 0.9);
+    FewComplementarity problem(p.K);
+    ASSERT_TRUE(solve(p.d, problem));
+    const auto expected = bruteForce(p);
+    ASSERT_TRUE(expected);
+    ASSERT_LT((problem.l() - *expected).norm(), 1e-6 * (1.0 + expected->norm())) << i;
+    with_active += problem.l().maxCoeff() > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(with_active, 400);
+}
+
+/// Whatever was solved before, also where two rows all but exclude each other.
+TEST(FewComplementarity, FindsWhatComplementarityFinds) {
+  test::Random random(307);
+  int changed = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const int rows = random.integer(1, FewComplementarity::kMost);
+    const Problem p(random, rows, random.uniform(0.0, 0.999));
+    FewComplementarity going_on(p.K);
+    RowVector d = p.d;
+    for (int k = 0; k < 20; ++k) {
+      const RowVector before = going_on.l();
+      ASSERT_TRUE(solve(d, going_on));
+      Complementarity other(p.K);
+      ASSERT_TRUE(solve(d, other));
+      const double scale = 1.0 + other.l().norm();
+      ASSERT_LT((going_on.l() - other.l()).norm(), 1e-6 * scale) << i << " " << k;
+      for (int row = rows; row < FewComplementarity::kMost; ++row)
+        ASSERT_EQ(going_on.l().data()[row], 0.0) << "in the room beyond its rows";
+      changed += ((before.array() > 0.0) != (other.l().array() > 0.0)).any() ? 1 : 0;
+      const double size = random.logUniform(1e-3, 2.0);
+      for (double& entry : d) entry += random.uniform(-size, size);
+    }
+    going_on.forget();
+    ASSERT_TRUE(going_on.l().isZero(0.0));
+  }
+  EXPECT_GT(changed, 5000);
+}
+
+TEST(FewComplementarity, TakesNoMoreThanItsProductsAndOneStep) {
+  test::Random random(308);
+  int cut = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const int rows = random.integer(1, FewComplementarity::kMost);
+    const Problem p(random, rows, random.uniform(0.0, 0.999));
+    FewComplementarity problem(p.K);
+    const int products = random.integer(0, 200);
+    int left = products;
+    const bool is_whole = problem.solve(p.d, left);
+    ASSERT_LE(left, products);
+    ASSERT_GE(left, -60) << i;
+    ASSERT_GE(problem.l().minCoeff(), 0.0);
+    if (is_whole) continue;
+    ASSERT_LE(left, 0);
+    ++cut;
+    int more = kPlenty;
+    ASSERT_TRUE(problem.solve(p.d, more)) << "goes on where it was cut";
+    ASSERT_LE((p.d - p.K * problem.l()).maxCoeff(), 1e-9 * (1.0 + p.K.norm() * problem.l().norm()));
+  }
+  EXPECT_GT(cut, 300);
+}
+
+TEST(FewComplementarity, AsksForNothingWhereNothingLacks) {
+  test::Random random(309);
+  Problem p(random, 4, 0.0);
+  p.d = -p.d.cwiseAbs();
+  FewComplementarity problem(p.K);
+  ASSERT_TRUE(solve(p.d, problem));
+  EXPECT_TRUE(problem.l().isZero(0.0));
 }
 
 TEST(Complementarity, AsksForNothingWhereNothingLacks) {

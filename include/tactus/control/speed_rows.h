@@ -26,8 +26,8 @@ inline double speedAlong(const SpeedRow& row, int task_size, const Motion& motio
 struct SpeedRows {
   std::array<SpeedRow, kMaxRows> row;
   int size = 0;
-  /// Solved without the last repetition's solution: one contact has the motion, to the last bit,
-  /// that it had before there were more.
+  /// Solved by Complementarity, and without the last repetition's solution: one contact has the
+  /// motion, to the last bit, that it had before there were more.
   bool is_of_one_contact = false;
 };
 
@@ -83,8 +83,9 @@ class RowProblem {
  private:
   void multiply() noexcept;
   void respond(const RowSpace& space, RowMatrix& K, RowVector& delta) const noexcept;
-  bool repeat(const RowMatrix& K, const RowVector& delta, const RowVector& lacking,
-              RowVector& l) noexcept;
+  template <typename Problem>
+  RowMultipliers repeat(const RowMatrix& K, const RowVector& delta, const RowVector& lacking,
+                        double negligible) noexcept;
 
   const SpeedRows& rows_;
   int task_size_;

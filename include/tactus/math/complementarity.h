@@ -35,7 +35,8 @@ class Complementarity {
   /// The next solution begins at zero.
   void forget() noexcept;
 
-  const RowVector& l() const noexcept { return l_; }  ///< zero before the first solution
+  /// Zero before the first solution, and in the room of whole fours beyond its rows.
+  const RowVector& l() const noexcept { return l_; }
 
  private:
   void hold(int row) noexcept;
