@@ -133,13 +133,15 @@ RowMultipliers RowProblem::solve(const RowVector& v_max_m_per_s, const RowSpace&
                                  const Motion& motion, double share) noexcept {
   RowVector lacking(rows_.size);
   double most = 0.0;
+  bool is_kept = true;  // not of NaN, which has to reach the gate before the drives
   for (int i = 0; i < rows_.size; ++i) {
     const SpeedRow& row = rows_.row[i];
     lacking[i] = -v_max_m_per_s[i] - dot(row.a_scaled, motion.v_scaled) -
                  dot(row.a_task, motion.y, task_size_);
     most = std::max(most, lacking[i]);
+    is_kept = is_kept && lacking[i] <= 0.0;
   }
-  if (most == 0.0) return {RowVector::Zero(rows_.size)};
+  if (is_kept) return {RowVector::Zero(rows_.size)};
   zeroRest(lacking);
   multiply();
   RowMatrix K;

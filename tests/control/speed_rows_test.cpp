@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "support/rows_case.h"
 #include "tactus/math/contact_space.h"
 
@@ -74,6 +76,19 @@ TEST(SpeedRows, ThatExcludeEachOtherShareByForce) {
     const double force_0 = c.rows.row[0].damping_N_s_per_m * (0.1 - speed[0]);
     const double force_1 = c.rows.row[1].damping_N_s_per_m * (0.1 - speed[1]);
     ASSERT_NEAR(force_0, force_1, 0.1 * std::max(force_0, force_1)) << i;
+  }
+}
+
+/// Else the gate before the drives would not see it.
+TEST(SpeedRows, OfNaNMakeAMotionOfNaN) {
+  test::Random random(330);
+  for (int i = 0; i < 200; ++i) {
+    RowsCase c(random, random.integer(1, 8));
+    for (int row = 0; row < c.rows.size; ++row) c.rows.row[row].v_max_m_per_s = 1e3;
+    c.rows.row[random.integer(0, c.rows.size - 1)].v_max_m_per_s =
+        std::numeric_limits<double>::quiet_NaN();
+    RowProblem(c.rows, c.m).keep(c.motion);
+    ASSERT_FALSE(c.motion.v_scaled.allFinite()) << i;
   }
 }
 
