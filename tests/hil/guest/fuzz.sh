@@ -42,6 +42,8 @@ while kill -0 $sender 2>/dev/null; do
   sleep 0.2
 done
 wait $sender || fail "random_frames exits with $?"
+# Drives that are said to have power are cut off, and then a fault is over with its time limit alone.
+sleep 5
 restart
 kill $daemon
 wait $daemon || fail "tactusd exits with $?"
