@@ -52,12 +52,12 @@ bool solve(const RowVector& d, Solver& problem) {
   return problem.solve(d, products_left);
 }
 
-TEST(Complementarity, FindsTheOneSolution) {
-  test::Random random(301);
+template <typename Solver>
+void findTheOneSolution(test::Random& random, int draws, int most_rows, int least_active) {
   int with_active = 0;
-  for (int i = 0; i < 500; ++i) {
-    const Problem p(random, random.integer(1, 6), random.chance(0.5) ? 0.0 : 0.9);
-    Complementarity problem(p.K);
+  for (int i = 0; i < draws; ++i) {
+    const Problem p(random, random.integer(1, most_rows), random.chance(0.5) ? 0.0 : 0.9);
+    Solver problem(p.K);
     ASSERT_TRUE(solve(p.d, problem));
     const RowVector& l = problem.l();
     const auto expected = bruteForce(p);
@@ -65,7 +65,17 @@ TEST(Complementarity, FindsTheOneSolution) {
     ASSERT_LT((l - *expected).norm(), 1e-6 * (1.0 + expected->norm())) << i;
     with_active += l.maxCoeff() > 0.0 ? 1 : 0;
   }
-  EXPECT_GT(with_active, 100);
+  EXPECT_GT(with_active, least_active);
+}
+
+TEST(Complementarity, FindsTheOneSolution) {
+  test::Random random(301);
+  findTheOneSolution<Complementarity>(random, 500, 6, 100);
+}
+
+TEST(FewComplementarity, FindsTheOneSolution) {
+  test::Random random(306);
+  findTheOneSolution<FewComplementarity>(random, 2000, FewComplementarity::kMost, 400);
 }
 
 TEST(Complementarity, KeepsItsConditionsForAnyNumberOfRows) {
@@ -132,22 +142,6 @@ TEST(Complementarity, TakesNoMoreThanItsProductsAndOneStep) {
   EXPECT_GT(cut, 500);
 }
 
-TEST(FewComplementarity, FindsTheOneSolution) {
-  test::Random random(306);
-  int with_active = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const int rows = random.integer(1, FewComplementarity::kMost);
-    const Problem p(random, rows, random.chance(0.5) ? 0.0 : 0.9);
-    FewComplementarity problem(p.K);
-    ASSERT_TRUE(solve(p.d, problem));
-    const auto expected = bruteForce(p);
-    ASSERT_TRUE(expected);
-    ASSERT_LT((problem.l() - *expected).norm(), 1e-6 * (1.0 + expected->norm())) << i;
-    with_active += problem.l().maxCoeff() > 0.0 ? 1 : 0;
-  }
-  EXPECT_GT(with_active, 400);
-}
-
 /// Whatever was solved before, also where two rows all but exclude each other.
 TEST(FewComplementarity, FindsWhatComplementarityFinds) {
   test::Random random(307);
@@ -199,22 +193,23 @@ TEST(FewComplementarity, TakesNoMoreThanItsProductsAndOneStep) {
   EXPECT_GT(cut, 300);
 }
 
-TEST(FewComplementarity, AsksForNothingWhereNothingLacks) {
-  test::Random random(309);
-  Problem p(random, 4, 0.0);
+template <typename Solver>
+void askForNothing(test::Random& random, int rows) {
+  Problem p(random, rows, 0.0);
   p.d = -p.d.cwiseAbs();
-  FewComplementarity problem(p.K);
+  Solver problem(p.K);
   ASSERT_TRUE(solve(p.d, problem));
   EXPECT_TRUE(problem.l().isZero(0.0));
 }
 
 TEST(Complementarity, AsksForNothingWhereNothingLacks) {
   test::Random random(303);
-  Problem p(random, 5, 0.0);
-  p.d = -p.d.cwiseAbs();
-  Complementarity problem(p.K);
-  ASSERT_TRUE(solve(p.d, problem));
-  EXPECT_TRUE(problem.l().isZero(0.0));
+  askForNothing<Complementarity>(random, 5);
+}
+
+TEST(FewComplementarity, AsksForNothingWhereNothingLacks) {
+  test::Random random(309);
+  askForNothing<FewComplementarity>(random, FewComplementarity::kMost);
 }
 
 }  // namespace
