@@ -26,11 +26,6 @@ void slowDown(const SpeedRows& rows, int task_size, Motion& motion) {
   motion.y *= share;
 }
 
-/// Of a whole number of fours, which is worked on at once.
-void zeroRest(RowVector& v) {
-  for (auto i = v.size(); i % 4 != 0; ++i) v.data()[i] = 0.0;
-}
-
 /// d = lacking + delta l; false if it is what it was before, but for so much. What is beyond the
 /// rows is zero, or was in the first place.
 bool passOn(const RowVector& lacking, const RowVector& delta, const RowVector& l, double negligible,

@@ -8,16 +8,14 @@
 namespace tactus {
 namespace {
 
-constexpr double kTolerance = 1e-12;
 /// As many as one contact with friction has are solved by plain sums and quotients; with more,
 /// whose solution takes most of the time, by pairs and products.
 constexpr int kFew = 4;
 /// What a step costs beside its products, counted as such.
 constexpr int kStepProducts = 20;
-constexpr double kLeastPivot = 1e-15;  ///< of K_ii: rounding must not make K indefinite
 
 /// Where a row of a triangle begins.
-constexpr int rowAt(int i) noexcept { return (i * (i + 1)) >> 1; }
+constexpr int rowAt(int i) noexcept { return i * (i + 1) / 2; }
 
 /// The last ones by themselves: a pair of numbers that have only just been stored one by one waits
 /// until they have reached memory.
@@ -43,7 +41,7 @@ void subtract(double factor, const double* b, int size, double* a) noexcept {
 
 Complementarity::Complementarity(const RowMatrix& K) noexcept
     : K_(K), l_(RowVector::Zero(K.rows())) {
-  for (auto i = l_.size(); i % 4 != 0; ++i) l_.data()[i] = 0.0;
+  zeroRest(l_);
 }
 
 /// L of K = L L^T gets one row more.
@@ -155,7 +153,7 @@ inline bool Complementarity::goToZ() noexcept {
   for (int i = 0; i < size_; ++i) {
     double& from = l_[held_[i]];
     from += share * (z_[i] - from);
-    if (z_[i] <= 0.0 && from <= kTolerance * std::abs(z_[i])) from = 0.0;
+    if (z_[i] <= 0.0 && from <= kRowTolerance * std::abs(z_[i])) from = 0.0;
   }
   return false;
 }
@@ -203,7 +201,7 @@ inline int Complementarity::neediest(const RowVector& d) noexcept {
   for (int i = 0; i < rows; ++i) {
     const double lack = lack_[i];
     if (lack <= most || l_[i] > 0.0) continue;
-    if (lack <= kTolerance * (std::abs(d[i]) + std::abs(d[i] - lack))) continue;
+    if (lack <= kRowTolerance * (std::abs(d[i]) + std::abs(d[i] - lack))) continue;
     most = lack;
     found = i;
   }

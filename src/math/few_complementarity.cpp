@@ -10,9 +10,6 @@
 namespace tactus {
 namespace {
 
-/// As of Complementarity.
-constexpr double kFewTolerance = 1e-12;
-constexpr double kFewLeastPivot = 1e-15;
 /// Of an exchange and a solution, and what they cost beside.
 constexpr int kFewStepProducts = 2 * FewComplementarity::kMost * FewComplementarity::kMost + 20;
 
@@ -50,7 +47,7 @@ void FewComplementarity::forget() noexcept {
 /// Of l and y of a row.
 void FewComplementarity::exchange(int row) noexcept {
   Column& own = column_[row];
-  const double least = held_[row] != 0 ? 0.0 : kFewLeastPivot * K_(row, row);
+  const double least = held_[row] != 0 ? 0.0 : kLeastPivot * K_(row, row);
   const double inverse = 1.0 / std::max(own[row], least);
   const Pair own_0 = pairAt(&own[0]);
   const Pair own_2 = pairAt(&own[2]);
@@ -91,7 +88,7 @@ inline bool FewComplementarity::isSolution(const RowVector& d, const Column& fou
   for (int i = 0; i < kMost; i += 2) {
     const Pair d_i = pairAt(d.data() + i);
     const Pair has = pairAt(&found[i]);
-    const PairMask lacks = ~(d_i - has <= kFewTolerance * (magnitude(d_i) + magnitude(has)));
+    const PairMask lacks = ~(d_i - has <= kRowTolerance * (magnitude(d_i) + magnitude(has)));
     is_wrong |= (maskAt(&held_[i]) & ~(has > 0.0)) | (maskAt(&other_[i]) & lacks);
   }
   return !isAny(is_wrong);
@@ -114,7 +111,7 @@ inline bool FewComplementarity::goTo(const Column& z) noexcept {
       continue;
     }
     l_[i] += share * (z[i] - l_[i]);
-    if (z[i] <= 0.0 && l_[i] <= kFewTolerance * std::abs(z[i])) l_[i] = 0.0;
+    if (z[i] <= 0.0 && l_[i] <= kRowTolerance * std::abs(z[i])) l_[i] = 0.0;
     if (!(l_[i] > 0.0)) exchange(i);
   }
   return is_whole;
@@ -127,7 +124,7 @@ inline int FewComplementarity::neediest(const RowVector& d, const Column& has) c
   for (int i = 0; i < rows_; ++i) {
     const double lack = d[i] - has[i];
     if (held_[i] != 0 || lack <= most) continue;
-    if (lack <= kFewTolerance * (std::abs(d[i]) + std::abs(has[i]))) continue;
+    if (lack <= kRowTolerance * (std::abs(d[i]) + std::abs(has[i]))) continue;
     most = lack;
     found = i;
   }

@@ -16,6 +16,15 @@ using RowVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMax
 using RowMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxRows, kMaxRows>;
 
+/// Of the sum of the magnitudes of a row's d and K l: by less it lacks nothing.
+inline constexpr double kRowTolerance = 1e-12;
+inline constexpr double kLeastPivot = 1e-15;  ///< of K_ii: rounding must not make K indefinite
+
+/// In the room of whole fours, which is worked on at once, what is beyond the rows.
+inline void zeroRest(RowVector& v) noexcept {
+  for (auto i = v.size(); i % 4 != 0; ++i) v.data()[i] = 0.0;
+}
+
 /// Linear complementarity problems
 ///   l >= 0,   K l >= d,   l^T (K l - d) = 0
 /// for one symmetric positive definite K: the one solution of each, with relative errors of about
