@@ -1,5 +1,7 @@
 #include "tactus/doctor/inspection.h"
 
+#include <fmt/format.h>
+
 #include "tactus/doctor/bus_checks.h"
 #include "tactus/doctor/disk_check.h"
 #include "tactus/doctor/interrupt_checks.h"
@@ -23,6 +25,18 @@ std::filesystem::path existingFolder(std::filesystem::path folder) {
   return folder;
 }
 
+Finding inspectDisk(const MachineRoot& root, const MachineNeeds& needs) {
+  const std::filesystem::path folder = existingFolder(root / needs.log_folder);
+  std::error_code problem;
+  const auto space = std::filesystem::space(folder, problem);
+  if (!problem && std::filesystem::is_directory(folder, problem))
+    return checkDisk(needs.log_folder, static_cast<double>(space.available), needs.log);
+  return {"disk", Level::kNotFit,
+          fmt::format("{}: cannot be made, {}", needs.log_folder.string(),
+                      problem ? problem.message() : folder.string() + " is no folder"),
+          "the daemon does not start without a folder for its log", "name another one with -o"};
+}
+
 }  // namespace
 
 std::vector<Finding> inspectMachine(const MachineRoot& root, const MachineNeeds& needs) {
@@ -42,12 +56,7 @@ std::vector<Finding> inspectMachine(const MachineRoot& root, const MachineNeeds&
     append(findings, checkInterrupts(root, bus.interface, real_time.priority));
   }
   if (needs.gpio) findings.push_back(checkLines(surveyGpio(*needs.gpio)));
-  const std::filesystem::path folder = existingFolder(root / needs.log_folder);
-  std::error_code problem;
-  const auto space = std::filesystem::space(folder, problem);
-  if (!problem)
-    findings.push_back(
-        checkDisk(needs.log_folder, static_cast<double>(space.available), needs.log));
+  findings.push_back(inspectDisk(root, needs));
   return findings;
 }
 

@@ -143,5 +143,22 @@ TEST(Inspection, LooksAtAllThatARunNeeds) {
   EXPECT_FALSE(isFit(inspectMachine(machine.root(), needs)));
 }
 
+TEST(Inspection, SaysThatAFolderForTheLogCannotBeMade) {
+  const MachineTree machine;
+  machine.write("data/file", "");
+  MachineNeeds needs;
+  needs.log.bytes_per_s = 1.0;
+  const auto disk = [&](const char* folder) {
+    needs.log_folder = folder;
+    return inspectMachine(machine.root(), needs).back();
+  };
+  EXPECT_NE(disk("data/new/folder").level, Level::kNotFit) << "it will be made";
+  const Finding finding = disk("data/file/folder");
+  EXPECT_EQ(finding.level, Level::kNotFit);
+  EXPECT_TRUE(contains(finding.what, "data/file/folder: cannot be made")) << finding.what;
+  EXPECT_TRUE(contains(finding.what, "data/file is no folder")) << finding.what;
+  expectMendable(finding);
+}
+
 }  // namespace
 }  // namespace tactus
