@@ -127,6 +127,7 @@ PathContacts followPath(const ControllerConfig& config, const PlantConfig& plant
   const ControllerConfig alone = undisturbed(config);
   const Controller controller(alone);
   ControllerState state = controller.initialState();
+  controller.begin(state);
   ControllerOutput output;
   ChainPose pose;
   arm.computePose(state.q_desired, pose);

@@ -28,6 +28,14 @@ void rampOn(const JointLimits& limits, double duration_s, JointVector& velocity)
   velocity -= velocity.cwiseMax(-most).cwiseMin(most);
 }
 
+/// zones: as they follow from these gains, or from others.
+inline JointLimitCost evaluateLimits(const JointLimitAvoidance& avoidance,
+                                     const JointLimitAvoidanceGains& gains, const JointVector& q,
+                                     JointLimitZones& zones) noexcept {
+  if (!isSame(zones.gains, gains)) zones = avoidance.zones(gains);
+  return avoidance.evaluate(zones, q);
+}
+
 }  // namespace
 
 Controller::Controller(const ControllerConfig& config)
@@ -41,6 +49,10 @@ Controller::Controller(const ControllerConfig& config)
       gate_(config, inv_sqrt_weights_) {
   if (config.has_joint_limit_avoidance)
     joint_limit_avoidance_.emplace(config.limits, inv_sqrt_weights_);
+  if (config.q_posture && !config.has_joint_limit_avoidance)
+    throw std::invalid_argument("a posture needs joint-limit avoidance");
+  if (config.q_posture)
+    posture_.emplace(*config.q_posture, config.limits.max_velocity, inv_sqrt_weights_);
   if (std::ranges::any_of(config.tactile_modules,
                           [](const auto& m) { return m.cover.has_value(); }))
     for (const TactileModuleConfig& module : config.tactile_modules)
@@ -85,6 +97,7 @@ void Controller::prepare(const Gains& gains, double t_s, ControllerState& state,
   prepared.is_leaning = state.is_leaning;
   prepared.task_gains = gains.task;
   prepared.limit_gains = gains.joint_limit_avoidance;
+  if (posture_) prepared.posture_gains = gains.posture;
   computeMotion(gains, prepared.path_time_s, state, prepared);
 }
 
@@ -95,7 +108,8 @@ void Controller::update(const RobotInput& input, const Gains& gains, double t_s,
   if (prepared.path_time_s != output.path_time_s || prepared.q_desired != state.q_desired ||
       prepared.push != state.contact.push || prepared.return_share != state.return_share ||
       prepared.is_leaning != state.is_leaning || !isSame(prepared.task_gains, gains.task) ||
-      !isSame(prepared.limit_gains, gains.joint_limit_avoidance))
+      !isSame(prepared.limit_gains, gains.joint_limit_avoidance) ||
+      (posture_ && !isSame(prepared.posture_gains, gains.posture)))
     computeMotion(gains, output.path_time_s, state, prepared);
   prepared.path_time_s = std::numeric_limits<double>::quiet_NaN();
   respond(input, gains, period_s, prepared, state, output);
@@ -108,7 +122,7 @@ void Controller::computeMotion(const Gains& gains, double path_time_s, Controlle
   Motion& motion = prepared.motion;
   motion.y = prepared.kinematics.y_eff;
   if (joint_limit_avoidance_) {
-    avoidJointLimits(gains, prepared.kinematics, state, motion);
+    lowerCost(gains, prepared.kinematics, state, motion);
   } else {
     motion.v_scaled.setZero();
   }
@@ -190,15 +204,27 @@ void Controller::passTime(double duration_s, ControllerState& state) const noexc
   state.return_share = std::min(1.0, state.return_share + duration_s / kReturnRise_s);
 }
 
-JointLimitCost Controller::limitCost(const Gains& gains, ControllerState& state) const noexcept {
-  if (!isSame(state.zones.gains, gains.joint_limit_avoidance))
-    state.zones = joint_limit_avoidance_->zones(gains.joint_limit_avoidance);
-  return joint_limit_avoidance_->evaluate(state.zones, state.q_desired);
+JointLimitCost Controller::limitCost(const JointVector& q, const Gains& gains,
+                                     ControllerState& state) const noexcept {
+  return evaluateLimits(*joint_limit_avoidance_, gains.joint_limit_avoidance, q, state.zones);
 }
 
-void Controller::avoidJointLimits(const Gains& gains, const TaskKinematics& kinematics,
-                                  ControllerState& state, Motion& motion) const noexcept {
-  const JointLimitCost cost = limitCost(gains, state);
+/// Of joint limits and posture.
+JointLimitCost Controller::costAt(const JointVector& q, const Gains& gains,
+                                  ControllerState& state) const noexcept {
+  if (!posture_) return limitCost(q, gains, state);
+  JointLimitCost cost = limitCost(q, gains, state);
+  cost.gradient += posture_->gradient(gains.posture, q);
+  return cost;
+}
+
+void Controller::lowerCost(const Gains& gains, const TaskKinematics& kinematics,
+                           ControllerState& state, Motion& motion) const noexcept {
+  // Without a call where there is no posture, as in most scenes.
+  const JointLimitCost cost =
+      posture_ ? costAt(state.q_desired, gains, state)
+               : evaluateLimits(*joint_limit_avoidance_, gains.joint_limit_avoidance,
+                                state.q_desired, state.zones);
   motion.limit_nearness = cost.nearness;
   motion.v_scaled = -cost.gradient;
   if (state.return_share < 1.0)

@@ -38,9 +38,8 @@ FreeAcceleration Controller::freeAcceleration(const Gains& gains, double path_ti
   free.cost_change.setZero();
   if (!joint_limit_avoidance_) return free;
   const JointVector q_before = state.q_desired - period_s * state.velocity_before;
-  free.cost_change =
-      state.return_share * (joint_limit_avoidance_->evaluate(state.zones, q_before).gradient -
-                            limitCost(gains, state).gradient);
+  free.cost_change = state.return_share * (costAt(q_before, gains, state).gradient -
+                                           costAt(state.q_desired, gains, state).gradient);
   return free;
 }
 

@@ -14,7 +14,7 @@ constexpr double kBeside = 1e-4;
 
 void Controller::restart(const Gains& gains, ControllerState& state) const noexcept {
   if (joint_limit_avoidance_ && state.return_share > 0.0) {  // else it has not moved since
-    state.way_out_before = -limitCost(gains, state).gradient;
+    state.way_out_before = -limitCost(state.q_desired, gains, state).gradient;
     softenWayOut(state.return_share, ScaledVector::Zero(), state.way_out_added,
                  state.way_out_before);
   }
@@ -36,21 +36,28 @@ void Controller::place(const JointVector& q, const Gains& gains,
     return reading.contact.force_N > gains.force.transition.release_force_N;
   };
   state.is_leaning = config_.force_control && std::ranges::any_of(state.modules, isPushed);
-  state.way_out_added = -limitCost(gains, state).gradient;
+  state.way_out_added = -costAt(state.q_desired, gains, state).gradient;
   if (state.is_leaning) state.way_out_added -= state.way_out_before;
 }
 
 void Controller::begin(ControllerState& state) const noexcept {
   const JointVector beside = state.q_desired - config_.q_start;
-  if (beside.cwiseAbs().maxCoeff() > kBeside) state.return_share = 0.0;
+  // A scene may begin far from its posture, and where it begins.
+  if (posture_ || beside.cwiseAbs().maxCoeff() > kBeside) state.return_share = 0.0;
 }
 
 void Controller::goOn(const Gains& gains, ControllerState& state) const noexcept {
   state.retreat.is_under_way = false;
-  if (!state.retreat.has_moved) return;
-  state.retreat.has_moved = false;
-  restart(gains, state);
-  place(JointVector(state.q_desired), gains, state);
+  if (state.retreat.has_moved) {
+    state.retreat.has_moved = false;
+    restart(gains, state);
+    place(JointVector(state.q_desired), gains, state);
+  } else if (posture_ && state.return_share > 0.0) {  // else it only begins
+    // A hold has changed nothing for the law, but the posture may lead on by a jump.
+    state.return_share = 0.0;
+    state.is_leaning = false;
+    state.way_out_added = -costAt(state.q_desired, gains, state).gradient;
+  }
 }
 
 }  // namespace tactus

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -163,6 +164,36 @@ void checkStart(const Scene& scene, Warnings& warnings) {
       "file a restart would move the arm from anywhere");
 }
 
+/// Two costs end somewhere between them.
+void checkPosture(const Scene& scene, Warnings& warnings) {
+  const ControllerConfig& config = scene.controller;
+  if (!config.q_posture) return;
+  const JointLimitAvoidanceGains& gains = config.gains.joint_limit_avoidance;
+  Warnings joints;
+  double most = 1.0;
+  for (int i = 0; i < config.chain.size(); ++i) {
+    const double lower = config.limits.lower[i], upper = config.limits.upper[i];
+    if (!std::isfinite(upper - lower) || upper == lower) continue;
+    const double q = (*config.q_posture)[i];
+    const double left = 2.0 * std::min(q - lower, upper - q) / (upper - lower);
+    if (left >= gains.active_fraction) continue;
+    joints.push_back(scene.joint_names[i]);
+    most = std::min(most, left);
+  }
+  if (gains.gain == 0.0) {
+    warnings.emplace_back(
+        "redundancy.posture may press joints against their limits, and drag the tool along: the "
+        "gain "
+        "of joint_limit_avoidance is 0");
+  } else if (!joints.empty()) {
+    warnings.push_back(
+        fmt::format("redundancy.posture is not reached, as joint_limit_avoidance drives joints "
+                    "away from there; "
+                    "with an active_fraction below {:.2f} it does not: {}",
+                    std::floor(100.0 * most) / 100.0, fmt::join(joints, " ")));
+  }
+}
+
 }  // namespace
 
 std::vector<CoverReport> coversAtStart(const Scene& scene) {
@@ -183,6 +214,7 @@ std::vector<std::string> checkArm(const Scene& scene) {
   checkEfforts(scene, warnings);
   checkDrives(scene, warnings);
   checkStart(scene, warnings);
+  checkPosture(scene, warnings);
   return warnings;
 }
 

@@ -143,7 +143,8 @@ class LogReplay {
         gains_(scene_.controller.gains),
         used_(gains_) {
     refuseUnknown(request.logs, LogContinuity(scene_.period_s, first.has(kMissedCycles),
-                                              scene_.controller.has_joint_limit_avoidance));
+                                              scene_.controller.has_joint_limit_avoidance,
+                                              scene_.controller.q_posture.has_value()));
     if (!request.output.empty()) csv_.emplace(request.output, shape_);
   }
 

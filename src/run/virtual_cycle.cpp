@@ -18,7 +18,9 @@ Mode modeAfter(Mode before, Fault fault, const RetreatState& retreat) {
 VirtualCycle::VirtualCycle(const Scene& scene, const JointVector& q)
     : controller_(scene.controller),
       period_s_(scene.period_s),
-      state_(controller_.initialState(q)) {}
+      state_(controller_.initialState(q)) {
+  controller_.begin(state_);
+}
 
 void VirtualCycle::note(Fault fault, int module) noexcept {
   if (end_.fault != Fault::kNone) return;

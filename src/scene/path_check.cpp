@@ -46,6 +46,7 @@ std::string laggingPath(const Scene& scene) {
   const auto cycles = std::llround(std::min(last_s / scene.period_s, kMaxFollowedCycles));
   const Controller controller(config);
   ControllerState state = controller.initialState();
+  controller.begin(state);
   ControllerOutput output;
   for (long long cycle = 0; cycle < cycles; ++cycle) {
     const double t_s = static_cast<double>(cycle) * scene.period_s;

@@ -51,6 +51,7 @@ Gains slowedFor(double step_s, const ControllerConfig& config) {
   Gains gains = config.gains;
   double& beta_per_s = gains.task.drift_gain_per_s;
   beta_per_s = std::min(beta_per_s, 1.0 / step_s);
+  gains.posture.gain_per_s = std::min(gains.posture.gain_per_s, 0.5 / step_s);
   if (!config.has_joint_limit_avoidance) return gains;
   const ScaledVector inv_sqrt_weights =
       scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones());

@@ -22,6 +22,14 @@ void checkJointSpace(const CheckedScene& c) {
   }
 }
 
+/// Without a cost at its limits the null space, led to the posture, would press a joint against
+/// one, and what the limit keeps it from doing would drag the tool along.
+void checkPosture(const CheckedScene& c) {
+  if (!c.scene.posture || c.scene.has_joint_limit_avoidance) return;
+  c.fail("redundancy.joint_limit_avoidance", "is missing",
+         "a section beside a posture, which would press joints against their limits");
+}
+
 /// At rest the sensor shows F_th, or F_act + F_th: what it cannot show is a fault.
 void checkSensorRange(const CheckedScene& c) {
   const ForceGains& gains = c.scene.gains.force;
@@ -183,6 +191,7 @@ void checkScene(const YamlNode& root, const SceneConfig& scene, const LoadedRobo
                 const JointVector& q_start) {
   const CheckedScene checked{root, scene, robot, q_start};
   checkTask(checked);
+  checkPosture(checked);
   checkController(checked);
   checkDuration(checked);
   checkPeriod(checked);

@@ -24,6 +24,28 @@ Table<JointLimitAvoidanceGains> avoidanceKeys() {
   };
 }
 
+Row<SceneConfig> postureSection() {
+  using Gain = PostureGains;
+  return optional(group<SceneConfig>(
+      "posture", "leads the joints to a posture through the null space; absent: nothing does",
+      join(inside(&SceneConfig::posture, Table<PostureSection>{optional(oneAJoint(
+                                             "positions", "m or rad", within(-1e6, 1e6),
+                                             "of the joints there; absent: the robot's home",
+                                             &PostureSection::positions))}),
+           inside(&SceneConfig::gains,
+                  inside(&Gains::posture,
+                         live(Table<Gain>{
+                             withSymbol("k", number("gain_per_s", "1/s", within(0, 10),
+                                                    "how fast joints go there, for what they are "
+                                                    "away; 0: not at all",
+                                                    &Gain::gain_per_s)),
+                             number("max_speed_share", "", within(0.001, 1),
+                                    "of the largest velocity of each joint, no faster",
+                                    &Gain::max_speed_share),
+                         })))),
+      [](SceneConfig& scene) { scene.posture.emplace(); }));
+}
+
 Row<SceneConfig> redundancySection() {
   return optional(group<SceneConfig>(
       "redundancy", "how the joints share a motion",
@@ -39,6 +61,7 @@ Row<SceneConfig> redundancySection() {
               inside(&SceneConfig::gains,
                      inside(&Gains::joint_limit_avoidance, live(avoidanceKeys()))),
               [](SceneConfig& scene) { scene.has_joint_limit_avoidance = true; })),
+          postureSection(),
       }));
 }
 

@@ -70,6 +70,15 @@ JointVector readStart(const YamlNode& root, const SceneConfig& config, const Loa
   return q_start;
 }
 
+JointVector readPosture(const YamlNode& root, const PostureSection& posture,
+                        const LoadedRobot& robot) {
+  if (!posture.positions) return toJointVector(robot.config.home, robot.root, "home", robot.chain);
+  constexpr const char* kKey = "redundancy.posture.positions";
+  const JointVector q = toJointVector(*posture.positions, root, kKey, robot.chain);
+  checkWithinLimits(q, root, kKey, robot.chain);
+  return q;
+}
+
 TaskConfig makeTask(const SceneConfig& config) {
   TaskConfig task = config.task;
   if (config.source == TaskSource::kCommands) {
@@ -109,6 +118,7 @@ ControllerConfig makeController(const YamlNode& root, const SceneConfig& config,
           ? withoutScale(toJointVector(*config.weights, root, "redundancy.weights", chain))
           : JointVector(JointVector::Ones(q_start.size()));
   controller.has_joint_limit_avoidance = config.has_joint_limit_avoidance;
+  if (config.posture) controller.q_posture = readPosture(root, *config.posture, robot);
   controller.gains = config.gains;
   if (!config.controller) return controller;
   for (const TactileModuleSection& module : robot.config.tactile_modules) {

@@ -5,6 +5,7 @@ namespace tactus {
 std::vector<std::string> stageNames(const ControllerConfig& config) {
   std::vector<std::string> names = {"trajectory", "kinematics", "pseudoinverse"};
   if (config.has_joint_limit_avoidance) names.push_back("joint_limit_avoidance");
+  if (config.q_posture) names.push_back("posture");
   if (!config.tactile_modules.empty()) names.push_back("tactile_module");
   if (config.force_control) {
     names.insert(names.end(), {"contact_space", "contact_transition"});

@@ -20,6 +20,7 @@ ControllerConfig clearController(test::Random& random) {
   config.limits.max_velocity = random.vector(n, 0.5, 3.0);
   config.limits.max_acceleration.setConstant(random.logUniform(2.0, 300.0));
   config.has_joint_limit_avoidance = random.chance(0.5);
+  if (config.has_joint_limit_avoidance) config.q_posture = JointVector::Constant(n, 0.3);
   for (Waypoint& waypoint : config.task.trajectory.waypoints) {
     waypoint.displacement_m = random.vector<Vector3>(3, -1.0, 1.0);
     waypoint.speed_m_per_s = random.logUniform(0.05, 2.0);

@@ -92,14 +92,25 @@ TEST(ControllerStages, RefusesALawWithoutAModule) {
   EXPECT_THROW(Controller{config}, std::invalid_argument);
 }
 
+TEST(ControllerStages, RefusesAPostureWithoutJointLimitAvoidance) {
+  test::Random random(248);
+  ControllerConfig config = test::fullController(random, 7, Variant::kNullSpace);
+  config.q_posture = config.q_start;
+  EXPECT_NO_THROW(Controller{config});
+  config.has_joint_limit_avoidance = false;
+  EXPECT_THROW(Controller{config}, std::invalid_argument);
+}
+
 TEST(ControllerStages, EveryStagePresentDoesChangeTheMotion) {
   test::Random random(247);
-  const ControllerConfig config = test::fullController(random, 9, Variant::kNullTask);
+  ControllerConfig config = test::fullController(random, 9, Variant::kNullTask);
+  config.q_posture = JointVector::Constant(9, 0.3);
   const auto run = test::record(Controller(config), random, 500);
-  for (const int stage : {0, 1}) {
+  for (const int stage : {0, 1, 2}) {
     ControllerConfig less = config;
+    if (stage < 2) less.q_posture.reset();
     if (stage == 0) less.has_joint_limit_avoidance = false;
-    if (stage == 1) less.force_control.reset();
+    if (stage == 2) less.force_control.reset();
     const Controller other(less);
     ControllerState state = other.initialState();
     ControllerOutput output;

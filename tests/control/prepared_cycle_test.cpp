@@ -7,7 +7,15 @@
 namespace tactus {
 namespace {
 
-enum class Ahead { kRight, kNever, kWrongTime, kBeforeCoasting, kOtherTask, kOtherLimits };
+enum class Ahead {
+  kRight,
+  kNever,
+  kWrongTime,
+  kBeforeCoasting,
+  kOtherTask,
+  kOtherLimits,
+  kOtherPosture
+};
 
 /// The same run, where now and then cycles are missed.
 std::vector<ControllerOutput> runAhead(const Controller& controller, std::uint64_t seed,
@@ -25,10 +33,11 @@ std::vector<ControllerOutput> runAhead(const Controller& controller, std::uint64
       controller.prepare(controller.initialGains(), t_s + 0.001, state, prepared);
     if (ahead == Ahead::kBeforeCoasting)
       controller.prepare(controller.initialGains(), t_s, state, prepared);
-    if (ahead == Ahead::kOtherTask || ahead == Ahead::kOtherLimits) {
+    if (ahead >= Ahead::kOtherTask) {
       Gains others = controller.initialGains();
       if (ahead == Ahead::kOtherTask) others.task.drift_gain_per_s *= 0.5;
       if (ahead == Ahead::kOtherLimits) others.joint_limit_avoidance.gain *= 3.0;
+      if (ahead == Ahead::kOtherPosture) others.posture.gain_per_s *= 3.0;
       controller.prepare(others, t_s, state, prepared);
     }
     if (cycle % 50 == 49) controller.coast(2, 0.001, state);
@@ -47,7 +56,7 @@ void expectNoBitChanged(const ControllerConfig& config) {
   const Controller controller(config);
   const std::vector<ControllerOutput> expected = runAhead(controller, 7, Ahead::kNever);
   for (const Ahead ahead : {Ahead::kRight, Ahead::kWrongTime, Ahead::kBeforeCoasting,
-                            Ahead::kOtherTask, Ahead::kOtherLimits}) {
+                            Ahead::kOtherTask, Ahead::kOtherLimits, Ahead::kOtherPosture}) {
     const std::vector<ControllerOutput> outputs = runAhead(controller, 7, ahead);
     for (std::size_t i = 0; i < outputs.size(); ++i) test::expectSame(outputs[i], expected[i]);
   }
@@ -56,8 +65,11 @@ void expectNoBitChanged(const ControllerConfig& config) {
 
 TEST(PreparedCycle, ChangesNoBit) {
   test::Random random(101);
-  for (const auto& [variant, level] : test::allLaws())
-    expectNoBitChanged(test::fullController(random, random.integer(3, 16), variant, level));
+  for (const auto& [variant, level] : test::allLaws()) {
+    ControllerConfig config = test::fullController(random, random.integer(3, 16), variant, level);
+    config.q_posture = JointVector::Constant(config.chain.size(), 0.3);
+    expectNoBitChanged(config);
+  }
 }
 
 TEST(PreparedCycle, IsUsedOnceOnly) {

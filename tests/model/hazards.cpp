@@ -113,6 +113,11 @@ constexpr auto kHazards = std::to_array<Hazard>({
      "`EnableWait.CountsTheLineOnceItWasOff`, `hil.told`", "an enable line that was on before",
      "waits until it was off and is on", "before motion", "who switches has to look",
      "mode `ready`"},
+    {kUnasked, "links move to `redundancy.posture` while the tool holds", Fault::kNone,
+     "`Posture.BeginsSoftlyAlsoWhereTheSceneBegins`, `Posture.GoesOnSoftlyAfterAHold`, "
+     "`Posture.IsBoundedInItsSpeedAndNotTurned`",
+     "the law, where they touch something", "gives way", "T",
+     "up to `max_speed_share` of the joints' speeds while the arm runs", "mode `running`"},
     {kUnasked, "an encoder has lost its counts, where the scene begins wherever the arm is",
      Fault::kNone, "`MeasuredStart.PutsAJointBesideItsLimitOnIt`",
      "a start beyond limits or `clearance`, else nothing", "refused, else none", "before motion",

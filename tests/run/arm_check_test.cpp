@@ -206,6 +206,23 @@ TEST(ArmCheck, WarnsOfDrivesThatGiveWayForGood) {
   EXPECT_FALSE(has(checkArm(test::shippedScene(name)), part));
 }
 
+TEST(ArmCheck, TellsOfAPostureThatIsNotReached) {
+  Scene scene = test::shippedScene("commands");
+  const std::string what = "redundancy.posture is not reached";
+  EXPECT_FALSE(has(checkArm(scene), what)) << "there is none";
+  scene = test::shippedScene("home");
+  EXPECT_FALSE(has(checkArm(scene), what)) << "the shipped one is";
+  scene = test::shippedScene("commands", {{"redundancy.posture", "{}"}});
+  scene.controller.q_posture =
+      0.5 * (scene.controller.limits.lower + scene.controller.limits.upper);
+  EXPECT_FALSE(has(checkArm(scene), what)) << "in the middle";
+  (*scene.controller.q_posture)[4] = 0.99 * scene.controller.limits.upper[4];
+  EXPECT_TRUE(has(checkArm(scene), "below 0.00 it does not: " + scene.joint_names[4]));
+  scene.controller.gains.joint_limit_avoidance.gain = 0.0;
+  EXPECT_FALSE(has(checkArm(scene), what));
+  EXPECT_TRUE(has(checkArm(scene), "may press joints against their limits"));
+}
+
 TEST(ArmCheck, TellsOfAStartThatTheDaemonRefuses) {
   Scene scene = test::shippedScene("commands", {{"task.commands.start_measured", "true"}});
   ASSERT_FALSE(scene.hardware->gpio);

@@ -144,12 +144,28 @@ TEST(SceneLoad, MeasuresOnlyWithTheVariantNone) {
 }
 
 TEST(SceneLoad, NamesAllStagesInTheOrderOfACycle) {
-  const Scene scene = SceneFiles{}.load({{"redundancy.joint_limit_avoidance", "{}"}});
+  const Scene scene =
+      SceneFiles{}.load({{"redundancy.joint_limit_avoidance", "{}"}, {"redundancy.posture", "{}"}});
   EXPECT_EQ(stageNames(scene.controller),
             (std::vector<std::string>{"trajectory", "kinematics", "pseudoinverse",
-                                      "joint_limit_avoidance", "tactile_module", "contact_space",
-                                      "contact_transition", "control_law", "stiffness_estimator",
-                                      "limits", "telemetry"}));
+                                      "joint_limit_avoidance", "posture", "tactile_module",
+                                      "contact_space", "contact_transition", "control_law",
+                                      "stiffness_estimator", "limits", "telemetry"}));
+}
+
+TEST(SceneLoad, LeadsToTheHomeOfTheRobotOrWhereItSays) {
+  EXPECT_FALSE(SceneFiles{}.load().controller.q_posture);
+  const Scene home = SceneFiles{}.load({{"redundancy.joint_limit_avoidance", "{}"},
+                                        {"redundancy.posture", "{}"},
+                                        {"start", "[0.1, 0.4, 0]"}});
+  ASSERT_TRUE(home.controller.q_posture);
+  EXPECT_EQ(*home.controller.q_posture, JointVector(Vector3(0.0, 0.5, -0.5)));
+  const Scene elsewhere =
+      SceneFiles{}.load({{"redundancy.joint_limit_avoidance", "{}"},
+                         {"redundancy.posture", "{positions: [0.1, -0.2, 0.3], gain_per_s: 0.7}"}});
+  EXPECT_EQ(*elsewhere.controller.q_posture, JointVector(Vector3(0.1, -0.2, 0.3)));
+  EXPECT_EQ(elsewhere.controller.gains.posture.gain_per_s, 0.7);
+  EXPECT_EQ(elsewhere.controller.gains.posture.max_speed_share, 0.05);
 }
 
 /// As the package installs it, in /etc/tactus.

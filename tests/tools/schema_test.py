@@ -51,6 +51,7 @@ task:
 redundancy:
   weights: [1, 1, 1, 1, 1, 1, 1, 1, 1]
   joint_limit_avoidance: {gain: 1, gradient_at_limit: 3.52, active_fraction: 0.5}
+  posture: {positions: [0, 0, 0, 0, 0, 0, 0, 0, 0], gain_per_s: 0.5, max_speed_share: 0.1}
 controller:
   variant: null_task
   level: velocity

@@ -13,6 +13,7 @@
 #include "tactus/control/joint_limit_avoidance.h"
 #include "tactus/control/motion.h"
 #include "tactus/control/motion_gate.h"
+#include "tactus/control/posture.h"
 #include "tactus/control/retreat.h"
 #include "tactus/control/robot.h"
 #include "tactus/control/several_contacts.h"
@@ -73,6 +74,7 @@ struct PreparedCycle {
   bool is_leaning = false;
   TaskGains task_gains;  ///< and these gains
   JointLimitAvoidanceGains limit_gains;
+  PostureGains posture_gains;
   TaskKinematics kinematics;
   Motion motion;  ///< of task, joint limits and clearance, without contact
   PaddedTaskVector w, w_d_dot;
@@ -155,12 +157,15 @@ class Controller {
                          PreparedCycle& prepared) const noexcept;
   void computeTaskMotion(const TaskGains& gains, const ControllerState& state,
                          PreparedCycle& prepared) const noexcept;
-  JointLimitCost limitCost(const Gains& gains, ControllerState& state) const noexcept;
+  JointLimitCost limitCost(const JointVector& q, const Gains& gains,
+                           ControllerState& state) const noexcept;
+  JointLimitCost costAt(const JointVector& q, const Gains& gains,
+                        ControllerState& state) const noexcept;
   FreeAcceleration freeAcceleration(const Gains& gains, double path_time_s, double period_s,
                                     const PreparedCycle& prepared,
                                     ControllerState& state) const noexcept;
-  void avoidJointLimits(const Gains& gains, const TaskKinematics& kinematics,
-                        ControllerState& state, Motion& motion) const noexcept;
+  void lowerCost(const Gains& gains, const TaskKinematics& kinematics, ControllerState& state,
+                 Motion& motion) const noexcept;
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
   Fault read(int module, const RobotInput& input, double period_s,
              TactileReading& reading) const noexcept;
@@ -210,6 +215,7 @@ class Controller {
   MotionGate gate_;
   std::vector<CoverCompensation> covers_;  ///< one a module, or none
   std::optional<JointLimitAvoidance> joint_limit_avoidance_;
+  std::optional<Posture> posture_;
   std::optional<ContactController> contact_controller_;
   std::optional<SeveralContacts> several_contacts_;  ///< instead, see hasContactRows()
 };

@@ -139,6 +139,9 @@ struct ControllerConfig {
   TaskConfig task{};
   JointVector weights{};  ///< diagonal of W, > 0, with a median of 1: see redundancy.weights
   bool has_joint_limit_avoidance = false;
+  /// That the null space leads to. Without joint-limit avoidance it would press joints against
+  /// their limits, and what these keep it from doing drag the tool along.
+  std::optional<JointVector> q_posture{};
   std::vector<TactileModuleConfig> tactile_modules{};  ///< at most kMaxTactileModules
   std::optional<ModuleLossConfig> module_loss{};       ///< absent: every loss is a fault
   Vector3 gravity_Base = Vector3::Zero();              ///< m/s^2; only covers ask

@@ -27,6 +27,12 @@ struct JointLimitAvoidanceGains {
   double active_fraction = 0.507;   ///< of the half range, 0 < f <= 1
 };
 
+/// How the null space leads the joints to a posture; see posture.h.
+struct PostureGains {
+  double gain_per_s = 0.5;        ///< k
+  double max_speed_share = 0.05;  ///< of the largest velocity of each joint, > 0, at most 1
+};
+
 /// What happens to feedforward and integral when contact is lost and found; see
 /// contact_transition.h, and for joint space joint_space_transition.h, for the equations.
 struct ContactTransitionGains {
@@ -65,12 +71,13 @@ struct ForceGains {
 struct Gains {
   TaskGains task;
   JointLimitAvoidanceGains joint_limit_avoidance;
+  PostureGains posture;
   ForceGains force;
 };
 
 static_assert(std::is_trivially_copyable_v<Gains> && std::is_standard_layout_v<Gains>);
 static_assert(
-    sizeof(Gains) == 8 * (4 + 3 + 10 + 5 + 4),
+    sizeof(Gains) == 8 * (4 + 3 + 2 + 10 + 5 + 4),
     "no padding, for gains are compared as bytes; a new one gets a row in scene_keys.cpp");
 
 /// Of any of the above, to the bit.

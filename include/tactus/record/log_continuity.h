@@ -24,10 +24,12 @@ struct UnknownStretch {
 class LogContinuity {
  public:
   /// has_missed: the log says how many cycles the loop missed. One of an older version does not:
-  /// there each gap is taken for missed cycles. avoids_limits: the controller avoids joint limits.
-  LogContinuity(double period_s, bool has_missed, bool avoids_limits)
+  /// there each gap is taken for missed cycles. avoids_limits: the controller avoids joint limits;
+  /// has_posture: and returns as gently after a hold.
+  LogContinuity(double period_s, bool has_missed, bool avoids_limits, bool has_posture = false)
       : period_s_(period_s),
         has_missed_(has_missed),
+        has_posture_(has_posture),
         settled_cycles_(avoids_limits ? kReturnRise_s / period_s + 1.0 : 0.0) {}
 
   /// What comes is part `part` of the run, counted from 0. Without a call it is part 0.
@@ -47,6 +49,7 @@ class LogContinuity {
 
   double period_s_;
   bool has_missed_;
+  bool has_posture_;
   double settled_cycles_;  ///< of running, in which a reset keeps nothing from before them
   int next_part_ = 0;
   bool is_part_missing_ = false;  ///< just before the next cycle

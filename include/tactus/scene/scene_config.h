@@ -27,6 +27,10 @@ struct TrajectorySection {
 
 enum class TaskSource : std::uint8_t { kTrajectory, kCommands };
 
+struct PostureSection {
+  std::optional<std::vector<double>> positions;  ///< absent: the robot's home
+};
+
 struct StiffnessSection {
   std::optional<double> stiffest_N_per_m;
   bool has_estimate = false;
@@ -114,6 +118,7 @@ struct SceneConfig {
   std::optional<TrajectorySection> trajectory;
   std::optional<std::vector<double>> weights;  ///< absent: all 1
   bool has_joint_limit_avoidance = false;
+  std::optional<PostureSection> posture;
   std::optional<ForceControlConfig> controller;  ///< without what `stiffness` says
   std::optional<StiffnessSection> stiffness;
   std::optional<ClearanceSection> clearance;
