@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -22,10 +23,15 @@ namespace tactus {
 namespace {
 
 constexpr std::chrono::milliseconds kLookAgain{50};
+constexpr std::chrono::milliseconds kPostureLook{500};
+/// Joints come nearer by turns. Where for as many looks the farthest has not, by 1 % of what was
+/// missing, none does.
+constexpr int kLooksInVain = 20;
+constexpr double kNearer = 0.99;
 
 struct MoveOptions {
   std::string to, rotate, waypoints;
-  bool is_relative = false;
+  bool is_relative = false, to_posture = false;
   std::optional<double> speed_m_per_s, speed_rad_per_s;
   bool waits = false;
   bool json = false;
@@ -60,6 +66,7 @@ Json moveRequest(const MoveOptions& options) {
   if (!options.to.empty()) request["to_m"] = vectorOf("--to", options.to);
   if (!options.rotate.empty()) request["rotate_rad"] = vectorOf("--rotate", options.rotate);
   if (options.is_relative) request["relative"] = true;
+  if (options.to_posture) request["to_posture"] = true;
   if (options.speed_m_per_s) request["speed_m_per_s"] = *options.speed_m_per_s;
   if (options.speed_rad_per_s) request["speed_rad_per_s"] = *options.speed_rad_per_s;
   return request;
@@ -113,24 +120,53 @@ bool isUnderWay(const Json& task) {
          task.at("waiting").get<int>() > 0;
 }
 
-/// The task's last state; of another order than ours it says nothing.
+/// A while later; of another order than ours it says nothing.
+Json lookAgain(const ControlClient& daemon, const Json& task, std::chrono::milliseconds later) {
+  std::this_thread::sleep_for(later);
+  Json now = daemon.ask({{"do", "show"}}).at("task");
+  if (now.at("number") != task.at("number"))
+    throw InputError("another order has taken the place of this one");
+  return now;
+}
+
+/// The task's last state.
 Json waitFor(const ControlClient& daemon, Json task) {
-  const Json number = task.at("number");
-  while (isUnderWay(task)) {
-    std::this_thread::sleep_for(kLookAgain);
-    task = daemon.ask({{"do", "show"}}).at("task");
-    if (task.at("number") != number)
-      throw InputError("another order has taken the place of this one");
+  while (isUnderWay(task)) task = lookAgain(daemon, task, kLookAgain);
+  return task;
+}
+
+/// The task's last state, once all joints are in the posture, or come no nearer.
+Json waitForPosture(const ControlClient& daemon, Json task) {
+  double nearest = std::numeric_limits<double>::infinity();
+  int in_vain = 0;
+  while (task.at("state") == "arrived" && !task.at("posture").at("is_there") &&
+         in_vain < kLooksInVain) {
+    const auto away = task.at("posture").at("away").get<double>();
+    in_vain = away < kNearer * nearest ? 0 : in_vain + 1;
+    if (in_vain == 0) nearest = away;
+    task = lookAgain(daemon, task, kPostureLook);
   }
   return task;
+}
+
+std::string postureText(const Json& posture) {
+  if (posture.at("is_there")) return "in the posture\n";
+  return fmt::format("not in the posture: {} is {:.3g} {} away\n",
+                     escaped(posture.at("joint").get<std::string>()),
+                     posture.at("away").get<double>(), posture.at("unit").get<std::string>());
 }
 
 int tell(const Json& request, const MoveOptions& options) {
   const ControlClient daemon(controlPath());
   Json task = daemon.ask(request).at("task");
+  const bool waits_for_posture = options.waits && options.to_posture;
   if (options.waits) task = waitFor(daemon, std::move(task));
-  std::fputs((options.json ? jsonText(task) : taskText(task)).c_str(), stdout);
-  const bool is_well = task.at("state") != "given_up" && task.at("state") != "stopped";
+  if (waits_for_posture) task = waitForPosture(daemon, std::move(task));
+  std::string text = options.json ? jsonText(task) : taskText(task);
+  if (waits_for_posture && !options.json) text += postureText(task.at("posture"));
+  std::fputs(text.c_str(), stdout);
+  const bool is_well = task.at("state") != "given_up" && task.at("state") != "stopped" &&
+                       (!waits_for_posture || task.at("posture").at("is_there"));
   return is_well ? kExitDone : kExitFault;
 }
 
@@ -149,6 +185,8 @@ void addMoveCommand(CLI::App& app, int& exit_code) {
   command->add_option("--to", options->to, "X,Y,Z in m, base frame; - for one that stays");
   command->add_option("--rotate", options->rotate, "RX,RY,RZ in rad: axis times angle, base frame");
   command->add_flag("--relative", options->is_relative, "Both from where the tool is");
+  command->add_flag("--to-posture", options->to_posture,
+                    "To where it is in redundancy.posture; with --wait until all joints are there");
   command->add_option("--speed", options->speed_m_per_s, "At most so many m/s");
   command->add_option("--turn-speed", options->speed_rad_per_s, "At most so many rad/s");
   command->add_flag("--wait", options->waits, "Until it has arrived, or given up");

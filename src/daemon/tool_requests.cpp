@@ -23,6 +23,8 @@ constexpr double kMaxPosition_m = 100.0;
 constexpr double kMaxTurn_rad = 4.0;
 constexpr double kMaxPause_s = 86400.0;
 constexpr double kLeastSpeed = 1e-5;  ///< m/s or rad/s
+/// Of start_tolerance: a scene that begins there judges the drives' positions.
+constexpr double kThere = 0.5;
 constexpr const char* kNoRoom = "too many orders at once, expected some milliseconds between them";
 
 const char* stateName(ToolState state) noexcept {
@@ -86,42 +88,43 @@ void ToolRequests::requireNoHold() {
                     scene_.controller.task.commands->stream_timeout_s));
 }
 
+/// Where the tool is in the posture, as far as the task controls it.
+Pose ToolRequests::toolInPosture(const Json& request, const Pose& from) const {
+  for (const char* key : {"to_m", "rotate_rad"})
+    if (request.contains(key))
+      refuseRequest(fmt::format("{} is given beside to_posture", key), "one of them");
+  if (flagOf(request, "relative"))
+    refuseRequest("relative is given beside to_posture", "one of them");
+  if (!scene_.controller.q_posture)
+    refuseRequest("to_posture is given, but the scene leads to no posture",
+                  "redundancy.posture in the scene");
+  const TaskConfig& task = scene_.controller.task;
+  Pose X = tipPose(scene_.controller.chain, *scene_.controller.q_posture);
+  if (!task.hasRotation()) X.R_AB = from.R_AB;
+  for (int i = 0; i < 3; ++i)
+    if (!task.controls(i)) X.p_AB[i] = from.p_AB[i];
+  return X;
+}
+
+/// The joint that is farthest from the posture.
+Json ToolRequests::postureJson() const {
+  if (!scene_.controller.q_posture) return nullptr;
+  const JointVector away = (jointsOf(sight_) - *scene_.controller.q_posture).cwiseAbs();
+  Eigen::Index joint = 0;
+  const double most = away.maxCoeff(&joint);
+  return {{"joint", scene_.joint_names[static_cast<std::size_t>(joint)]},
+          {"away", most},
+          {"unit", unitOf(scene_.controller.chain.type(static_cast<int>(joint)))},
+          {"is_there", scene_.hardware && most <= kThere * scene_.hardware->start_tolerance}};
+}
+
 ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from, Kind kind) const {
   const TaskConfig& task = scene_.controller.task;
-  const bool is_relative = flagOf(request, "relative");
-  const auto to_m = vectorOf(request, "to_m", kMaxPosition_m);
-  const auto rotate_rad = vectorOf(request, "rotate_rad", kMaxTurn_rad);
-  if (!to_m && !rotate_rad) refuseRequest("no target", "to_m or rotate_rad");
   Target target{{.kind = kind, .limits = task.commands->limits}, from};
-  for (int i = 0; to_m && i < 3; ++i) {
-    const std::optional<double>& value = (*to_m)[i];
-    if (!value || (is_relative && *value == 0.0)) continue;
-    if (!task.controls(i))
-      refuseRequest(fmt::format("to_m[{}] is given, but the task does not control {}", i, "xyz"[i]),
-                    "null");
-    target.X_BaseTool.p_AB[i] = *value + (is_relative ? from.p_AB[i] : 0.0);
-  }
-  if (rotate_rad) {
-    if (!task.hasRotation())
-      refuseRequest("rotate_rad is given, but the task does not control the orientation",
-                    "to_m alone");
-    Vector3 turn;
-    for (int i = 0; i < 3; ++i) {
-      if (!(*rotate_rad)[i])
-        refuseRequest(fmt::format("rotate_rad[{}] is null", i), "three numbers");
-      turn[i] = *(*rotate_rad)[i];
-      if (is_relative && turn[i] != 0.0 && !task.controls(3 + i))
-        refuseRequest(
-            fmt::format("rotate_rad[{}] is given, but the task does not control r{}", i, "xyz"[i]),
-            "0");
-    }
-    // The tool goes the shorter way round.
-    if (is_relative && turn.norm() > std::numbers::pi)
-      refuseRequest(fmt::format("rotate_rad turns by {:.4g} rad", turn.norm()),
-                    "at most half a turn");
-    const Matrix3 R = rotationMatrix(turn);
-    target.X_BaseTool.R_AB = is_relative ? Matrix3(R * from.R_AB) : R;
-  }
+  if (flagOf(request, "to_posture"))
+    target.X_BaseTool = toolInPosture(request, from);
+  else
+    aim(request, from, target.X_BaseTool);
   ToolOrder& order = target.order;
   setSpeed(request, "speed_m_per_s", order.limits.position);
   setSpeed(request, "speed_rad_per_s", order.limits.rotation);
@@ -130,6 +133,41 @@ ToolRequests::Target ToolRequests::target(const Json& request, const Pose& from,
   std::copy_n(target.X_BaseTool.p_AB.data(), 3, order.p_BaseTool_m);
   std::copy_n(target.X_BaseTool.R_AB.data(), 9, order.R_BaseTool);
   return target;
+}
+
+void ToolRequests::aim(const Json& request, const Pose& from, Pose& X_BaseTool) const {
+  const TaskConfig& task = scene_.controller.task;
+  const bool is_relative = flagOf(request, "relative");
+  const auto to_m = vectorOf(request, "to_m", kMaxPosition_m);
+  const auto rotate_rad = vectorOf(request, "rotate_rad", kMaxTurn_rad);
+  if (!to_m && !rotate_rad) refuseRequest("no target", "to_m, rotate_rad or to_posture");
+  for (int i = 0; to_m && i < 3; ++i) {
+    const std::optional<double>& value = (*to_m)[i];
+    if (!value || (is_relative && *value == 0.0)) continue;
+    if (!task.controls(i))
+      refuseRequest(fmt::format("to_m[{}] is given, but the task does not control {}", i, "xyz"[i]),
+                    "null");
+    X_BaseTool.p_AB[i] = *value + (is_relative ? from.p_AB[i] : 0.0);
+  }
+  if (!rotate_rad) return;
+  if (!task.hasRotation())
+    refuseRequest("rotate_rad is given, but the task does not control the orientation",
+                  "to_m alone");
+  Vector3 turn;
+  for (int i = 0; i < 3; ++i) {
+    if (!(*rotate_rad)[i]) refuseRequest(fmt::format("rotate_rad[{}] is null", i), "three numbers");
+    turn[i] = *(*rotate_rad)[i];
+    if (is_relative && turn[i] != 0.0 && !task.controls(3 + i))
+      refuseRequest(
+          fmt::format("rotate_rad[{}] is given, but the task does not control r{}", i, "xyz"[i]),
+          "0");
+  }
+  // The tool goes the shorter way round.
+  if (is_relative && turn.norm() > std::numbers::pi)
+    refuseRequest(fmt::format("rotate_rad turns by {:.4g} rad", turn.norm()),
+                  "at most half a turn");
+  const Matrix3 R = rotationMatrix(turn);
+  X_BaseTool.R_AB = is_relative ? Matrix3(R * from.R_AB) : R;
 }
 
 JointVector ToolRequests::jointsOf(const ToolSight& sight) const {
@@ -145,10 +183,12 @@ Reach ToolRequests::reach(const std::string& what, const JointVector& q,
 }
 
 Json ToolRequests::move(const Json& request) {
-  refuseUnknown(request,
-                {"do", "to_m", "rotate_rad", "relative", "speed_m_per_s", "speed_rad_per_s"});
+  refuseUnknown(request, {"do", "to_m", "rotate_rad", "relative", "to_posture", "speed_m_per_s",
+                          "speed_rad_per_s"});
   requireArm();
   const bool is_stream = wishOf(request) == "stream";
+  if (is_stream && flagOf(request, "to_posture"))
+    refuseRequest("to_posture is given, but the way of a stream is not checked", "move");
   const Target goal = target(request, poseOf(sight_), is_stream ? Kind::kStream : Kind::kGo);
   double duration_s = 0.0;
   if (is_stream)
@@ -251,6 +291,7 @@ Json ToolRequests::show() {
                {"is_running", sight_.is_running},
                {"p_BaseTool_m", vectorJson(X.p_AB)},
                {"rotation_vector_rad", vectorJson(rotationVector(X.R_AB))},
+               {"posture", postureJson()},
                {"contact", nullptr}};
   const int module = leaning();
   if (module < 0) return json;

@@ -91,6 +91,76 @@ TEST_F(ToolRequestsTest, FollowsWaypointsEachFromTheOneBefore) {
   }
 }
 
+/// With a posture, elsewhere than the arm.
+class PostureRequestsTest : public ToolRequestsTest {
+ protected:
+  static Scene leading(const std::string& components) {
+    return test::shippedScene("commands", {{"task.components", components},
+                                           {"task.max_return_speed_rad_per_s", "0.2"},
+                                           {"redundancy.posture.positions",
+                                            "[0.1, -0.5, 0.4, 0.5, 0.4, 0.9, 1.0, -0.6, 0.5]"}});
+  }
+};
+
+TEST_F(PostureRequestsTest, MoveTheToolToWhereItIsThere) {
+  for (const char* components : {"[x, y, z]", "[x, z]", "[x, y, z, rx, ry, rz]"}) {
+    const Scene led = leading(components);
+    ControlRequests asked(led, link);
+    link.tool_sights.put(sight);
+    const Json answer =
+        Json::parse(asked.answer(Json{{"do", "move"}, {"to_posture", true}}.dump()));
+    ASSERT_EQ(answer.at("done"), true) << answer;
+    ToolOrder order;
+    ASSERT_TRUE(link.tool_orders.pop(order));
+    const TaskConfig& task = led.controller.task;
+    const Pose there = tipPose(led.controller.chain, *led.controller.q_posture);
+    for (int i = 0; i < 3; ++i)
+      EXPECT_EQ(order.p_BaseTool_m[i], task.controls(i) ? there.p_AB[i] : sight.p_BaseTool_m[i]);
+    const Matrix3 R =
+        Eigen::Map<const Matrix3>(task.hasRotation() ? there.R_AB.data() : sight.R_BaseTool);
+    EXPECT_EQ(Matrix3(Eigen::Map<const Matrix3>(order.R_BaseTool)), R);
+  }
+}
+
+TEST_F(PostureRequestsTest, TellWhichJointIsFarthestFromIt) {
+  const Scene led = leading("[x, y, z]");
+  ControlRequests asked(led, link);
+  const auto posture = [&] {
+    return Json::parse(asked.answer(Json{{"do", "show"}}.dump())).at("task").at("posture");
+  };
+  const JointVector& q = *led.controller.q_posture;
+  for (const double away : {0.0095, 0.0105}) {
+    std::copy_n(q.data(), q.size(), sight.q);
+    sight.q[4] -= away;
+    sight.q[5] += 0.009;
+    link.tool_sights.put(sight);
+    const Json told = posture();
+    EXPECT_EQ(told.at("joint"), led.joint_names[4]);
+    EXPECT_NEAR(told.at("away").get<double>(), away, 1e-12);
+    EXPECT_EQ(told.at("unit"), "rad");
+    EXPECT_EQ(told.at("is_there"), away < 0.5 * led.hardware->start_tolerance);
+  }
+}
+
+TEST_F(PostureRequestsTest, AreRefusedWhereTheyContradict) {
+  EXPECT_NE(refusal({{"do", "move"}, {"to_posture", true}}).find("redundancy.posture"),
+            std::string::npos)
+      << "of a scene without one";
+  EXPECT_TRUE(ask({{"do", "show"}}).at("task").at("posture").is_null());
+  EXPECT_NE(refusal({{"do", "follow"}, {"waypoints", {{{"to_posture", true}}}}}).find("to_posture"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal({{"do", "move"}, {"to_posture", true}, {"to_m", {1, 0, 0}}}).find("to_m is given"),
+      std::string::npos);
+  EXPECT_NE(refusal({{"do", "move"}, {"to_posture", 1}}), "");
+  EXPECT_NE(refusal({{"do", "move"}, {"to_posture", false}}).find("or to_posture"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal({{"do", "move"}, {"to_posture", true}, {"relative", true}}).find("relative is given"),
+      std::string::npos);
+  EXPECT_NE(refusal({{"do", "stream"}, {"to_posture", true}}).find("stream"), std::string::npos);
+}
+
 /// A stream to an arm whose task has these components.
 Json turned(const std::string& components, const Json& rotate_rad, bool is_relative) {
   const Scene scene = test::shippedScene(

@@ -37,6 +37,12 @@ class Told(AskedRun, unittest.TestCase):
         self.assertTrue(any(abs(joint["position"] - joint["start"]) > where["start_tolerance"]
                             for joint in where["joints"]))
 
+    def test_an_arm_is_brought_back_to_where_scenes_begin(self):
+        home = (self.folder / "home.txt").read_text()
+        self.assertNotIn("fault", home)
+        self.assertIn("to the bit", (self.folder / "home_replay.txt").read_text())
+        self.assertIn("tactusd: running", (self.folder / "begins.txt").read_text())
+
 
 if __name__ == "__main__":
     build = Build()

@@ -38,6 +38,9 @@ class ToolRequests {
   void requireArm();
   void requireNoHold();
   bool isStreamAlive() const;
+  Pose toolInPosture(const Json& request, const Pose& from) const;
+  Json postureJson() const;
+  void aim(const Json& request, const Pose& from, Pose& X_BaseTool) const;
   Target target(const Json& request, const Pose& from, ToolOrder::Kind kind) const;
   Target asked(const std::string& what, const Json& waypoint, const Pose& from,
                ToolOrder::Kind kind) const;

@@ -143,16 +143,21 @@ class Daemon:
                 if key in file and file[key] != ordered[key]}
 
     def move(self, to_m: _Point | None = None, rotate_rad: _Point | None = None, *,
-             relative: bool = False, speed_m_per_s: float | None = None,
+             relative: bool = False, to_posture: bool = False, speed_m_per_s: float | None = None,
              speed_rad_per_s: float | None = None, wait: bool = False) -> dict[str, Any]:
         """Tells the tool where to go: to_m, base frame, None for one that stays; rotate_rad, axis times
-        angle, base frame; at least one of them. relative: both from where the tool is.
+        angle, base frame; at least one of them. relative: both from where the tool is. to_posture: instead
+        of these to where it is in redundancy.posture; the joints may get there later, which "posture" of
+        task() tells.
 
         Returns the task; with `wait` when the tool has arrived, was given up, or stopped. Ctrl-C ends the
         waiting alone: hold() stops the tool.
         """
-        return self._tell({"do": "move", **_target(to_m, rotate_rad, relative, speed_m_per_s,
-                                                   speed_rad_per_s)}, wait)
+        if not isinstance(to_posture, (bool, np.bool_)):
+            raise TypeError(f"to_posture: {to_posture!r}, expected True or False")
+        posture = {"to_posture": True} if to_posture else {}
+        return self._tell({"do": "move", **posture, **_target(to_m, rotate_rad, relative, speed_m_per_s,
+                                                              speed_rad_per_s)}, wait)
 
     def follow(self, waypoints: Iterable[Mapping[str, object]], wait: bool = False) -> dict[str, Any]:
         """Waypoints as of docs/control.md, such as {"to_m": [0.9, 0.4, 0.25], "pause_s": 1}."""

@@ -1,5 +1,5 @@
-# A tool that is told where to go: moves, waypoints, a stream that breaks off, a stop in between, and
-# a daemon that begins where the last one has left the arm.
+# A tool that is told where to go: moves, waypoints, a stream that breaks off, a stop in between, a
+# daemon that begins where the last one has left the arm, and one that brings it back to the start.
 . "$ROOT/guest/common.sh"
 . "$ROOT/guest/daemon.sh"
 . "$ROOT/guest/asking.sh"
@@ -77,7 +77,24 @@ tactus set controller.damping=0.65 || fail "set exits with $?"
 tactus reload || fail "reload exits with $?"
 kill $daemon
 wait $daemon || fail "tactusd exits with $?"
+
+tactusd "$scene" --set task.commands.start_measured=true --set redundancy.posture={} \
+  --set redundancy.joint_limit_avoidance.active_fraction=0.2 -o "$ROOT/out" --name home 2>"$out/home.txt" & daemon=$!
+wait_for ready "$out/home.txt"
+line $enable 0 >/dev/null
+sleep 0.1
+line $enable 1 >/dev/null
+wait_for running "$out/home.txt"
+told 'in the posture' tactus move --to-posture --wait
+kill $daemon
+wait $daemon || fail "tactusd exits with $?"
+tactusd "$scene" 2>"$out/begins.txt" & daemon=$!
+wait_for running "$out/begins.txt"
+kill $daemon
+wait $daemon || fail "tactusd exits with $?"
 stop_plant
+tactus replay "$ROOT/out/home/run.ulg" >"$out/home_replay.txt" ||
+  fail "the replay differs: $(cat "$out/home_replay.txt")"
 tactus replay "$ROOT/out/again/run.ulg" >"$out/again_replay.txt" ||
   fail "the replay differs: $(cat "$out/again_replay.txt")"
 tactus replay "$out/run.ulg" >"$out/replay.txt" || fail "the replay differs: $(cat "$out/replay.txt")"
