@@ -33,8 +33,9 @@ void writeScene(const std::string& path, const SoakScene& scene, const std::stri
       "extends: {}/config/scenes/{}.yaml\nlog: {{max_bytes: 3e7, keep: 3}}\n"
       "simulation:\n  obstacles:\n"  // no law has to press hard
       "    - {{x_m: 0.70771, y_m: 0.00265, stiffness_N_per_m: 60}}\n"
-      "controller:\n  variant: {}\n{}",
-      TACTUS_SOURCE_DIR, scene.base, scene.variant, more);
+      "{}controller:\n  variant: {}\n{}",
+      TACTUS_SOURCE_DIR, scene.base, scene.has_posture ? "redundancy: {posture: {}}\n" : "",
+      scene.variant, more);
 }
 
 Client::Client(test::Random& random, std::string scene_path, SoakScene scene, RequestCounts& counts)
@@ -66,6 +67,8 @@ Json Client::target() {
 void Client::tell() {
   const double what = random_.uniform(0.0, 1.0);
   if (what < 0.2) return ask({{"do", "hold"}}, counts_.targets);
+  if (scene_.has_posture && what < 0.3)
+    return ask({{"do", "move"}, {"to_posture", true}}, counts_.targets);
   if (what < 0.8) {
     Json request = target();
     request["do"] = what < 0.7 ? "move" : "stream";

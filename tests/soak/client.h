@@ -19,6 +19,7 @@ struct RequestCounts {
 /// A scene of config/scenes with another variant, and a log of few and small files.
 struct SoakScene {
   std::string base, variant;
+  bool has_posture = false;
 };
 /// more: further lines of the controller's section.
 void writeScene(const std::string& path, const SoakScene& scene, const std::string& more = "");

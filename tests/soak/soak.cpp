@@ -89,7 +89,7 @@ Life::Life(std::uint64_t seed, int number, const std::string& folder, Tally& tal
       minutely_(std::move(minutely)),
       random_(seed_),
       scene_{number % 2 == 0 ? "commands" : "scenario1_none",
-             kVariantsOfSoak[number % kVariantsOfSoak.size()]},
+             kVariantsOfSoak[number % kVariantsOfSoak.size()], number % 4 == 0},
       stage_{beginScene(folder + "/soak.yaml", scene_), {}, {}},
       began_s_(tally.t_s) {
   ++tally_.lives;
