@@ -37,7 +37,7 @@ struct Daemon {
     link.tool_sights.put(sight);
   }
 
-  const Scene scene = loadScene(TACTUS_SOURCE_DIR "/config/scenes/commands.yaml", {});
+  const Scene scene = loadScene(TACTUS_SOURCE_DIR "/config/scenes/home.yaml", {});
   LoopLink link;
   ControlRequests requests{scene, link};
 };

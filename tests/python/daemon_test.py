@@ -105,6 +105,7 @@ class Running(unittest.TestCase):
                      lambda: self.daemon.move([True, 0, 0], relative=True),
                      lambda: self.daemon.move([0, float("inf"), 0], relative=True),
                      lambda: self.daemon.move([0, 0, 0], relative="no"),
+                     lambda: self.daemon.move(to_posture="no"),
                      lambda: self.daemon.stream([0, 0, 0], relative=1),
                      lambda: self.daemon.follow([{"to_m": [0, {1}, 0]}])):
             with self.assertRaises((TypeError, ValueError)):
