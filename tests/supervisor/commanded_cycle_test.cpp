@@ -123,8 +123,7 @@ TEST(CommandedCycle, ArrivesTurnedNoFartherOffThanItSays) {
 }
 
 /// 20 targets and 50 sets of gains in contact, a hold, an e-stop and missed cycles.
-TEST(CommandedCycle, ReplaysToTheBitFromItsLog) {
-  const Scene scene = toldScene();
+void expectReplay(const Scene& scene) {
   test::Random random(4001);
   VirtualRobotCell cell(scene);
   ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
@@ -145,6 +144,7 @@ TEST(CommandedCycle, ReplaysToTheBitFromItsLog) {
       GainOrder order{.number = ++changes, .gains = scene.controller.gains};
       order.gains.force.time_constant_s = random.uniform(0.08, 0.15);
       order.gains.task.drift_gain_per_s = random.uniform(3.0, 6.0);
+      order.gains.posture.gain_per_s = random.uniform(0.2, 2.0);
       cell.cycle.order(order);
     }
     cell.input.lines.enable = !(i > 6000 && i < 6300);
@@ -176,6 +176,16 @@ TEST(CommandedCycle, ReplaysToTheBitFromItsLog) {
     other.add(record, deaf.replay(record));
   }
   EXPECT_GT(other.differingCycles(), 1000) << "targets make no difference: this test is blind";
+}
+
+TEST(CommandedCycle, ReplaysToTheBitFromItsLog) { expectReplay(toldScene()); }
+
+TEST(CommandedCycle, ReplaysToTheBitOnItsWayToAPosture) {
+  const Scene scene = toldScene(
+      {{"redundancy.posture.positions", "[-0.2, -0.1, 0.1, 0.2, 0.8, 0.5, 1.4, -0.4, 0.2]"},
+       {"redundancy.joint_limit_avoidance.active_fraction", "0.2"}});
+  ASSERT_TRUE(scene.controller.q_posture);
+  expectReplay(scene);
 }
 
 /// A stiff post that the null space cannot give way to: the arm leans on it no harder than the law
