@@ -62,7 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
             "scene.yaml:9:24: redundancy.posture.positions: ", "a list of 2", "3"},
         BrokenText{
             "weights:", "posture: {positions: [0, 9, 0]}\n  joint_limit_avoidance: {}\n  weights:",
-            "scene.yaml:9:28: redundancy.posture.positions[1]: ", "9 is outside the limits", " to "},
+            "scene.yaml:9:28: redundancy.posture.positions[1]: ", "9 is outside the limits",
+            " to "},
         BrokenText{"weights:", "posture: {}\n  weights:",
                    "scene.yaml:9:3: redundancy.joint_limit_avoidance: ", "is missing",
                    "beside a posture"},
