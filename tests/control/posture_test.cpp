@@ -112,7 +112,7 @@ TEST(Posture, IsComeNearerWhileTheToolStays) {
                           output);
         ASSERT_EQ(output.fault, Fault::kNone);
         const double now = arm.cost(state.q_desired);
-        ASSERT_LE(now, before * (1.0 + 1e-6)) << "of " << at_first << " in cycle " << cycle;
+        ASSERT_LE(now, before + 1e-3 * at_first) << "in cycle " << cycle;  // the tool comes back
         before = now;
         const Vector3 p = tipPose(arm.config.chain, state.q_desired).p_AB;
         ASSERT_LT((p - p_start).norm(), 2e-3);
