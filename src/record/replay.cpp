@@ -30,8 +30,7 @@ Replayer::Replayer(const Controller& controller, int joints, double period_s, bo
     : controller_(controller),
       joints_(joints),
       period_s_(period_s),
-      continuity_(period_s, has_missed, controller.config().has_joint_limit_avoidance,
-                  controller.config().q_posture.has_value()),
+      continuity_(controller.config(), period_s, has_missed),
       state_(controller.initialState()) {}
 
 CycleRecord Replayer::replay(const CycleRecord& recorded) {

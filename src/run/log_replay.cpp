@@ -142,9 +142,8 @@ class LogReplay {
         set_gains_(setGains(request.settings)),
         gains_(scene_.controller.gains),
         used_(gains_) {
-    refuseUnknown(request.logs, LogContinuity(scene_.period_s, first.has(kMissedCycles),
-                                              scene_.controller.has_joint_limit_avoidance,
-                                              scene_.controller.q_posture.has_value()));
+    refuseUnknown(request.logs,
+                  LogContinuity(scene_.controller, scene_.period_s, first.has(kMissedCycles)));
     if (!request.output.empty()) csv_.emplace(request.output, shape_);
   }
 

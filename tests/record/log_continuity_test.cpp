@@ -2,8 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include "support/random_robot.h"
+
 namespace tactus {
 namespace {
+
+ControllerConfig someArm() {
+  test::Random random(1);
+  return test::randomController(random, 3, 2);
+}
 
 /// One cycle a call, with a period of 1 ms.
 class LogContinuityTest : public ::testing::Test {
@@ -24,7 +31,8 @@ class LogContinuityTest : public ::testing::Test {
     EXPECT_EQ(stretch.reason, reason);
   }
 
-  LogContinuity continuity_{0.001, true, false};
+  ControllerConfig config_ = someArm();
+  LogContinuity continuity_{config_, 0.001, true};
 };
 
 TEST_F(LogContinuityTest, MissedCyclesLoseNothing) {
@@ -128,7 +136,8 @@ TEST_F(LogContinuityTest, PartsInARowAreOneRun) {
 }
 
 TEST_F(LogContinuityTest, AWayOutOfALimitsZoneIsKnownAfterTwoSecondsOfRunning) {
-  continuity_ = LogContinuity(0.001, true, true);
+  config_.has_joint_limit_avoidance = true;
+  continuity_ = LogContinuity(config_, 0.001, true);
   EXPECT_TRUE(add(0));
   int cycle = 10;
   const auto run = [&](int cycles) {
@@ -142,8 +151,25 @@ TEST_F(LogContinuityTest, AWayOutOfALimitsZoneIsKnownAfterTwoSecondsOfRunning) {
   EXPECT_TRUE(add(cycle++, Mode::kFault));
 }
 
+TEST_F(LogContinuityTest, AHoldBeginsThoseSecondsAnewWhereAPostureIsReturnedTo) {
+  for (const bool has_posture : {false, true}) {
+    config_.has_joint_limit_avoidance = true;
+    if (has_posture) config_.q_posture = config_.q_start;
+    continuity_ = LogContinuity(config_, 0.001, true);
+    EXPECT_TRUE(add(0));
+    int cycle = 10;
+    const auto run = [&](int cycles) {
+      for (int i = 0; i < cycles; ++i) ASSERT_FALSE(add(cycle++));
+    };
+    run(1900);
+    EXPECT_FALSE(add(cycle++, Mode::kHolding));
+    run(200);
+    EXPECT_EQ(add(cycle++, Mode::kFault), !has_posture);
+  }
+}
+
 TEST_F(LogContinuityTest, WithoutTheNumberEachGapIsTakenForMissedCycles) {
-  continuity_ = LogContinuity(0.001, false, false);
+  continuity_ = LogContinuity(config_, 0.001, false);
   EXPECT_TRUE(add(0));
   EXPECT_TRUE(add(5));
   EXPECT_EQ(continuity_.missedCycles(), 4);

@@ -365,7 +365,7 @@ TEST(ControlCycleReplay, MissedCyclesAreNoMissingRecords) {
   const std::vector<CycleRecord> records = eventfulRun(scene);
   std::uint64_t missed = 0;
   double before_s = -scene.period_s;
-  LogContinuity continuity(scene.period_s, true, true);
+  LogContinuity continuity(scene.controller, scene.period_s, true);
   for (const CycleRecord& record : records) {
     missed += record.missed_cycles;
     EXPECT_NEAR(record.t_s - before_s,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tactus/control/controller_config.h"
 #include "tactus/control/return_speed.h"
 #include "tactus/supervisor/cycle_record.h"
 #include "tactus/supervisor/mode.h"
@@ -24,13 +25,12 @@ struct UnknownStretch {
 class LogContinuity {
  public:
   /// has_missed: the log says how many cycles the loop missed. One of an older version does not:
-  /// there each gap is taken for missed cycles. avoids_limits: the controller avoids joint limits;
-  /// has_posture: and returns as gently after a hold.
-  LogContinuity(double period_s, bool has_missed, bool avoids_limits, bool has_posture = false)
+  /// there each gap is taken for missed cycles.
+  LogContinuity(const ControllerConfig& config, double period_s, bool has_missed)
       : period_s_(period_s),
         has_missed_(has_missed),
-        has_posture_(has_posture),
-        settled_cycles_(avoids_limits ? kReturnRise_s / period_s + 1.0 : 0.0) {}
+        has_posture_(config.q_posture.has_value()),
+        settled_cycles_(config.has_joint_limit_avoidance ? kReturnRise_s / period_s + 1.0 : 0.0) {}
 
   /// What comes is part `part` of the run, counted from 0. Without a call it is part 0.
   void beginPart(int part) noexcept;
@@ -49,7 +49,7 @@ class LogContinuity {
 
   double period_s_;
   bool has_missed_;
-  bool has_posture_;
+  bool has_posture_;       ///< to which a hold returns as gently as a reset
   double settled_cycles_;  ///< of running, in which a reset keeps nothing from before them
   int next_part_ = 0;
   bool is_part_missing_ = false;  ///< just before the next cycle
