@@ -185,6 +185,9 @@ void Controller::coast(int missed_cycles, double period_s, ControllerState& stat
   if (state.is_stopping && !state.retreat.is_under_way)
     rampOn(config_.limits, missed_cycles * period_s, state.velocity_before);
   for (int i = 0; i < modules(); ++i) {
+  if (config_.module_loss)  // faster only cycle by cycle
+    state.speed_share =
+        std::min(state.speed_share, speedShareAfter(missed_cycles * period_s, state));
     state.modules[i].age_s += missed_cycles * period_s;
     state.modules[i].cover.missed_s += missed_cycles * period_s;
   }

@@ -56,10 +56,13 @@ void Controller::goOnWithoutLost(const Gains& gains, double period_s, ModuleFaul
     output.sensed[i] = state.modules[i].contact;
   }
   output.speed_share = state.speed_share;
-  state.speed_share =
-      nextSpeedShare(config_.module_loss->speed_share,
-                     std::span(state.modules).first(static_cast<std::size_t>(modules())), period_s,
-                     state.speed_share);
+  state.speed_share = speedShareAfter(period_s, state);
+}
+
+double Controller::speedShareAfter(double duration_s, const ControllerState& state) const noexcept {
+  return nextSpeedShare(config_.module_loss->speed_share,
+                        std::span(state.modules).first(static_cast<std::size_t>(modules())),
+                        duration_s, state.speed_share);
 }
 
 /// All of the motion without contact, which is linear in these.

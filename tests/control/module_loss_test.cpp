@@ -166,6 +166,21 @@ TEST(ModuleLoss, LeavesNothingThatWasSensed) {
   EXPECT_EQ(reading.unproven_s, kModuleProof_s);
 }
 
+/// Missed cycles are of the time in which the arm slows down, but make it no faster.
+TEST(ModuleLoss, CountsMissedCycles) {
+  test::Random random(78);
+  const Controller controller(skinController(random));
+  ControllerState state = controller.initialState();
+  state.modules[1].unproven_s = kModuleProof_s;
+  controller.coast(50, kPeriod_s, state);
+  EXPECT_NEAR(state.speed_share, 1.0 - 50 * kPeriod_s / kSpeedShareRise_s, 1e-12);
+  controller.coast(1000, kPeriod_s, state);
+  EXPECT_EQ(state.speed_share, kShare);
+  state.modules[1].unproven_s = 0.0;
+  controller.coast(50, kPeriod_s, state);
+  EXPECT_EQ(state.speed_share, kShare);
+}
+
 /// Everything of the task's own is slowed alike: the arm goes the same way, later.
 TEST(ModuleLoss, LeavesTheWayAsItIs) {
   test::Random random(77);

@@ -175,6 +175,7 @@ class Controller {
                      const FreeAcceleration& free, double period_s, ControllerState& state,
                      ControllerOutput& output, Motion& motion) const noexcept;
   using ModuleFaults = std::array<Fault, kMaxTactileModules>;
+  double speedShareAfter(double duration_s, const ControllerState& state) const noexcept;
   void goOnWithoutLost(const Gains& gains, double period_s, ModuleFaults& faults,
                        ControllerState& state, ControllerOutput& output) const noexcept;
   void judgeModules(const Gains& gains, double period_s, ModuleFaults& faults,
