@@ -28,12 +28,15 @@ void rampOn(const JointLimits& limits, double duration_s, JointVector& velocity)
   velocity -= velocity.cwiseMax(-most).cwiseMin(most);
 }
 
-/// zones: as they follow from these gains, or from others.
-inline JointLimitCost evaluateLimits(const JointLimitAvoidance& avoidance,
-                                     const JointLimitAvoidanceGains& gains, const JointVector& q,
-                                     JointLimitZones& zones) noexcept {
-  if (!isSame(zones.gains, gains)) zones = avoidance.zones(gains);
-  return avoidance.evaluate(zones, q);
+void lower(const JointLimitCost& cost, const TaskKinematics& kinematics,
+           const ControllerState& state, Motion& motion) noexcept {
+  motion.limit_nearness = cost.nearness;
+  motion.v_scaled = -cost.gradient;
+  if (state.return_share < 1.0)
+    softenWayOut(state.return_share,
+                 state.is_leaning ? state.way_out_before : ScaledVector(ScaledVector::Zero()),
+                 state.way_out_added, motion.v_scaled);
+  motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 
 }  // namespace
@@ -122,7 +125,7 @@ void Controller::computeMotion(const Gains& gains, double path_time_s, Controlle
   Motion& motion = prepared.motion;
   motion.y = prepared.kinematics.y_eff;
   if (joint_limit_avoidance_) {
-    lowerCost(gains, prepared.kinematics, state, motion);
+    lower(costAt(state.q_desired, gains, state), prepared.kinematics, state, motion);
   } else {
     motion.v_scaled.setZero();
   }
@@ -182,12 +185,12 @@ void Controller::answerContact(const Gains& gains, const TaskKinematics& kinemat
 
 void Controller::coast(int missed_cycles, double period_s, ControllerState& state) const noexcept {
   passTime(missed_cycles * period_s, state);
-  if (state.is_stopping && !state.retreat.is_under_way)
-    rampOn(config_.limits, missed_cycles * period_s, state.velocity_before);
-  for (int i = 0; i < modules(); ++i) {
   if (config_.module_loss)  // faster only cycle by cycle
     state.speed_share =
         std::min(state.speed_share, speedShareAfter(missed_cycles * period_s, state));
+  if (state.is_stopping && !state.retreat.is_under_way)
+    rampOn(config_.limits, missed_cycles * period_s, state.velocity_before);
+  for (int i = 0; i < modules(); ++i) {
     state.modules[i].age_s += missed_cycles * period_s;
     state.modules[i].cover.missed_s += missed_cycles * period_s;
   }
@@ -207,34 +210,12 @@ void Controller::passTime(double duration_s, ControllerState& state) const noexc
   state.return_share = std::min(1.0, state.return_share + duration_s / kReturnRise_s);
 }
 
-JointLimitCost Controller::limitCost(const JointVector& q, const Gains& gains,
-                                     ControllerState& state) const noexcept {
-  return evaluateLimits(*joint_limit_avoidance_, gains.joint_limit_avoidance, q, state.zones);
-}
-
-/// Of joint limits and posture.
 JointLimitCost Controller::costAt(const JointVector& q, const Gains& gains,
                                   ControllerState& state) const noexcept {
-  if (!posture_) return limitCost(q, gains, state);
-  JointLimitCost cost = limitCost(q, gains, state);
-  cost.gradient += posture_->gradient(gains.posture, q);
+  JointLimitCost cost =
+      joint_limit_avoidance_->evaluate(gains.joint_limit_avoidance, q, state.zones);
+  if (posture_) posture_->addTo(cost.gradient, gains.posture, q);
   return cost;
-}
-
-void Controller::lowerCost(const Gains& gains, const TaskKinematics& kinematics,
-                           ControllerState& state, Motion& motion) const noexcept {
-  // Without a call where there is no posture, as in most scenes.
-  const JointLimitCost cost =
-      posture_ ? costAt(state.q_desired, gains, state)
-               : evaluateLimits(*joint_limit_avoidance_, gains.joint_limit_avoidance,
-                                state.q_desired, state.zones);
-  motion.limit_nearness = cost.nearness;
-  motion.v_scaled = -cost.gradient;
-  if (state.return_share < 1.0)
-    softenWayOut(state.return_share,
-                 state.is_leaning ? state.way_out_before : ScaledVector(ScaledVector::Zero()),
-                 state.way_out_added, motion.v_scaled);
-  motion.y -= kinematics.pseudoinverse.project(motion.v_scaled);
 }
 
 ToolAcceleration Controller::referenceAcceleration(double path_time_s,

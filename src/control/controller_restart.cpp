@@ -14,7 +14,9 @@ constexpr double kBeside = 1e-4;
 
 void Controller::restart(const Gains& gains, ControllerState& state) const noexcept {
   if (joint_limit_avoidance_ && state.return_share > 0.0) {  // else it has not moved since
-    state.way_out_before = -limitCost(state.q_desired, gains, state).gradient;
+    state.way_out_before =
+        -joint_limit_avoidance_->evaluate(gains.joint_limit_avoidance, state.q_desired, state.zones)
+             .gradient;
     softenWayOut(state.return_share, ScaledVector::Zero(), state.way_out_added,
                  state.way_out_before);
   }
@@ -35,9 +37,16 @@ void Controller::place(const JointVector& q, const Gains& gains,
   const auto isPushed = [&](const TactileReading& reading) {
     return reading.contact.force_N > gains.force.transition.release_force_N;
   };
-  state.is_leaning = config_.force_control && std::ranges::any_of(state.modules, isPushed);
+  leadAnew(gains, config_.force_control && std::ranges::any_of(state.modules, isPushed), state);
+}
+
+/// What of the null space's motion comes back gently: all, or where the arm leans on something
+/// what it had not before.
+void Controller::leadAnew(const Gains& gains, bool is_leaning,
+                          ControllerState& state) const noexcept {
+  state.is_leaning = is_leaning;
   state.way_out_added = -costAt(state.q_desired, gains, state).gradient;
-  if (state.is_leaning) state.way_out_added -= state.way_out_before;
+  if (is_leaning) state.way_out_added -= state.way_out_before;
 }
 
 void Controller::begin(ControllerState& state) const noexcept {
@@ -55,8 +64,7 @@ void Controller::goOn(const Gains& gains, ControllerState& state) const noexcept
   } else if (posture_ && state.return_share > 0.0) {  // else it only begins
     // A hold has changed nothing for the law, but the posture may lead on by a jump.
     state.return_share = 0.0;
-    state.is_leaning = false;
-    state.way_out_added = -costAt(state.q_desired, gains, state).gradient;
+    leadAnew(gains, false, state);
   }
 }
 

@@ -38,4 +38,11 @@ JointLimitCost JointLimitAvoidance::evaluate(const JointLimitZones& zones,
   return {zones.slope.cwiseProduct(excess), std::min(1.0, s_max)};
 }
 
+JointLimitCost JointLimitAvoidance::evaluate(const JointLimitAvoidanceGains& gains,
+                                             const JointVector& q,
+                                             JointLimitZones& zones_kept) const noexcept {
+  if (!isSame(zones_kept.gains, gains)) zones_kept = zones(gains);
+  return evaluate(zones_kept, q);
+}
+
 }  // namespace tactus

@@ -10,13 +10,12 @@ Posture::Posture(const JointVector& q_posture, const JointVector& max_velocity,
       inv_max_velocity_(max_velocity.cwiseInverse()),
       sqrt_weights_(inv_sqrt_weights.cwiseInverse()) {}
 
-ScaledVector Posture::gradient(const PostureGains& gains, const JointVector& q) const noexcept {
+void Posture::addTo(ScaledVector& gradient, const PostureGains& gains,
+                    const JointVector& q) const noexcept {
   const JointVector velocity = gains.gain_per_s * (q - q_posture_);
   const double to_max = velocity.cwiseProduct(inv_max_velocity_).cwiseAbs().maxCoeff();
   const double share = 1.0 / std::max(1.0, to_max / gains.max_speed_share);
-  ScaledVector gradient = ScaledVector::Zero();
-  for (int i = 0; i < q.size(); ++i) gradient[i] = share * velocity[i] * sqrt_weights_[i];
-  return gradient;
+  for (int i = 0; i < q.size(); ++i) gradient[i] += share * velocity[i] * sqrt_weights_[i];
 }
 
 }  // namespace tactus

@@ -114,7 +114,7 @@ constexpr auto kHazards = std::to_array<Hazard>({
      "waits until it was off and is on", "before motion", "who switches has to look",
      "mode `ready`"},
     {kUnasked, "links move to `redundancy.posture` while the tool holds", Fault::kNone,
-     "`Posture.BeginsSoftlyAlsoWhereTheSceneBegins`, `Posture.GoesOnSoftlyAfterAHold`, "
+     "`SoftPosture.BeginsSoftlyAlsoWhereTheSceneBegins`, `SoftPosture.GoesOnSoftlyAfterAHold`, "
      "`Posture.IsBoundedInItsSpeedAndNotTurned`",
      "the law, where they touch something", "gives way", "T",
      "up to `max_speed_share` of the joints' speeds while the arm runs", "mode `running`"},

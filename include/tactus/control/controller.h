@@ -157,15 +157,13 @@ class Controller {
                          PreparedCycle& prepared) const noexcept;
   void computeTaskMotion(const TaskGains& gains, const ControllerState& state,
                          PreparedCycle& prepared) const noexcept;
-  JointLimitCost limitCost(const JointVector& q, const Gains& gains,
-                           ControllerState& state) const noexcept;
+  /// Of joint limits and posture together.
   JointLimitCost costAt(const JointVector& q, const Gains& gains,
                         ControllerState& state) const noexcept;
   FreeAcceleration freeAcceleration(const Gains& gains, double path_time_s, double period_s,
                                     const PreparedCycle& prepared,
                                     ControllerState& state) const noexcept;
-  void lowerCost(const Gains& gains, const TaskKinematics& kinematics, ControllerState& state,
-                 Motion& motion) const noexcept;
+  void leadAnew(const Gains& gains, bool is_leaning, ControllerState& state) const noexcept;
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
   Fault read(int module, const RobotInput& input, double period_s,
              TactileReading& reading) const noexcept;
@@ -175,9 +173,9 @@ class Controller {
                      const FreeAcceleration& free, double period_s, ControllerState& state,
                      ControllerOutput& output, Motion& motion) const noexcept;
   using ModuleFaults = std::array<Fault, kMaxTactileModules>;
-  double speedShareAfter(double duration_s, const ControllerState& state) const noexcept;
   void goOnWithoutLost(const Gains& gains, double period_s, ModuleFaults& faults,
                        ControllerState& state, ControllerOutput& output) const noexcept;
+  double speedShareAfter(double duration_s, const ControllerState& state) const noexcept;
   void judgeModules(const Gains& gains, double period_s, ModuleFaults& faults,
                     PreparedCycle& prepared, ControllerState& state,
                     ControllerOutput& output) const noexcept;

@@ -32,6 +32,10 @@ class JointLimitAvoidance {
 
   JointLimitCost evaluate(const JointLimitZones& zones, const JointVector& q) const noexcept;
 
+  /// With the zones of these gains: those kept are of these or others, and follow.
+  JointLimitCost evaluate(const JointLimitAvoidanceGains& gains, const JointVector& q,
+                          JointLimitZones& zones_kept) const noexcept;
+
  private:
   // Zero beyond the robot's joints, and for joints without limits.
   ScaledVector middle_ = ScaledVector::Zero();  ///< of the range

@@ -18,8 +18,9 @@ class Posture {
   Posture(const JointVector& q_posture, const JointVector& max_velocity,
           const ScaledVector& inv_sqrt_weights);
 
-  /// s W^-1/2 dH/dq, which is subtracted, m/s or rad/s; zero beyond the robot's joints.
-  ScaledVector gradient(const PostureGains& gains, const JointVector& q) const noexcept;
+  /// Adds s W^-1/2 dH/dq, which is subtracted later, m/s or rad/s, for the robot's joints.
+  void addTo(ScaledVector& gradient, const PostureGains& gains,
+             const JointVector& q) const noexcept;
 
  private:
   JointVector q_posture_;
