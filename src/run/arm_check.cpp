@@ -186,11 +186,14 @@ void checkPosture(const Scene& scene, Warnings& warnings) {
         "gain "
         "of joint_limit_avoidance is 0");
   } else if (!joints.empty()) {
+    const std::string way_out =
+        most < 0.01 ? "it has to be further inside their limits"
+                    : fmt::format("with an active_fraction below {:.2f} it does not",
+                                  std::floor(100.0 * most) / 100.0);
     warnings.push_back(
         fmt::format("redundancy.posture is not reached, as joint_limit_avoidance drives joints "
-                    "away from there; "
-                    "with an active_fraction below {:.2f} it does not: {}",
-                    std::floor(100.0 * most) / 100.0, fmt::join(joints, " ")));
+                    "away from there; {}: {}",
+                    way_out, fmt::join(joints, " ")));
   }
 }
 

@@ -217,7 +217,11 @@ TEST(ArmCheck, TellsOfAPostureThatIsNotReached) {
       0.5 * (scene.controller.limits.lower + scene.controller.limits.upper);
   EXPECT_FALSE(has(checkArm(scene), what)) << "in the middle";
   (*scene.controller.q_posture)[4] = 0.99 * scene.controller.limits.upper[4];
-  EXPECT_TRUE(has(checkArm(scene), "below 0.00 it does not: " + scene.joint_names[4]));
+  EXPECT_TRUE(has(checkArm(scene), "further inside their limits: " + scene.joint_names[4]));
+  (*scene.controller.q_posture)[4] =
+      scene.controller.limits.upper[4] -
+      0.0575 * (scene.controller.limits.upper[4] - scene.controller.limits.lower[4]);
+  EXPECT_TRUE(has(checkArm(scene), "below 0.11 it does not: " + scene.joint_names[4]));
   scene.controller.gains.joint_limit_avoidance.gain = 0.0;
   EXPECT_FALSE(has(checkArm(scene), what));
   EXPECT_TRUE(has(checkArm(scene), "may press joints against their limits"));
