@@ -77,7 +77,7 @@ ControlCycle::ControlCycle(const ControllerConfig& controller, const HardwareCon
       mode_config_(modeConfig(controller.limits, hardware, period_s)),
       brake_config_(brakeConfig(hardware, period_s)),
       state_(controller_.initialState()) {
-  if (controller.task.commands) tool_orders_.emplace(*controller.task.commands, period_s);
+  if (controller.task.commands) tool_orders_.emplace(*controller.task.commands);
   output_.velocity = JointVector::Zero(controller.q_start.size());
   output_.q_desired = controller.q_start;
 }

@@ -51,6 +51,7 @@ void ControlCycle::fill(ToolSight& sight) const noexcept {
 
 void ControlCycle::goOnWithTool() noexcept {
   ToolWatch seen;
+  seen.passed_s = (1 + missed_cycles_) * period_s_;
   seen.path_time_s = nextPathTime_s();
   seen.progress = toolProgress();
   const TaskConfig& task = controller_.config().task;

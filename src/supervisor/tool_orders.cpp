@@ -28,8 +28,7 @@ bool leadsBack(const Vector3& target, const ToolWatch& seen, const ToolMotion& m
 
 }  // namespace
 
-ToolOrders::ToolOrders(const TaskCommandsConfig& config, double period_s)
-    : config_(config), period_s_(period_s), waiting_(kMaxWaiting) {}
+ToolOrders::ToolOrders(const TaskCommandsConfig& config) : config_(config), waiting_(kMaxWaiting) {}
 
 void ToolOrders::order(const ToolOrder& order) noexcept {
   const bool is_next = order.kind == ToolOrder::Kind::kGoNext;
@@ -101,8 +100,8 @@ void ToolOrders::begin(const ToolOrder& order, const ToolWatch& seen, ToolMotion
 }
 
 void ToolOrders::watch(const ToolWatch& seen, ToolMotion& motion) noexcept {
-  paused_s_ = std::max(0.0, paused_s_ - period_s_);
-  silent_s_ += period_s_;
+  paused_s_ = std::max(0.0, paused_s_ - seen.passed_s);
+  silent_s_ += seen.passed_s;
   if (!isUnderWay(report_.state)) return;
   if (current_.kind == ToolOrder::Kind::kStream && silent_s_ > config_.stream_timeout_s) {
     if (seen.progress < kFreeProgress) return rest(seen, ToolState::kLate, motion);
@@ -122,7 +121,7 @@ void ToolOrders::watch(const ToolWatch& seen, ToolMotion& motion) noexcept {
     return;
   }
   report_.state = ToolState::kBlocked;
-  blocked_s_ += period_s_;
+  blocked_s_ += seen.passed_s;
   if (blocked_s_ > config_.give_up_after_s) rest(seen, ToolState::kGivenUp, motion);
 }
 

@@ -39,15 +39,29 @@ struct LimitsRig {
     c.stream_timeout_s = 0.125;
     return c;
   }();
-  ToolOrders orders{config, kTick_s};
+  ToolOrders orders{config};
   ToolMotion motion{Pose{Matrix3::Identity(), Vector3::Zero()}};
   ToolWatch seen = [] {
     ToolWatch watch;
+    watch.passed_s = kTick_s;
     watch.X_BaseTool = {Matrix3::Identity(), Vector3(0.01, 0.0, 0.0)};
     watch.is_running = true;
     return watch;
   }();
 };
+
+/// Those that were missed are of a stream's time.
+TEST(ToolOrdersLimits, CountTimeAndNotCycles) {
+  for (const int missed : {0, 1, 3}) {
+    LimitsRig rig;
+    rig.tell(orderTo({0.3, 0.0, 0.0}, 1, kStreaming));
+    rig.seen.passed_s = (1 + missed) * kTick_s;
+    rig.pass(128 / (1 + missed));
+    EXPECT_EQ(rig.state(), ToolState::kMoving) << missed;
+    rig.pass(1);
+    EXPECT_EQ(rig.state(), ToolState::kLate) << missed;
+  }
+}
 
 TEST(ToolOrdersLimits, GiveUpAfterTheirTime) {
   LimitsRig rig;

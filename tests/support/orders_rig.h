@@ -15,10 +15,11 @@ struct OrdersRig {
     c.give_up_after_s = 2.0;
     return c;
   }();
-  ToolOrders orders{config, kOrdersPeriod_s};
+  ToolOrders orders{config};
   ToolMotion motion{Pose{Matrix3::Identity(), Vector3::Zero()}};
   ToolWatch seen = [] {
     ToolWatch watch;
+    watch.passed_s = kOrdersPeriod_s;
     watch.X_BaseTool = {Matrix3::Identity(), Vector3::Zero()};
     watch.is_running = true;
     return watch;

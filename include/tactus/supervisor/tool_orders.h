@@ -32,6 +32,7 @@ inline constexpr double kFreeProgress = 1.0 - 1e-9;
 
 /// What the loop sees of the tool.
 struct ToolWatch {
+  double passed_s = 0.0;     ///< since the last time, with cycles that were missed
   double path_time_s = 0.0;  ///< the reference's, in the next cycle
   double progress = 1.0;     ///< of its clock; less than 1 where the tool is held off
   double lag_m = 0.0, lag_rad = 0.0;
@@ -77,7 +78,7 @@ class ToolOrders {
  public:
   static constexpr std::size_t kMaxWaiting = 256;
 
-  ToolOrders(const TaskCommandsConfig& config, double period_s);
+  explicit ToolOrders(const TaskCommandsConfig& config);
 
   /// An order for which there is no room, with all that it belongs to, ends in a hold.
   void order(const ToolOrder& order) noexcept;
@@ -94,7 +95,6 @@ class ToolOrders {
   bool isThere(const ToolWatch& seen, const ToolMotion& motion) const noexcept;
 
   TaskCommandsConfig config_;
-  double period_s_;
   std::vector<ToolOrder> waiting_;  ///< a ring
   std::size_t first_ = 0, count_ = 0;
   ToolOrder current_;
