@@ -52,7 +52,7 @@ void DriveSetup::update(FrameBatch& out) noexcept {
 void DriveSetup::beginStep() noexcept {
   const SetupStep& step = steps_[step_];
   step_cycles_ = 0;
-  is_stopping_ = false;
+  is_stopping_ = is_repeated_ = false;
   if (step.kind == SetupStep::Kind::kWrite)
     sdo_.download(step.entry, step.value);
   else
@@ -73,10 +73,17 @@ void DriveSetup::judgeTransfer() noexcept {
   }
 }
 
+/// A request may be lost: a bus that still has to confirm frames takes none of this cycle.
 void DriveSetup::judgeSilence() noexcept {
   const bool may_still_be_booting = step_ == 0 && cycles_ < boot_timeout_cycles_;
-  if (!may_still_be_booting) return fail(0);
-  is_announced_ = false;
+  if (may_still_be_booting) {
+    is_announced_ = false;
+  } else if (step_ > 0 && !is_repeated_) {
+    beginStep();
+    is_repeated_ = true;
+  } else {
+    fail(0);
+  }
 }
 
 void DriveSetup::judgeAbort() noexcept {

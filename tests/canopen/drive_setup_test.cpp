@@ -133,6 +133,17 @@ TEST_P(DriveSetupStep, ReadOnlyIsAcceptedOnlyWhereItMayBe) {
   }
 }
 
+/// A bus that still has to confirm frames takes none of that cycle.
+TEST_P(DriveSetupStep, IsAskedForOnceMoreWhereItIsNotAnswered) {
+  DriveRig rig;
+  rig.slave.unanswered.insert(entry());
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.until([&] { return rig.slave.aborts_heard == 1; }, DriveGoal::kConfigure);
+  rig.slave.unanswered.clear();
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
+  EXPECT_EQ(rig.report().fault, Fault::kNone);
+}
+
 TEST_P(DriveSetupStep, UnansweredEndsTheSetUp) {
   CanopenConfig canopen;
   const bool may_be_booting = GetParam().entry.index == 0x1000;

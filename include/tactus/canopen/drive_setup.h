@@ -94,6 +94,7 @@ class DriveSetup {
   SetupFailure failure_;
   std::size_t step_ = 0;
   bool is_announced_ = false;  ///< NMT pre-operational has been sent
+  bool is_repeated_ = false;   ///< this step, which was not answered
   bool is_stopping_ = false;   ///< the second half of kStopPdo
   int cycles_ = 0;             ///< since start()
   int step_cycles_ = 0;
