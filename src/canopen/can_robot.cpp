@@ -54,6 +54,12 @@ CanRobot::CanRobot(const HardwareConfig& hardware, double period_s)
     tactile_modules_.emplace_back(module, period_s);
 }
 
+int probeCycles(const CanopenConfig& canopen, double period_s) noexcept {
+  constexpr int kLeast = 100;
+  constexpr double kLonger = 1.5;
+  return std::max(kLeast, cyclesCovering(kLonger * canopen.heartbeat_timeout_s, period_s));
+}
+
 void CanRobot::receive(int bus, std::span<const CanFrame> frames) noexcept {
   for (const CanFrame& frame : frames) {
     for (AnyDrive& drive : drives_) {

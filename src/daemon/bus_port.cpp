@@ -1,5 +1,6 @@
 #include "tactus/daemon/bus_port.h"
 
+#include "tactus/canopen/can_robot.h"
 #include "tactus/io/bus_ids.h"
 
 namespace tactus {
@@ -13,8 +14,10 @@ CanSocket openSocket(const HardwareConfig& hardware, int bus) {
 
 }  // namespace
 
-BusPort::BusPort(const HardwareConfig& hardware, int bus)
-    : lock(hardware.buses[bus].interface), socket(openSocket(hardware, bus)) {}
+BusPort::BusPort(const HardwareConfig& hardware, int bus, double period_s)
+    : lock(hardware.buses[bus].interface), socket(openSocket(hardware, bus)) {
+  socket.monitor() = BusMonitor(probeCycles(hardware.canopen, period_s));
+}
 
 Fault BusPort::receive() noexcept {
   socket.receive(frames);
@@ -27,10 +30,10 @@ void BusPort::send(const FrameBatch& outbox, const CanFrame& probe) noexcept {
   socket.probe(probe);
 }
 
-std::vector<std::unique_ptr<BusPort>> openBuses(const HardwareConfig& hardware) {
+std::vector<std::unique_ptr<BusPort>> openBuses(const HardwareConfig& hardware, double period_s) {
   std::vector<std::unique_ptr<BusPort>> buses;
   for (std::size_t bus = 0; bus < hardware.buses.size(); ++bus)
-    buses.push_back(std::make_unique<BusPort>(hardware, static_cast<int>(bus)));
+    buses.push_back(std::make_unique<BusPort>(hardware, static_cast<int>(bus), period_s));
   return buses;
 }
 

@@ -22,9 +22,10 @@
 namespace tactus {
 namespace {
 
-std::vector<std::unique_ptr<BusPort>> openOrRefuse(const HardwareConfig& hardware) {
+std::vector<std::unique_ptr<BusPort>> openOrRefuse(const HardwareConfig& hardware,
+                                                   double period_s) {
   try {
-    return openBuses(hardware);
+    return openBuses(hardware, period_s);
   } catch (const std::runtime_error& error) {
     throw RunError(error.what());
   }
@@ -64,7 +65,7 @@ void checkMeasuredStart(const Scene& scene) {
 JointVector readJoints(const Scene& scene) {
   const HardwareConfig& hardware = *scene.hardware;
   const HeldSignals held;
-  auto buses = openOrRefuse(hardware);
+  auto buses = openOrRefuse(hardware, scene.period_s);
   JointReader reader(hardware, scene.period_s);
   PeriodicTimer timer(std::llround(1e9 * scene.period_s));
   while (!reader.isDone()) {

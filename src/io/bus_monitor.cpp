@@ -94,7 +94,7 @@ void BusMonitor::update() noexcept {
   noteUnconfirmed();
   noteFlood();
   if (gravity(trouble_) > gravity(fault_)) {
-    if (!isDead()) cycles_to_probe_ = kProbeCycles;
+    if (!isDead()) cycles_to_probe_ = probe_cycles_;
     fault_ = trouble_;
   }
   recover();
@@ -110,7 +110,7 @@ void BusMonitor::raise(Fault trouble) noexcept {
 /// A bus that has answered and fallen silent with frames open has lost them: their confirmations
 /// are no longer waited for, but the probe's is.
 void BusMonitor::noteProbe() noexcept {
-  cycles_to_probe_ = kProbeCycles;
+  cycles_to_probe_ = probe_cycles_;
   if (!has_answered_ || calm_cycles_ < kCalmCycles) return;
   unconfirmed_ = calm_cycles_ = 0;
   has_answered_ = false;

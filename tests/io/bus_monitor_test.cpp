@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/allocation_guard.h"
+#include "tactus/canopen/can_robot.h"
 
 namespace tactus {
 namespace {
@@ -240,22 +241,38 @@ TEST(BusMonitor, AGraverTroubleTakesTheNameAndAMilderOneDoesNot) {
   EXPECT_EQ(monitor.fault(), Fault::kBusDown);
 }
 
-TEST(BusMonitor, ProbesADeadBusEveryHundredCyclesAndNothingElse) {
-  BusMonitor monitor;
-  monitor.update();
-  monitor.onErrorFrame(kBusOffFrame);
-  int probes = 0;
-  for (int cycle = 0; cycle < 10 * BusMonitor::kProbeCycles + 1; ++cycle) {
+TEST(BusMonitor, ProbesADeadBusAsRarelyAsItIsToldAndNothingElse) {
+  for (const int probe_cycles : {BusMonitor::kProbeCycles, 351}) {
+    BusMonitor monitor(probe_cycles);
     monitor.update();
-    EXPECT_FALSE(monitor.maySend());
-    if (!monitor.mayProbe()) continue;
-    EXPECT_EQ(cycle % BusMonitor::kProbeCycles, 0);
-    ++probes;
-    monitor.onSendError(ENOBUFS);
-    monitor.onSent(0, 1);
+    monitor.onErrorFrame(kBusOffFrame);
+    int probes = 0;
+    for (int cycle = 0; cycle < 10 * probe_cycles + 1; ++cycle) {
+      monitor.update();
+      EXPECT_FALSE(monitor.maySend());
+      if (!monitor.mayProbe()) continue;
+      EXPECT_EQ(cycle % probe_cycles, 0);
+      ++probes;
+      monitor.onSendError(ENOBUFS);
+      monitor.onSent(0, 1);
+    }
+    EXPECT_EQ(probes, 10);
+    EXPECT_EQ(monitor.fault(), Fault::kBusOff);
   }
-  EXPECT_EQ(probes, 10);
-  EXPECT_EQ(monitor.fault(), Fault::kBusOff);
+}
+
+/// Drives that watch the daemon's heartbeat alone have to stop where they are not heard.
+TEST(BusMonitor, ProbesMoreRarelyThanDrivesWaitForAHeartbeat) {
+  for (const double timeout_s : {0.01, 0.06, 0.0999, 0.1, 0.2, 3.0, 65.0}) {
+    for (const double period_s : {0.0005, 0.001, 0.002}) {
+      CanopenConfig canopen;
+      canopen.heartbeat_timeout_s = timeout_s;
+      const int cycles = probeCycles(canopen, period_s);
+      EXPECT_GT(cycles * period_s, 1.4 * timeout_s);
+      EXPECT_GE(cycles, BusMonitor::kProbeCycles);
+    }
+  }
+  EXPECT_EQ(probeCycles({}, 0.001), BusMonitor::kProbeCycles) << "as shipped";
 }
 
 TEST(BusMonitor, RearmsOnceAProbeIsConfirmedAndCalmHasLasted) {

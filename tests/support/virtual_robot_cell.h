@@ -24,7 +24,8 @@ class VirtualRobotCell {
   explicit VirtualRobotCell(const Scene& scene)
       : cycle(scene.controller, *scene.hardware, scene.period_s),
         plant(scene.controller, scene.plant, *scene.hardware, scene.period_s, scene.troubles),
-        monitors(scene.hardware->buses.size()),
+        monitors(scene.hardware->buses.size(),
+                 BusMonitor(probeCycles(scene.hardware->canopen, scene.period_s))),
         joints_(scene.controller.chain.size()),
         period_ns_(std::llround(1e9 * scene.period_s)) {}
 

@@ -23,6 +23,10 @@ struct DrivesReport {
   int joint = -1;  ///< of that fault
 };
 
+/// Cycles between probes of a bus that is dead: 100, but longer than drives wait for a heartbeat.
+/// A probe is one, and drives that hear it, but are not heard, have to stop by themselves.
+int probeCycles(const CanopenConfig& canopen, double period_s) noexcept;
+
 /// The robot interface over CAN: one drive a joint and the tactile modules, in frames. Knows no
 /// socket and no clock. A cycle: receive() for each bus, expect(), read(), command(), write(), then
 /// the outboxes.
@@ -50,7 +54,8 @@ class CanRobot final : public Robot {
   /// nothing on a bus with a drive that only silence stops.
   const FrameBatch& outbox(int bus) const noexcept { return outboxes_[bus]; }
 
-  /// A frame that tells a dead bus's return and moves nothing; on such a bus only, each 100 cycles.
+  /// A frame that tells a dead bus's return and moves nothing; on such a bus only, each
+  /// probeCycles().
   const CanFrame& probe() const noexcept { return heartbeat_; }
 
   DrivesReport drives() const noexcept;

@@ -11,7 +11,7 @@ namespace tactus {
 
 /// A bus of the robot, for one program alone. Throws what CanSocket and InterfaceLock throw.
 struct BusPort {
-  BusPort(const HardwareConfig& hardware, int bus);
+  BusPort(const HardwareConfig& hardware, int bus, double period_s);
 
   /// What has come since, into `frames`; returns the bus's fault.
   Fault receive() noexcept;
@@ -24,6 +24,6 @@ struct BusPort {
 };
 
 /// All of the robot's, or none.
-std::vector<std::unique_ptr<BusPort>> openBuses(const HardwareConfig& hardware);
+std::vector<std::unique_ptr<BusPort>> openBuses(const HardwareConfig& hardware, double period_s);
 
 }  // namespace tactus

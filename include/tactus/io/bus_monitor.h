@@ -25,7 +25,7 @@ struct BusCounters {
 /// A frame given to the kernel cannot be taken back, so a dead bus is answered in three steps:
 /// - Purge: nothing more is handed over. What the kernel holds is at most the frames of the last
 ///   cycle; the controller drops them (bus-off, interface down) or sends them when it can.
-/// - Probe: each kProbeCycles cycles one harmless frame (a heartbeat) may go, also while others
+/// - Probe: each `probe_cycles` cycles one harmless frame (a heartbeat) may go, also while others
 ///   wait, as drivers may lose frames without a word.
 /// - Re-arm: once all frames are confirmed and kCalmCycles cycles have passed without trouble, the
 ///   kernel is empty and the bus works. Frames that a bus which answers again never confirms were
@@ -44,6 +44,8 @@ class BusMonitor {
   /// After so many frames that were confirmed a controller is passive no more, whether its driver
   /// says so or not: its counter of errors, 255 at most, is back below 128.
   static constexpr int kFramesToActive = 128;
+
+  explicit BusMonitor(int probe_cycles = kProbeCycles) noexcept : probe_cycles_(probe_cycles) {}
 
   void onErrorFrame(const CanFrame& frame) noexcept;
   void onConfirmed(int frames) noexcept;  ///< own frames that came back as echo
@@ -75,6 +77,7 @@ class BusMonitor {
   void recover() noexcept;
   void rearm() noexcept;
 
+  int probe_cycles_;
   BusCounters counters_;
   Fault fault_ = Fault::kNone;
   Fault trouble_ = Fault::kNone;  ///< of this cycle
