@@ -73,32 +73,32 @@ ControlRequests::ControlRequests(const Scene& scene, LoopLink& link)
   before_.reserve(kKeptForUndo);  // so that keep() never ends halfway
 }
 
-std::string ControlRequests::answer(std::string_view request) {
+std::string ControlRequests::answer(std::string_view request, const IsAsked& is_asked) {
   try {
     const Json parsed = Json::parse(request, nullptr, false);
     if (!parsed.is_object()) refuseRequest("no JSON object", "one a message");
-    return compact(dispatch(parsed));
+    return compact(dispatch(parsed, is_asked));
   } catch (const std::exception& error) {
     return compact({{"done", false}, {"error", error.what()}});
   }
 }
 
-Json ControlRequests::dispatch(const Json& request) {
+Json ControlRequests::dispatch(const Json& request, const IsAsked& is_asked) {
   notice();  // what is planned is laid over what runs now
   const std::string what = wishOf(request);
   if (what == "set") return set(request);
   if (what == "reload") return reload(request);
   if (what == "undo") return undo(request);
   if (what == "show") return show(request);
-  return tell(what, request);
+  return tell(what, request, is_asked);
 }
 
-Json ControlRequests::tell(const std::string& what, const Json& request) {
+Json ControlRequests::tell(const std::string& what, const Json& request, const IsAsked& is_asked) {
   Json task;
   if (what == "move" || what == "stream") {
-    task = tool_.move(request);
+    task = tool_.move(request, is_asked);
   } else if (what == "follow") {
-    task = tool_.follow(request);
+    task = tool_.follow(request, is_asked);
   } else if (what == "hold") {
     task = tool_.hold(request);
   } else {
@@ -234,6 +234,7 @@ std::string ControlRequests::look() {
 void ControlRequests::notice() {
   const std::string news = lookAtGains();
   if (!news.empty()) news_ += (news_.empty() ? "" : "\ntactusd: ") + news;
+  tool_.use(newest().controller.gains);
 }
 
 std::string ControlRequests::lookAtGains() {

@@ -121,13 +121,14 @@ bool ControlSocket::hear(Client& client) {
   // What nobody waits for any more would move the arm unasked. To stop it is never wrong.
   if (hasLeft(client.socket) && !isHold(room, size)) return true;
   const bool is_whole = static_cast<std::size_t>(size) <= room.size();
-  return client.socket.send(answer(room, size)) && is_whole;
+  const auto is_asked = [&client] { return !hasLeft(client.socket); };
+  return client.socket.send(answer(room, size, is_asked)) && is_whole;
 }
 
-std::string ControlSocket::answer(std::span<char> room, long size) {
+std::string ControlSocket::answer(std::span<char> room, long size, const IsAsked& is_asked) {
   const auto length = static_cast<std::size_t>(size);
   if (length > room.size()) return R"({"done":false,"error":"request: longer than 32768 bytes"})";
-  return requests_.answer({room.data(), length});
+  return requests_.answer({room.data(), length}, is_asked);
 }
 
 }  // namespace tactus

@@ -221,33 +221,62 @@ TEST(SlowToolRequests, ReachWhatIsReachedFaster) {
   }
 }
 
+/// A post in the tool's way.
+Scene blockedScene(const std::string& wait_beyond_m) {
+  return test::shippedScene(
+      "whole_arm/crops9_skin_two_links",
+      {{"robot.limits.acceleration", "[2, 2, 2, 2, 2, 2, 2, 2, 2]"},
+       {"task.source", "commands"},
+       {"task.trajectory", "~"},
+       {"task.drift_gain_per_s", "6.48"},
+       {"task.max_return_speed_m_per_s", "0.113"},
+       {"task.wait_beyond_m", wait_beyond_m},
+       {"task.commands",
+        "{max_speed_m_per_s: 0.203, max_acceleration_m_per_s2: 1.844, max_jerk_m_per_s3: 7.35}"},
+       {"redundancy", "{joint_limit_avoidance: {}}"},
+       {"clearance",
+        "{safe_distance_m: 0.023, influence_distance_m: 0.0679, keep_out: [{post: {foot_m: "
+        "[1.17548, 0.61132, 0.08303], axis: [-0.28508, -0.68783, 0.66755], height_m: 0.5251, "
+        "radius_m: 0.0489}}]}"}});
+}
+const Vector3 kBehindThePost_m(0.37784, 0.02673, 0.08538);
+
 /// A reference that ran ahead would pull the tool round what the arm keeps clear of. One that waits
 /// for the tool waits before it for good.
 TEST(BlockedToolRequests, AreRefusedWhereTheReferenceWouldWait) {
   const auto problem = [](const std::string& wait_beyond_m) {
-    const Scene scene = test::shippedScene(
-        "whole_arm/crops9_skin_two_links",
-        {{"robot.limits.acceleration", "[2, 2, 2, 2, 2, 2, 2, 2, 2]"},
-         {"task.source", "commands"},
-         {"task.trajectory", "~"},
-         {"task.drift_gain_per_s", "6.48"},
-         {"task.max_return_speed_m_per_s", "0.113"},
-         {"task.wait_beyond_m", wait_beyond_m},
-         {"task.commands",
-          "{max_speed_m_per_s: 0.203, max_acceleration_m_per_s2: 1.844, max_jerk_m_per_s3: 7.35}"},
-         {"redundancy", "{joint_limit_avoidance: {}}"},
-         {"clearance",
-          "{safe_distance_m: 0.023, influence_distance_m: 0.0679, keep_out: [{post: {foot_m: "
-          "[1.17548, 0.61132, 0.08303], axis: [-0.28508, -0.68783, 0.66755], height_m: 0.5251, "
-          "radius_m: 0.0489}}]}"}});
+    const Scene scene = blockedScene(wait_beyond_m);
     Pose target = tipPose(scene.controller.chain, scene.controller.q_start);
-    target.p_AB += Vector3(0.37784, 0.02673, 0.08538);
+    target.p_AB += kBehindThePost_m;
     return followTo(scene.controller, scene.controller.q_start, target,
                     scene.controller.task.commands->limits, scene.period_s)
         .problem;
   };
   EXPECT_EQ(problem("0.5"), "");
   EXPECT_NE(problem("0.0059").find("out of reach"), std::string::npos);
+}
+
+TEST(BlockedToolRequests, AreJudgedByTheGainsThatWereSetLast) {
+  const Scene scene = blockedScene("0.0059");
+  LoopLink link;
+  ControlRequests requests(scene, link);
+  ToolSight sight;
+  placeAtStart(scene.controller, true, sight);
+  link.tool_sights.put(sight);
+  const Json to_m = {kBehindThePost_m.x(), kBehindThePost_m.y(), kBehindThePost_m.z()};
+  const Json target = {{"to_m", to_m}, {"relative", true}};
+  const Json follow = {{"do", "follow"}, {"waypoints", {target}}};
+  Json move = target;
+  move["do"] = "move";
+  const auto isDone = [&](const Json& request) {
+    return Json::parse(requests.answer(request.dump())).at("done").get<bool>();
+  };
+  for (const bool is_set : {false, true}) {
+    EXPECT_EQ(isDone(move), is_set);
+    EXPECT_EQ(isDone(follow), is_set);
+    if (is_set) break;
+    ASSERT_TRUE(isDone({{"do", "set"}, {"values", {{"task.wait_beyond_m", 0.5}}}}));
+  }
 }
 
 /// The tool is still on its way when the reference has ended.
@@ -300,6 +329,24 @@ TEST_F(ToolRequestsTest, RefusesInOneLineAndDoesNothing) {
   for (int i = 0; i < 257; ++i) many.push_back(far);
   EXPECT_NE(refusal({{"do", "follow"}, {"waypoints", many}}).find("at most 256"),
             std::string::npos);
+}
+
+/// As by Ctrl-C while the way is looked at.
+TEST_F(ToolRequestsTest, TellsTheToolNothingForWhoHasLeft) {
+  const Json there = {{"to_m", {0.95, 0.4, 0.25}}};
+  Json move = there, stream = there;
+  move["do"] = "move";
+  stream["do"] = "stream";
+  for (const Json& request : {move, stream, Json{{"do", "follow"}, {"waypoints", {there}}}}) {
+    for (const bool is_asked : {false, true}) {
+      const std::string answer = requests.answer(request.dump(), [=] { return is_asked; });
+      EXPECT_EQ(Json::parse(answer).at("done"), is_asked) << answer;
+      ToolOrder order;
+      EXPECT_EQ(link.tool_orders.pop(order), is_asked) << request;
+    }
+  }
+  const Json hold = {{"do", "hold"}};
+  EXPECT_EQ(Json::parse(requests.answer(hold.dump(), [] { return false; })).at("done"), true);
 }
 
 TEST_F(ToolRequestsTest, RefusesWhileTheArmDoesNotRun) {

@@ -25,7 +25,8 @@ class ControlRequests {
   /// scene: of the start.
   ControlRequests(const Scene& scene, LoopLink& link);
 
-  std::string answer(std::string_view request);
+  /// is_asked: who asks still waits; the tool is told nothing for somebody who has left.
+  std::string answer(std::string_view request, const IsAsked& is_asked = nullptr);
 
   /// Looks what the loop has made of the last order. Returns a line for the journal, empty if
   /// nothing is new.
@@ -45,11 +46,11 @@ class ControlRequests {
     bool is_for_a_time;
   };
 
-  Json dispatch(const Json& request);
+  Json dispatch(const Json& request, const IsAsked& is_asked);
   Json set(const Json& request);
   Json reload(const Json& request);
   Json undo(const Json& request);
-  Json tell(const std::string& what, const Json& request);
+  Json tell(const std::string& what, const Json& request, const IsAsked& is_asked);
   Json showGains();
   Json show(const Json& request);
   std::string lookAtGains();

@@ -42,7 +42,7 @@ class ControlSocket {
   void look();
   void accept();
   bool hear(Client& client);
-  std::string answer(std::span<char> room, long size);
+  std::string answer(std::span<char> room, long size, const IsAsked& is_asked);
 
   ControlRequests requests_;
   std::string made_path_;  ///< of a socket of our own, to be removed

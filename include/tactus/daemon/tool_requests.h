@@ -1,23 +1,32 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "tactus/daemon/loop_link.h"
+#include "tactus/daemon/tool_target.h"
 #include "tactus/scene/json.h"
 #include "tactus/scene/reach_check.h"
 #include "tactus/scene/scene.h"
 
 namespace tactus {
 
+/// Whether somebody still waits for the answer; nullptr: yes.
+using IsAsked = std::function<bool()>;
+
 /// The part of ControlRequests that tells the tool where to go. Requests that are refused throw an
 /// InputError, and nothing of them happens.
 class ToolRequests {
  public:
-  ToolRequests(const Scene& scene, LoopLink& link) : scene_(scene), link_(link) {}
+  ToolRequests(const Scene& scene, LoopLink& link)
+      : scene_(scene), link_(link), gains_(scene.controller.gains) {}
 
-  Json move(const Json& request);  ///< also for `stream`
-  Json follow(const Json& request);
+  /// The gains that the arm has, or is about to have.
+  void use(const Gains& gains) { gains_ = gains; }
+
+  Json move(const Json& request, const IsAsked& is_asked);  ///< also for `stream`
+  Json follow(const Json& request, const IsAsked& is_asked);
   /// A stream that is under way is refused from then on, until it has paused for its timeout: else
   /// its next target would lead the tool on a moment later.
   Json hold(const Json& request);
@@ -29,23 +38,14 @@ class ToolRequests {
   std::string look();
 
  private:
-  /// What a request says of a target, and from where it counts.
-  struct Target {
-    ToolOrder order;
-    Pose X_BaseTool;
-  };
-
   void requireArm();
   void requireNoHold();
   bool isStreamAlive() const;
-  Pose toolInPosture(const Json& request, const Pose& from) const;
   Json postureJson() const;
-  void aim(const Json& request, const Pose& from, Pose& X_BaseTool) const;
-  Target target(const Json& request, const Pose& from, ToolOrder::Kind kind) const;
-  Target asked(const std::string& what, const Json& waypoint, const Pose& from,
-               ToolOrder::Kind kind) const;
+  ToolTarget asked(const std::string& what, const Json& waypoint, const Pose& from,
+                   ToolOrder::Kind kind) const;
   JointVector jointsOf(const ToolSight& sight) const;
-  Reach reach(const std::string& what, const JointVector& q, const Target& target) const;
+  Reach reach(const std::string& what, const JointVector& q, const ToolTarget& target) const;
   Json order(const ToolOrder& order, double duration_s);
   void refresh();
   std::string eventText() const;
@@ -53,6 +53,7 @@ class ToolRequests {
 
   const Scene& scene_;
   LoopLink& link_;
+  Gains gains_;
   ToolSight sight_;
   std::uint32_t number_ = 0;
   bool is_streaming_ = false;
