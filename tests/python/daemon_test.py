@@ -180,6 +180,31 @@ class Running(unittest.TestCase):
         daemon.close()
 
 
+class Led(unittest.TestCase):
+    """To a posture that the zones of joint limits keep it from, at first."""
+
+    def setUp(self):
+        self.rig = Rig(None, DAEMON)
+        self.addCleanup(self.rig.close)
+        fraction = "redundancy.joint_limit_avoidance.active_fraction"
+        self.wide, self.narrow = (f"{fraction}={value}" for value in (0.6, 0.2))
+        scene = self.rig.folder / "config/scenes/home.yaml"
+        self.rig.start_daemon(self.wide, "simulation.obstacles=[]", pace=20, scene=scene)
+        os.environ["RUNTIME_DIRECTORY"] = str(self.rig.runtime)
+        self.addCleanup(os.environ.pop, "RUNTIME_DIRECTORY")
+
+    def test_says_when_joints_come_no_nearer(self):
+        away = ("move", "--wait", "--relative", "--to", "-,.1,-")
+        home = ("move", "--wait", "--to-posture")
+        self.assertEqual(program(*away).returncode, 0)
+        done = program(*home)
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"^arrived\nnot in the posture: j\d is [\d.e-]+ rad away\n$")
+        self.assertEqual(program("set", self.narrow).returncode, 0)
+        done = program(*home)
+        self.assertEqual((done.returncode, done.stdout), (0, "arrived\nin the posture\n"), done.stderr)
+
+
 class NoDaemon(unittest.TestCase):
     def setUp(self):
         scratch = tempfile.TemporaryDirectory()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The panel as its users meet it: ten stories in a browser, with a daemon and an arm in virtual time.
+"""The panel as its users meet it: stories in a browser, with a daemon and an arm in virtual time.
 
 usage: panel_test.py TACTUS_PANEL VIRTUAL_DAEMON
 
@@ -273,6 +273,7 @@ class Stories(unittest.TestCase):
         self.page.browser.get(self.rig.address.partition("#")[0])
         self.page.await_life()
         self.assertIn("Read only", self.page.text("banner"))
+        self.assertFalse(self.page.at("to-posture").is_displayed(), "there is none")
         for name in ("set", "undo", "save", "hold", "move"):
             self.assertFalse(self.page.at(name).is_enabled(), name)
         # Only its address has the token, and not for long.
@@ -310,6 +311,26 @@ class Stories(unittest.TestCase):
         wait_for("no word", lambda: not page.at("banner").is_displayed(), patience_s=20)
         page.set(DAMPING, "0.63")
         wait_for("what was set", lambda: page.runs(DAMPING) == "0.63")
+
+
+class Led(unittest.TestCase):
+    """An arm whose joints are led to a posture, which goes on while the tool holds."""
+
+    def test_leads_the_arm_back(self):
+        rig = Rig(PANEL, DAEMON)
+        self.addCleanup(rig.close)
+        rig.start_daemon("simulation.obstacles=[]", pace=5, scene=rig.folder / "config/scenes/home.yaml")
+        rig.start_panel()
+        page = Page(rig.address)
+        self.addCleanup(page.browser.quit)
+        page.open()
+        self.assertEqual(rig.do({"do": "move", "relative": True, "to_m": [0, 0.2, 0]})[0], 200)
+        wait_for("away", lambda: "from the posture" in page.text("task-state"))
+        page.at("to-posture").click()
+        wait_for("it was told", lambda: "On its way" in page.text("move-message"))
+        wait_for("there", lambda: page.text("task-state").endswith("in the posture"))
+        self.assertEqual(rig.task()["posture"]["is_there"], True)
+        self.assertEqual(page.problems(), [])
 
 
 if __name__ == "__main__":

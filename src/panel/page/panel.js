@@ -82,7 +82,8 @@ function showMode() {
   show("fault", hasFault ? `fault: ${status.fault}` : "", "pill bad");
   const isMore = status.description && status.description !== mode;
   const lost = (status.modules_lost || []).map((link) => `${link} lost: goes on slowly without`);
-  show("description", [isMore ? status.description : "", ...lost].filter(Boolean).join("; "));
+  const waits = status.waits_for ? `waits for ${status.waits_for}` : "";
+  show("description", [isMore ? status.description : "", waits, ...lost].filter(Boolean).join("; "));
   show("scene", status.scene ? `${status.scene} (${status.variant})` : "");
   document.title = `${mode} - Tactus`;
 }
@@ -109,6 +110,7 @@ async function begin() {
   at("save").addEventListener("click", () => act({ do: "save" }, "message", (answer) =>
     answer.written ? `${answer.scene} written, as it was is ${answer.scene}~.` : `${answer.scene} has all that runs.`));
   at("hold").addEventListener("click", () => act({ do: "hold" }, "move-message", () => "Holding."));
+  at("to-posture").addEventListener("click", goToPosture);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     drawForce();
     showContacts();

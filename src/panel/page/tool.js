@@ -7,7 +7,9 @@ function taskText(task) {
   let text = `${words[task.state] || task.state}, at ${where} m`;
   if (task.waiting) text += `, ${task.waiting} waypoints left`;
   if (task.contact) text += `; contact of ${task.contact.force_N.toFixed(2)} N on ${task.contact.module}`;
-  return text;
+  if (task.posture && !task.posture.is_there)
+    text += `; ${task.posture.joint} is ${task.posture.away.toPrecision(2)} ${task.posture.unit} from the posture`;
+  return task.posture && task.posture.is_there ? `${text}; in the posture` : text;
 }
 
 function showTask() {
@@ -15,18 +17,26 @@ function showTask() {
   const isTold = Boolean(task);
   at("hold").hidden = !isTold;
   at("move-form").hidden = !isTold;
-  at("hold").disabled = at("move").disabled = !token || !isTold || !task.is_running;
+  at("to-posture").hidden = !isTold || !task.posture;
+  for (const button of ["hold", "move", "to-posture"]) at(button).disabled = !token || !isTold || !task.is_running;
   show("task-state", isTold ? taskText(task) : state.gains ? "The task is a trajectory: nobody tells the tool where to go." : "", "note");
   at("task-state").dataset.state = isTold ? task.state : "";
+}
+
+function tellMove(request) {
+  const speed = at("speed").value.trim();
+  if (!Number.isFinite(Number(speed))) return show("move-message", "expected numbers", "bad");
+  if (speed) request.speed_m_per_s = Number(speed);
+  act(request, "move-message", (answer) => answer.task.duration_s === undefined
+    ? "On its way." : `On its way, ${answer.task.duration_s.toFixed(1)} s without contacts.`);
 }
 
 function move(event) {
   event.preventDefault();
   const texts = ["x", "y", "z"].map((axis) => at(axis).value.trim());
   const to_m = texts.map((text) => (text === "" ? null : Number(text)));
-  const speed = at("speed").value.trim();
   const isNumber = (value) => value === null || Number.isFinite(value);  // no other is left in JSON
-  if (!to_m.every(isNumber) || !isNumber(Number(speed)))
+  if (!to_m.every(isNumber))
     return show("move-message", "expected numbers", "bad");
   if (to_m.every((value) => value === null))
     return show("move-message", "no target, expected one of x, y and z", "bad");
@@ -35,7 +45,9 @@ function move(event) {
     request.relative = true;
     request.to_m = to_m.map((value) => value || 0);
   }
-  if (speed) request.speed_m_per_s = Number(speed);
-  act(request, "move-message", (answer) => answer.task.duration_s === undefined
-    ? "On its way." : `On its way, ${answer.task.duration_s.toFixed(1)} s without contacts.`);
+  tellMove(request);
+}
+
+function goToPosture() {
+  tellMove({ do: "move", to_posture: true });
 }
