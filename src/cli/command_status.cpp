@@ -89,6 +89,9 @@ std::string statusText(const Json& status) {
   std::string shown =
       fmt::format("{} ({}), process {}\n{}\n", textAt(status, "scene"), textAt(status, "variant"),
                   countAt(status, "pid"), textAt(status, "description"));
+  // Which one of an older version does not say.
+  const std::string waits_for = status.contains("waits_for") ? textAt(status, "waits_for") : "";
+  if (!waits_for.empty()) shown += "waits    for " + waits_for + "\n";
   if (status.contains("modules_lost")) shown += lostText(status.at("modules_lost"));
   if (status.contains("motion")) shown += motionText(status.at("motion"));
   shown += fmt::format("cycles   {}, {} missed, {} not logged\n", countAt(status, "cycles"),

@@ -32,6 +32,7 @@ void LoopSide::publish(const Wake& wake, const LoopTimes& times,
   }
   link_.pulse.late_in_a_row.store(wake.late_in_a_row, std::memory_order_relaxed);
   link_.pulse.missed_cycles.store(missed_cycles_, std::memory_order_relaxed);
+  link_.pulse.way_on.store(cycle.wayOn(), std::memory_order_relaxed);
   link_.pulse.cycles.store(cycles_, std::memory_order_relaxed);
   const ModeReport& report = cycle.report();
   const bool is_new = report.mode != reported_.mode || report.fault != reported_.fault;

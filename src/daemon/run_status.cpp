@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tactus/record/fault_text.h"
 #include "tactus/record/message.h"
 #include "tactus/record/output_file.h"
 #include "tactus/record/time_figures.h"
@@ -45,6 +46,7 @@ Json statusJson(const RunStatus& status, double monotonic_s) {
                {"mode", modeName(status.mode)},
                {"fault", faultName(status.fault)},
                {"description", status.description},
+               {"waits_for", wayOnText(status.way_on)},
                {"cycles", status.loop.cycles},
                {"missed_cycles", status.loop.missed_cycles},
                {"dropped_records", status.loop.dropped_records},

@@ -27,7 +27,8 @@ void StatusSink::show() {
   loop_.missed_cycles = link_.pulse.missed_cycles.load(std::memory_order_relaxed);
   loop_.dropped_records = static_cast<long long>(link_.records.dropped());
   const RunFigures& figures = summary_.soFar();
-  file_.write({scene_, report_.mode, report_.fault, description_, loop_,
+  file_.write({scene_, report_.mode, report_.fault, description_,
+               link_.pulse.way_on.load(std::memory_order_relaxed), loop_,
                figures.cycles > 0 ? &figures : nullptr, log_});
 }
 

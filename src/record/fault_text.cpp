@@ -112,6 +112,23 @@ std::string describeMode(const ModeReport& report, const Scene& scene) {
   return report.fault == Fault::kNone ? mode : mode + ": " + describeFault(report, scene);
 }
 
+std::string wayOnText(const WayOn& way_on) {
+  switch (way_on.waits_for) {
+    case WaitsFor::kFaultGone:
+      if (way_on.fault == Fault::kForbiddenSystemCall) return "a new start of the daemon";
+      return fmt::format("{} to be gone", faultName(way_on.fault));
+    case WaitsFor::kDrivesOff:
+      return "the drives to be off; an enable line that is switched before counts for nothing";
+    case WaitsFor::kEnableOff:
+      return "the enable line to be switched off, then on";
+    case WaitsFor::kEnableOn:
+      return "the enable line to be switched on";
+    case WaitsFor::kNothing:
+      break;
+  }
+  return "";
+}
+
 Json faultJson(const FaultReport& report, const Scene& scene) {
   if (report.fault == Fault::kNone) return nullptr;
   const std::string unit = report.detail.unit;

@@ -94,7 +94,9 @@ void ControlCycle::update(const CycleInput& input) noexcept {
   startTares();
   const Mode before = mode_.mode;
   const Fault fault_before = mode_.fault;
-  updateMode(mode_config_, modeInput(input, judge(input)), mode_);
+  const ModeInput mode_input = modeInput(input, judge(input));
+  updateMode(mode_config_, mode_input, mode_);
+  way_on_ = tactus::wayOn(mode_config_, mode_input, mode_);
   if (mode_.mode != Mode::kRunning) state_.waited_s = waited_s;
   const bool is_new_fault = mode_.fault != fault_before;
   if (is_new_fault && mode_.fault != judged_.fault) judgeTimeLimit(before);
@@ -177,6 +179,7 @@ ModeInput ControlCycle::modeInput(const CycleInput& input, Fault fault) noexcept
   mode.stop_requested = input.stop_requested;
   mode.has_enable_line = has_enable_line_;
   mode.enable = input.lines.enable && input.lines.is_valid;
+  mode.must_go_off = input.lines.must_go_off;
   mode.are_configured = mode_.mode == Mode::kBoot && areConfigured();
   mode.are_enabled = drives.are_enabled;
   mode.are_disabled = drives.are_disabled;

@@ -94,4 +94,21 @@ void updateMode(const ModeConfig& config, const ModeInput& input, ModeState& sta
       return take(row, state);
 }
 
+WayOn wayOn(const ModeConfig& config, const ModeInput& input, const ModeState& state) noexcept {
+  if (!input.has_enable_line || input.stop_requested) return {};
+  const WayOn until_on{input.enable        ? WaitsFor::kNothing
+                       : input.must_go_off ? WaitsFor::kEnableOff
+                                           : WaitsFor::kEnableOn};
+  if (state.mode == Mode::kReady) return until_on;
+  const bool is_off_next =
+      state.mode == Mode::kFault || (state.mode == Mode::kStopping && state.fault != Fault::kNone);
+  if (!is_off_next && state.mode != Mode::kHolding) return {};
+  if (input.fault != Fault::kNone) return {WaitsFor::kFaultGone, input.fault};
+  const bool is_heard =
+      state.mode == Mode::kHolding ||
+      (state.mode == Mode::kFault && (conditions(config, input, state) & kIfOffOrTimeOver) != 0);
+  if (!is_heard) return {WaitsFor::kDrivesOff};
+  return state.may_clear ? until_on : WayOn{WaitsFor::kEnableOff};
+}
+
 }  // namespace tactus

@@ -75,6 +75,7 @@ TEST_F(RunStatusFile, ShowsTheRunningDaemonUntilItEnds) {
          {"scenario1_multi_space (null_task)", "\nrunning\n", "force    4.50 N, at most 6.00 N",
           "obstacle taken for 7000 N/m", "cycles   2, 3 missed, 0 not logged", "wakes    4.0 us"})
       EXPECT_NE(output_.find(expected), std::string::npos) << expected << " in\n" << output_;
+    EXPECT_EQ(output_.find("waits "), std::string::npos) << output_;
     EXPECT_EQ(run({"--json"}), kExitDone);
     const YAML::Node json = YAML::Load(output_);
     EXPECT_EQ(json["mode"].as<std::string>(), "running");
@@ -88,17 +89,22 @@ TEST_F(RunStatusFile, ShowsTheRunningDaemonUntilItEnds) {
 TEST_F(RunStatusFile, NamesAFaultAndEndsSo) {
   Telemetry telemetry(scene_, "", *link_);
   reportMode(Mode::kFault, Fault::kEmergencyStop);
+  link_->pulse.way_on = WayOn{WaitsFor::kEnableOff};
   cycle(false, 0.0);
   telemetry.drain();
   EXPECT_EQ(run(), kExitFault);
   EXPECT_NE(output_.find("fault: emergency_stop"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("waits    for the enable line to be switched off, then on\n"),
+            std::string::npos)
+      << output_;
   EXPECT_EQ(output_.find("force"), std::string::npos) << "it has not moved:\n" << output_;
 }
 
 TEST_F(RunStatusFile, AStatusThatIsOldIsNone) {
   const std::string description = "running";
-  std::ofstream(path()) << jsonText(statusJson(
-      {scene_, Mode::kRunning, Fault::kNone, description, {}, nullptr}, monotonicTime_s() - 60.0));
+  std::ofstream(path()) << jsonText(
+      statusJson({scene_, Mode::kRunning, Fault::kNone, description, {}, {}, nullptr},
+                 monotonicTime_s() - 60.0));
   EXPECT_EQ(errorOfRun(), path() + ": no word from the daemon for 60 s");
   EXPECT_NE(output_.find("running"), std::string::npos) << "the last word is worth knowing";
   EXPECT_EQ(errorOfRun({"--json"}), path() + ": no word from the daemon for 60 s");
@@ -107,8 +113,9 @@ TEST_F(RunStatusFile, AStatusThatIsOldIsNone) {
 
 TEST_F(RunStatusFile, AStatusOfTheTimeToComeIsNone) {
   const std::string description = "running";
-  std::ofstream(path()) << jsonText(statusJson(
-      {scene_, Mode::kRunning, Fault::kNone, description, {}, nullptr}, monotonicTime_s() + 60.0));
+  std::ofstream(path()) << jsonText(
+      statusJson({scene_, Mode::kRunning, Fault::kNone, description, {}, {}, nullptr},
+                 monotonicTime_s() + 60.0));
   EXPECT_EQ(errorOfRun(), path() + ": no word from the daemon for 60 s") << "before a reboot";
 }
 
@@ -141,7 +148,7 @@ TEST_F(RunStatusFile, AFolderThatCannotBeWrittenEndsNothing) {
   EXPECT_TRUE(file.isDue());
   const std::string description = "running";
   const LoopFigures loop;
-  const RunStatus status{scene_, Mode::kRunning, Fault::kNone, description, loop, nullptr};
+  const RunStatus status{scene_, Mode::kRunning, Fault::kNone, description, {}, loop, nullptr};
   ::testing::internal::CaptureStderr();
   file.write(status);
   file.write(status);

@@ -47,12 +47,15 @@ TEST(LossSink, HasItsLikeInTheStatus) {
   figures.modules_lost = 4;
   const LoopFigures loop;
   const std::string running = "running";
-  const Json json = statusJson({scene, Mode::kRunning, Fault::kNone, running, loop, &figures}, 1.0);
+  const Json json =
+      statusJson({scene, Mode::kRunning, Fault::kNone, running, {}, loop, &figures}, 1.0);
   EXPECT_EQ(json.at("modules_lost"), Json::array({"link6"}));
-  const Json before = statusJson({scene, Mode::kBoot, Fault::kNone, running, loop, nullptr}, 1.0);
+  const Json before =
+      statusJson({scene, Mode::kBoot, Fault::kNone, running, {}, loop, nullptr}, 1.0);
   EXPECT_EQ(before.at("modules_lost"), Json::array());
   const Scene one = test::shippedScene("scenario1_none");
-  const Json other = statusJson({one, Mode::kRunning, Fault::kNone, running, loop, &figures}, 1.0);
+  const Json other =
+      statusJson({one, Mode::kRunning, Fault::kNone, running, {}, loop, &figures}, 1.0);
   EXPECT_FALSE(other.contains("modules_lost"));
 }
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "support/shipped_scene.h"
 
@@ -165,6 +167,17 @@ TEST_F(FaultText, AsJsonHasTheMembersOfTheContract) {
   EXPECT_EQ(json.at("unit"), "N");
   EXPECT_EQ(json.at("description"), describeFault(forceTooLarge(), scene_));
   EXPECT_TRUE(faultJson({}, scene_).is_null());
+}
+
+TEST(WayOnText, SaysSomethingOfAllButNothing) {
+  std::set<std::string> texts;
+  for (int i = 0; i <= static_cast<int>(WaitsFor::kEnableOn); ++i)
+    texts.insert(wayOnText({static_cast<WaitsFor>(i), Fault::kTactileStale}));
+  EXPECT_EQ(texts.size(), 5u);
+  EXPECT_EQ(texts.count(""), 1u);
+  EXPECT_EQ(texts.count("tactile_stale to be gone"), 1u);
+  EXPECT_EQ(wayOnText({WaitsFor::kFaultGone, Fault::kForbiddenSystemCall}),
+            "a new start of the daemon");
 }
 
 }  // namespace

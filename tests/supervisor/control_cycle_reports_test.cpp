@@ -43,6 +43,35 @@ TEST(CycleReports, ABusFaultNamesItsBus) {
   }
 }
 
+TEST(CycleReports, WhoAcknowledgesTooEarlyIsToldWhatTheArmWaitsFor) {
+  Scene scene = emptyScene("scenario1_null_space");
+  scene.hardware->gpio.emplace();
+  scene.hardware->gpio->enable.emplace();
+  VirtualRobotCell cell = movingCell(scene);
+  const ControlCycle& cycle = cell.cycle;
+  EXPECT_EQ(cycle.wayOn().waits_for, WaitsFor::kNothing);
+  cell.input.lines.emergency_stop = true;
+  cell.step();
+  EXPECT_EQ(cycle.wayOn().waits_for, WaitsFor::kFaultGone);
+  EXPECT_EQ(cycle.wayOn().fault, Fault::kEmergencyStop);
+  cell.input.lines.emergency_stop = false;
+  for (const bool enable : {false, true}) {
+    cell.input.lines.enable = enable;
+    cell.step();
+    EXPECT_EQ(cycle.wayOn().waits_for, WaitsFor::kDrivesOff);
+  }
+  for (int i = 0; i < 5000 && cycle.wayOn().waits_for == WaitsFor::kDrivesOff; ++i) cell.step();
+  for (int i = 0; i < 100; ++i) cell.step();
+  EXPECT_EQ(cycle.report().mode, Mode::kFault);
+  EXPECT_EQ(cycle.wayOn().waits_for, WaitsFor::kEnableOff);
+  cell.input.lines.enable = false;
+  cell.step();
+  EXPECT_EQ(cycle.wayOn().waits_for, WaitsFor::kEnableOn);
+  cell.input.lines.enable = true;
+  EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  EXPECT_EQ(cycle.wayOn().waits_for, WaitsFor::kNothing);
+}
+
 /// As many late cycles as it may have are none too many, and none counts before an arm may move.
 TEST(CycleReports, LateCyclesCountOneByOne) {
   const Scene scene = emptyScene("scenario1_null_space");

@@ -28,6 +28,14 @@ TEST(EnableWait, CountsTheLineOnceItWasOff) {
   EXPECT_TRUE(wait.update(linesWith(true)).enable);
 }
 
+TEST(EnableWait, TellsOfALineThatHasToGoOff) {
+  EnableWait wait(2), none(0);
+  EXPECT_TRUE(wait.update(linesWith(true)).must_go_off);
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(wait.update(linesWith(false)).must_go_off);
+  EXPECT_FALSE(wait.update(linesWith(true)).must_go_off);
+  EXPECT_FALSE(none.update(linesWith(true)).must_go_off);
+}
+
 TEST(EnableWait, ChangesNothingElse) {
   EnableWait waits(3), none(0);
   GpioInputs pressed = linesWith(true);

@@ -318,5 +318,40 @@ TEST(Mode, ChangesOnlyAlongTheTableAndUsesAllOfIt) {
     }
 }
 
+/// Who does what it says comes on, from wherever chance has led to.
+TEST(Mode, SaysWhatItWaitsFor) {
+  test::Random random(2);
+  ModeConfig config;
+  config.boot_cycles = config.enabling_cycles = config.stopping_cycles = 4;
+  config.retreating_cycles = 4;
+  std::set<WaitsFor> said;
+  for (int run = 0; run < 2000; ++run) {
+    ModeState state;
+    ModeInput input;
+    for (int i = random.index(150); i > 0; --i) {
+      input = randomInput(random);
+      updateMode(config, input, state);
+      const WayOn way_on = wayOn(config, input, state);
+      said.insert(way_on.waits_for);
+      if (way_on.waits_for == WaitsFor::kNothing) continue;
+      EXPECT_EQ(way_on.fault, input.fault);
+      EXPECT_EQ(way_on.waits_for == WaitsFor::kFaultGone, input.fault != Fault::kNone);
+      EXPECT_NE(state.mode, Mode::kRunning);
+    }
+    input.fault = Fault::kNone;
+    input.must_go_off = !input.enable && random.chance(0.5);
+    input.are_configured = input.are_enabled = input.is_at_rest = true;
+    for (int i = 0; i < 50 && state.mode != Mode::kRunning; ++i) {
+      updateMode(config, input, state);
+      const WaitsFor waits_for = wayOn(config, input, state).waits_for;
+      if (waits_for == WaitsFor::kEnableOff) input.enable = input.must_go_off = false;
+      if (waits_for == WaitsFor::kEnableOn) input.enable = true;
+    }
+    ASSERT_EQ(state.mode, Mode::kRunning) << "run " << run;
+    EXPECT_EQ(wayOn(config, input, state).waits_for, WaitsFor::kNothing);
+  }
+  EXPECT_EQ(said.size(), 5u);
+}
+
 }  // namespace
 }  // namespace tactus

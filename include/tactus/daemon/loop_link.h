@@ -21,7 +21,8 @@ struct LoopPulse {
   std::atomic<std::int64_t> cycles{0};
   std::atomic<std::int64_t> missed_cycles{0};
   std::atomic<std::int64_t> late_in_a_row{0};  ///< cycles up to the last one; 0: on time
-  std::atomic<bool> has_ended{false};          ///< with its last cycle
+  std::atomic<WayOn> way_on{WayOn{}};
+  std::atomic<bool> has_ended{false};  ///< with its last cycle
 };
 
 /// All that passes between the loop and other threads: wait-free, and never waited for by the loop.

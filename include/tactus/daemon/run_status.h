@@ -16,9 +16,10 @@ struct RunStatus {
   Mode mode;
   Fault fault;
   const std::string& description;  ///< of both, as describeMode()
-  const LoopFigures& loop;         ///< cycles, missed and dropped ones, and times
-  const RunFigures* figures;       ///< RunSummary::soFar(); nullptr before the arm first moves
-  const LogState* log = nullptr;   ///< nullptr: a run without one
+  WayOn way_on;
+  const LoopFigures& loop;        ///< cycles, missed and dropped ones, and times
+  const RunFigures* figures;      ///< RunSummary::soFar(); nullptr before the arm first moves
+  const LogState* log = nullptr;  ///< nullptr: a run without one
 };
 
 /// With the daemon's process and the machine's monotonic clock, by which a reader sees its age.

@@ -22,6 +22,9 @@ std::string refusalText(const DriveConfig& drive, const DriveReport& report);
 /// "running", or "fault: drive_silent, drive 2 on can1 (joint j5), ...: no feedback ..." and so on.
 std::string describeMode(const ModeReport& report, const Scene& scene);
 
+/// What follows "waits for"; empty: for nothing.
+std::string wayOnText(const WayOn& way_on);
+
 /// The member "fault" of summary.json: name, time_s, joint, bus, tactile_module, value, limit,
 /// unit, description; null for what is not known, and as a whole without a fault.
 Json faultJson(const FaultReport& report, const Scene& scene);

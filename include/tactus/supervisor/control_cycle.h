@@ -60,6 +60,7 @@ class ControlCycle {
 
   const CanRobot& robot() const noexcept { return robot_; }
   const ModeReport& report() const noexcept { return report_; }
+  WayOn wayOn() const noexcept { return way_on_; }
   bool isFinished() const noexcept { return mode_.mode == Mode::kOff; }
   /// From the first cycle of motion on, every cycle is recorded.
   bool isRecorded() const noexcept { return is_started_; }
@@ -138,6 +139,7 @@ class ControlCycle {
   bool have_brakes_opened_ = false;  ///< since drives were off: joints may need them to close
   Judged judged_;
   ModeReport report_;
+  WayOn way_on_;
   ControllerState state_;
   PreparedCycle prepared_;
   /// With which the controller's state began.

@@ -16,6 +16,7 @@ class EnableWait {
   GpioInputs update(GpioInputs lines) noexcept {
     const bool is_off = lines.is_valid && !lines.enable;
     if (left_ > 0) left_ = is_off ? left_ - 1 : off_cycles_;
+    lines.must_go_off = lines.enable && left_ > 0;
     lines.enable = lines.enable && left_ == 0;
     return lines;
   }

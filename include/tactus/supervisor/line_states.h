@@ -6,7 +6,8 @@ namespace tactus {
 struct GpioInputs {
   bool emergency_stop = false;
   bool enable = true;
-  bool is_valid = true;  ///< false: the chip could not be read
+  bool must_go_off = false;  ///< the enable line is on, and counts once it was off: see EnableWait
+  bool is_valid = true;      ///< false: the chip could not be read
 };
 
 struct GpioOutputs {

@@ -34,6 +34,7 @@ struct ModeInput {
   bool stop_requested = false;   ///< by the user: end at rest
   bool has_enable_line = false;  ///< without one, movement is enabled from the start
   bool enable = true;            ///< state of that line
+  bool must_go_off = false;      ///< it is on, but not taken for on before it was off
   bool are_configured = false;   ///< drives configured, modules tared, samples coming
   bool are_enabled = false;      ///< every drive follows setpoints
   bool are_disabled = true;      ///< no drive that can be reached has power
@@ -68,5 +69,21 @@ struct ModeConfig {
 /// after a hold resumed, by switching the enable line off and on again while the cause is gone; a
 /// robot without that line ends.
 void updateMode(const ModeConfig& config, const ModeInput& input, ModeState& state) noexcept;
+
+/// What an arm that does not run waits for, as far as people can do something about it.
+enum class WaitsFor : std::uint8_t {
+  kNothing = 0,  ///< it runs, is about to, or ends
+  kFaultGone,    ///< that there is now; it may be another than the one that has stopped the arm
+  kDrivesOff,    ///< or the deadline for that; an enable line that is switched before is not heard
+  kEnableOff,    ///< and then on
+  kEnableOn,
+};
+struct WayOn {
+  WaitsFor waits_for = WaitsFor::kNothing;
+  Fault fault = Fault::kNone;  ///< kFaultGone: which
+};
+
+/// After updateMode() with the same input.
+WayOn wayOn(const ModeConfig& config, const ModeInput& input, const ModeState& state) noexcept;
 
 }  // namespace tactus

@@ -68,6 +68,7 @@ tactusd "$scene" --set task.commands.start_measured=true -o "$ROOT/out" --name a
 wait_for ready "$out/again.txt"
 sleep 2
 grep -q running "$out/again.txt" && fail "runs by an enable line that was on before"
+tactus status | grep -q "for the enable line to be switched off, then on" || fail "status says nothing of the line"
 line $enable 0 >/dev/null
 sleep 0.1
 line $enable 1 >/dev/null
