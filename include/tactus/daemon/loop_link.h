@@ -22,6 +22,7 @@ struct LoopPulse {
   std::atomic<std::int64_t> missed_cycles{0};
   std::atomic<std::int64_t> late_in_a_row{0};  ///< cycles up to the last one; 0: on time
   std::atomic<WayOn> way_on{WayOn{}};
+  static_assert(std::atomic<WayOn>::is_always_lock_free);
   std::atomic<bool> has_ended{false};  ///< with its last cycle
 };
 

@@ -78,7 +78,8 @@ enum class WaitsFor : std::uint8_t {
   kEnableOff,    ///< and then on
   kEnableOn,
 };
-struct WayOn {
+/// Aligned so that one instruction hands it on to other threads.
+struct alignas(2) WayOn {
   WaitsFor waits_for = WaitsFor::kNothing;
   Fault fault = Fault::kNone;  ///< kFaultGone: which
 };
