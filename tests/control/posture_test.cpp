@@ -190,6 +190,8 @@ TEST_P(SoftPosture, GoesOnSoftlyWhereTheArmLeansOnSomething) {
   arm_.state.modules[0].contact.force_N = 5.0;
   arm_.controller.place(JointVector(arm_.state.q_desired), arm_.config.gains, arm_.state);
   ASSERT_TRUE(arm_.state.is_leaning);
+  EXPECT_TRUE(arm_.state.way_out_before.isZero(0.0)) << "there are no limits";
+  EXPECT_GT(arm_.state.way_out_added.norm(), 0.0);
   // What it leans on is gone: the posture alone moves it.
   Speeds(arm_).expectSoft();
 }

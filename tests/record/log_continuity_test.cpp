@@ -23,6 +23,11 @@ class LogContinuityTest : public ::testing::Test {
     return continuity_.add(record);
   }
 
+  /// Cycles of running, none of which is known.
+  void runUnknown(int cycles, int& cycle) {
+    for (int i = 0; i < cycles; ++i) ASSERT_FALSE(add(cycle++));
+  }
+
   void expectStretch(std::size_t index, double from_s, double to_s, const std::string& reason) {
     ASSERT_LT(index, continuity_.stretches().size());
     const UnknownStretch& stretch = continuity_.stretches()[index];
@@ -140,14 +145,11 @@ TEST_F(LogContinuityTest, AWayOutOfALimitsZoneIsKnownAfterTwoSecondsOfRunning) {
   continuity_ = LogContinuity(config_, 0.001, true);
   EXPECT_TRUE(add(0));
   int cycle = 10;
-  const auto run = [&](int cycles) {
-    for (int i = 0; i < cycles; ++i) ASSERT_FALSE(add(cycle++));
-  };
-  run(1900);
+  runUnknown(1900, cycle);
   EXPECT_FALSE(add(cycle++, Mode::kFault));
-  run(1000);
+  runUnknown(1000, cycle);
   EXPECT_FALSE(add(cycle++, Mode::kHolding)) << "no reset, nor running";
-  run(1001);
+  runUnknown(1001, cycle);
   EXPECT_TRUE(add(cycle++, Mode::kFault));
 }
 
@@ -158,12 +160,9 @@ TEST_F(LogContinuityTest, AHoldBeginsThoseSecondsAnewWhereAPostureIsReturnedTo) 
     continuity_ = LogContinuity(config_, 0.001, true);
     EXPECT_TRUE(add(0));
     int cycle = 10;
-    const auto run = [&](int cycles) {
-      for (int i = 0; i < cycles; ++i) ASSERT_FALSE(add(cycle++));
-    };
-    run(1900);
+    runUnknown(1900, cycle);
     EXPECT_FALSE(add(cycle++, Mode::kHolding));
-    run(200);
+    runUnknown(200, cycle);
     EXPECT_EQ(add(cycle++, Mode::kFault), !has_posture);
   }
 }
