@@ -353,5 +353,27 @@ TEST(Mode, SaysWhatItWaitsFor) {
   EXPECT_EQ(said.size(), 5u);
 }
 
+/// Where nobody can switch anything on, or the arm goes on or ends by itself.
+TEST(Mode, SaysNothingWhereNothingIsWaitedFor) {
+  const ModeConfig config;
+  for (int i = 0; i < kModeCount; ++i)
+    for (const Fault fault : {Fault::kNone, Fault::kEmergencyStop}) {
+      ModeState state;
+      state.mode = static_cast<Mode>(i);
+      state.fault = fault;
+      const bool is_stopped = state.mode == Mode::kReady || state.mode == Mode::kHolding ||
+                              state.mode == Mode::kFault ||
+                              (state.mode == Mode::kStopping && fault != Fault::kNone);
+      ModeInput input;
+      input.has_enable_line = true;
+      EXPECT_EQ(wayOn(config, input, state).waits_for != WaitsFor::kNothing, is_stopped)
+          << modeName(state.mode) << " with fault " << static_cast<int>(fault);
+      input.stop_requested = true;
+      EXPECT_EQ(wayOn(config, input, state).waits_for, WaitsFor::kNothing);
+      input.stop_requested = input.has_enable_line = false;
+      EXPECT_EQ(wayOn(config, input, state).waits_for, WaitsFor::kNothing);
+    }
+}
+
 }  // namespace
 }  // namespace tactus
