@@ -366,6 +366,7 @@ TEST(Mode, SaysNothingWhereNothingIsWaitedFor) {
                               (state.mode == Mode::kStopping && fault != Fault::kNone);
       ModeInput input;
       input.has_enable_line = true;
+      input.enable = false;
       EXPECT_EQ(wayOn(config, input, state).waits_for != WaitsFor::kNothing, is_stopped)
           << modeName(state.mode) << " with fault " << static_cast<int>(fault);
       input.stop_requested = true;
