@@ -6,6 +6,7 @@
 
 #include "canopen/tactile_frames.h"
 #include "support/period.h"
+#include "support/random.h"
 #include "support/scripted_drive.h"
 #include "tactus/canopen/canopen.h"
 
@@ -191,17 +192,34 @@ TEST(CanRobot, TellsWhereItsJointsAreOnceAllSaySo) {
   EXPECT_EQ(input.q_measured, (JointVector(2) << 0.25, -0.5).finished());
 }
 
+TEST(CanRobot, ProbesADeadBusMoreSeldomThanItsDrivesWait) {
+  test::Random random(5);
+  CanopenConfig canopen;
+  for (int i = 0; i < 1000; ++i) {
+    const double period_s = random.uniform(0.0005, 0.02);
+    canopen.heartbeat_timeout_s = random.uniform(0.01, 2.0);
+    const int cycles = probeCycles(canopen, period_s);
+    EXPECT_GE(cycles, 100);
+    EXPECT_GE(cycles * period_s, 1.4999 * canopen.heartbeat_timeout_s);
+    EXPECT_TRUE(cycles == 100 || (cycles - 1) * period_s < 1.5001 * canopen.heartbeat_timeout_s);
+  }
+}
+
 /// What nobody hears of is not counted among what has power: its own watch stops it.
 TEST(CanRobot, CountsThePowerOfDrivesInReachAlone) {
   RobotRig rig;
   EXPECT_FALSE(rig.robot.hasPower(0)) << "not set up";
   EXPECT_FALSE(rig.robot.drives().is_any_holding);
   EXPECT_TRUE(rig.robot.drives().are_disabled);
+  EXPECT_EQ(rig.robot.firstWithPower(), -1);
   rig.enable();
   EXPECT_TRUE(rig.robot.hasPower(0));
   EXPECT_TRUE(rig.robot.hasPower(1));
+  EXPECT_EQ(rig.robot.firstWithPower(), 0);
   rig.slaves[0].sends_feedback = false;
   rig.slaves[0].ignores_commands = true;
+  rig.cycles(20, DriveGoal::kEnabled);
+  EXPECT_EQ(rig.robot.firstWithPower(), 1);
   rig.cycles(20, DriveGoal::kDisabled);
   ASSERT_TRUE(rig.robot.drive(0).is_silent);
   EXPECT_EQ(rig.robot.drive(0).state, DriveState::kOperationEnabled) << "an old one";
