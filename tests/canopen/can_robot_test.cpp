@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "canopen/tactile_frames.h"
 #include "support/period.h"
@@ -315,6 +316,18 @@ TEST(CanRobot, PullsItsDrivesToWhereTheyAreCommandedToBe) {
   rig.write(JointVector::Zero(2));
   for (const int joint : {0, 1})
     EXPECT_NEAR(rig.slaves[joint].velocity, 10.0 * rig.apart[joint] * 1e6, 1.0) << joint;
+}
+
+/// Which no place between the last two hides.
+TEST(CanRobot, RefusesAPlaceThatIsNaN) {
+  TrackedRig rig;
+  rig.robot.command(DriveGoal::kEnabled, false, rig.start + rig.apart);
+  const JointVector q{{std::nan(""), rig.start[1]}};
+  rig.robot.command(DriveGoal::kEnabled, false, q);
+  rig.write(JointVector::Zero(2));
+  EXPECT_EQ(rig.robot.drive(0).fault, Fault::kCommandNotFinite);
+  EXPECT_EQ(rig.robot.drive(1).fault, Fault::kNone);
+  EXPECT_EQ(rig.slaves[0].velocity, 0);
 }
 
 /// What they tell after a pause, and a cycle later, may be of its begin: no lag, though they are

@@ -157,12 +157,16 @@ TEST(Clearance, LetsAnArmGoThatRestsOnItsLimits) {
     JointVector passed = wanted;
     arm.clearance->holdBack(arm.kinematics.pose, arm.near, arm.q, arm.v, arm.period_s, passed);
     ASSERT_EQ(passed, wanted) << i;
-    for (int joint = 0; joint < arm.n; ++joint) {
-      if (arm.config.limits.lower[joint] != arm.q[joint]) continue;
+    const JointLimits& limits = arm.config.limits;
+    const auto canStop = [&](int joint, double speed) {
       JointVector beyond = wanted;
-      beyond[joint] = -1e-3;
-      ASSERT_FALSE(
-          arm.clearance->canStopAfter(arm.kinematics.pose, arm.near, arm.q, beyond, arm.period_s));
+      beyond[joint] = speed;
+      return arm.clearance->canStopAfter(arm.kinematics.pose, arm.near, arm.q, beyond,
+                                         arm.period_s);
+    };
+    for (int joint = 0; joint < arm.n; ++joint) {
+      ASSERT_FALSE(limits.lower[joint] == arm.q[joint] && canStop(joint, -1e-3));
+      ASSERT_FALSE(limits.upper[joint] == arm.q[joint] && canStop(joint, 1e-3));
     }
   }
 }

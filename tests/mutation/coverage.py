@@ -15,6 +15,7 @@ from programs import LAYERS, SOURCE, build, compile_flags, link, sources
 BUILD = SOURCE / "build" / "release"
 LIST = pathlib.Path(__file__).parent / "coverage.yaml"
 CLANG, PROFDATA, COV = "clang++-19", "llvm-profdata-19", "llvm-cov-19"
+PACKAGES = "clang-19 libclang-rt-19-dev llvm-19"
 # The layers' tests, then others that take them through whole runs.
 RUNS = (
     ("tactus_supervisor_tests", "--gtest_filter=-GainsInContact*"),  # minutes over what others reach
@@ -187,7 +188,7 @@ def main(options):
     if not options.report_only:
         for program in (CLANG, PROFDATA, COV, "llvm-nm-19"):
             if not shutil.which(program):
-                raise SystemExit(f"tools/coverage: no {program}; as root: apt-get install clang-19 llvm-19")
+                raise SystemExit(f"tools/coverage: no {program}; as root: apt-get install {PACKAGES}")
         if not options.no_build:
             build(BUILD, [command[0] for command in RUNS])
         measure(folder, options.jobs, options.quick)
