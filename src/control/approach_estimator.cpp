@@ -89,10 +89,14 @@ void estimateInContact(const ForceGains& gains, const ApproachSample& sample,
   }
 }
 
+void beginWay(double F_p_N, ApproachEstimatorState& state) noexcept {
+  rearm(F_p_N, state);
+  state.F_before_N = F_p_N;
+}
+
 void forgetContact(const ForceGains& gains, double duration_s,
                    ApproachEstimatorState& state) noexcept {
-  rearm(0.0, state);
-  state.F_before_N = 0.0;
+  beginWay(0.0, state);
   state.stiffness_N_per_m += state.forgetting.of(duration_s, kForgetting_s) *
                              (gains.assumed_stiffness_N_per_m - state.stiffness_N_per_m);
   state.stiffness_raw_N_per_m = state.stiffness_N_per_m;

@@ -155,8 +155,12 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
   if (approach_limit_) {
     const bool is_felt = state.approach.smoother.contact.force_N > gains.transition.release_force_N;
     const double nearness = is_felt ? state.transition.gamma : 0.0;
-    approach_limit_->observe(gains, contact.a, {input.F_p_N, nearness}, commanded.q, period_s,
-                             state.approach);
+    const FeltForce force{input.F_p_N, nearness};
+    if (commanded.isAtRest())
+      approach_limit_->observeAtRest(gains, contact.a, force, commanded.q, period_s,
+                                     state.approach);
+    else
+      approach_limit_->observe(gains, contact.a, force, commanded.q, period_s, state.approach);
     input.stiffness_N_per_m = state.approach.estimator.stiffness_N_per_m;
     input.hold_integral = state.approach.is_limiting;
     report.stiffness_raw_N_per_m = state.approach.estimator.stiffness_raw_N_per_m;

@@ -84,6 +84,41 @@ TEST(ApproachLimit, KnowsAContactAsLongAsItIsFelt) {
   EXPECT_NEAR(stiffnessAfter(0.0), kC_N_per_m, 0.01 * 50.0 * kC_N_per_m);
 }
 
+/// Who presses on an arm that rests makes its contact no stiffer, though the filter still tells of
+/// its last way. When it moves on, the force counts from then on.
+TEST(ApproachLimit, LearnsNothingOfWhoPressesOnAnArmAtRest) {
+  ControllerConfig config = bareRail(0.1);
+  config.force_control->has_estimator = true;
+  const ApproachLimit limit(config, config.tactile_modules.front());
+  const ScaledVector a = -ScaledVector::Unit(0);
+  JointVector q = JointVector::Zero(2);
+  ApproachLimitState touched = limit.initialState();
+  const auto observe = [&](double F_p_N, bool is_at_rest, ApproachLimitState& state) {
+    state.smoother.contact.interval_s = kPeriod_s;
+    state.smoother.significant_N = 0.01;
+    if (is_at_rest)
+      limit.observeAtRest(kGains, a, {F_p_N, 1.0}, q, kPeriod_s, state);
+    else
+      limit.observe(kGains, a, {F_p_N, 1.0}, q, kPeriod_s, state);
+  };
+  for (int i = 0; i < 100; ++i) {
+    q[0] += 1e-5;
+    observe(kC_N_per_m * q[0], false, touched);
+  }
+  const double c_N_per_m = touched.estimator.stiffness_N_per_m;
+  const auto stiffnessAfter = [&](bool is_at_rest) {
+    ApproachLimitState state = touched;
+    for (int i = 0; i < 50; ++i) observe(1.0 + 0.1 * i, is_at_rest, state);
+    q[0] += 1e-4;
+    observe(6.1, false, state);
+    q[0] -= 1e-4;
+    EXPECT_EQ(state.memory_N_per_m, state.estimator.stiffness_N_per_m);
+    return state.estimator.stiffness_N_per_m;
+  };
+  EXPECT_GT(stiffnessAfter(false), 3.0 * c_N_per_m) << "else this test is blind";
+  EXPECT_EQ(stiffnessAfter(true), c_N_per_m);
+}
+
 /// What was commanded since the last sample counts as gone; the next sample tells of it.
 TEST(ApproachLimit, LooksAheadAsFarAsNoSampleHasToldOf) {
   ControllerConfig config = bareRail(0.1);

@@ -48,6 +48,9 @@ struct ApproachSample {
 void estimateInContact(const ForceGains& gains, const ApproachSample& sample,
                        ApproachEstimatorState& state) noexcept;
 
+/// Counts way and force from here on, and keeps c.
+void beginWay(double F_p_N, ApproachEstimatorState& state) noexcept;
+
 /// A cycle without force. duration_s: less than the period while the contact may still be the same.
 void forgetContact(const ForceGains& gains, double duration_s,
                    ApproachEstimatorState& state) noexcept;

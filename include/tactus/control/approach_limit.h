@@ -64,6 +64,12 @@ class ApproachLimit {
                const JointVector& q_desired, double period_s,
                ApproachLimitState& state) const noexcept;
 
+  /// The same for an arm at rest that follows nothing: what changes the force then, a hand or an
+  /// obstacle that moves, says nothing of how stiff a contact is.
+  void observeAtRest(const ForceGains& gains, const ScaledVector& a, const FeltForce& force,
+                     const JointVector& q_desired, double period_s,
+                     ApproachLimitState& state) const noexcept;
+
   /// min(0, v_res + v_max), m/s; after observe().
   double excess(const ForceGains& gains, double F_p_N, double v_res_m_per_s,
                 ApproachLimitState& state) const noexcept;

@@ -24,6 +24,8 @@ struct CommandedMotion {
   bool is_followed;             ///< this cycle's command moves the arm; false: it stops, or rests
   double return_share = 1.0;    ///< of the pull, see return_speed.h
   const FreeAcceleration* free = nullptr;  ///< acceleration level only
+
+  bool isAtRest() const noexcept { return !is_followed && velocity.isZero(0.0); }
 };
 
 /// The motion equation (1) as it comes together: q_dot = W^-1/2 (Q y + v_scaled), with everything
