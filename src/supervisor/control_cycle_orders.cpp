@@ -75,6 +75,7 @@ void ControlCycle::goOnWithGains() noexcept {
     seen.is_at_limit |= std::abs(output_.velocity[i]) >= kFullSpeed * most[i];
   seen.has_fault = mode_.fault != Fault::kNone;
   seen.is_running = isRunning();
+  seen.is_held = mode_.mode == Mode::kHolding;
   const ControllerConfig& config = controller_.config();
   seen.can_feel = config.force_control && !config.tactile_modules.empty();
   gain_change_.update(seen);

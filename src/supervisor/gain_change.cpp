@@ -57,20 +57,20 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
     case GainState::kWaiting:
       // A way that was begun goes on, or it would wait on half of it.
       if (mustWait() && !isSame(gains_, to_)) {
-        if (isSame(to_, kept_) || !trips(seen)) advance(GainState::kWaiting);
+        if (isSame(to_, kept_) || !trips(seen)) advance(seen, GainState::kWaiting);
         return;
       }
       // Over others that are on trial, which are watched as before.
       if (isSame(gains_, kept_) || (!trips(seen) && !isOver())) begin();
       return;
     case GainState::kRamping:
-      if (!trips(seen)) advance(GainState::kOnTrial);
+      if (!trips(seen)) advance(seen, GainState::kOnTrial);
       return;
     case GainState::kOnTrial:
       if (!trips(seen)) watch(seen);
       return;
     case GainState::kGoingBack:
-      return advance(GainState::kKept);
+      return advance(seen, GainState::kKept);
   }
 }
 
@@ -85,7 +85,10 @@ void GainChange::begin() noexcept {
   report_.state = GainState::kRamping;
 }
 
-void GainChange::advance(GainState next) noexcept {
+void GainChange::advance(const GainWatchInput& seen, GainState next) noexcept {
+  const bool must_go_back =
+      report_.state == GainState::kGoingBack && report_.trouble != GainTrouble::kTimeIsOver;
+  if (seen.is_held && is_in_contact_ && !must_go_back) return;
   passed_s_ += period_s_;
   is_changing_ = true;
   gains_ = gainsBetween(from_, to_, eased(std::min(1.0, passed_s_ / duration_s_)));

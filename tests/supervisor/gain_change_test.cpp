@@ -73,6 +73,25 @@ TEST_F(GainChangeTest, NeverSteps) {
   }
 }
 
+/// Its law would meet all that has changed in the cycle in which it goes on.
+TEST_F(GainChangeTest, StandsStillWhileAnArmIsHeldInContact) {
+  const GainWatchInput held{.force_N = 5.0, .is_running = false, .is_held = true};
+  change_.order(order(1, 0.2));
+  pass(0.5);
+  const double half_way_s = T_s();
+  pass(60.0, held);
+  EXPECT_EQ(T_s(), half_way_s);
+  EXPECT_FALSE(change_.isChanging());
+  EXPECT_EQ(state(), GainState::kRamping);
+  pass(0.6);
+  EXPECT_EQ(T_s(), 0.2);
+  change_.order(order(2, 0.3));
+  GainWatchInput free = held;
+  free.force_N = 0.0;
+  pass(2.0, free);
+  EXPECT_EQ(T_s(), 0.3) << "nothing is balanced";
+}
+
 TEST_F(GainChangeTest, WaitsForAMomentWithoutContact) {
   GainOrder free = order(1, 0.2);
   free.waits_for_free = true;

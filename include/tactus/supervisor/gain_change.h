@@ -22,6 +22,7 @@ struct GainWatchInput {
   bool is_at_limit = false;  ///< a joint moves as fast as it may
   bool has_fault = false;
   bool is_running = true;  ///< the law moves the arm: an arm that holds tries no gains
+  bool is_held = false;    ///< the law does not move it, but will go on with what it remembers
   bool can_feel = true;    ///< else its motion alone is what tries them
 };
 
@@ -55,7 +56,9 @@ struct GainReport {
 ///   - a joint is at its limit of speed half of the time in contact,
 /// and each of these more than before the change; or if the arm has a fault. A new order counts
 /// from where the gains are, and goes back to what was kept. One that keeps gains which have gone
-/// back meanwhile goes back with them. Pure, and bounded: for the loop.
+/// back meanwhile goes back with them. While an arm is held in contact a ramp stands still, as its
+/// law would meet the whole change at once when it goes on; but for one that leads back from
+/// trouble. Pure, and bounded: for the loop.
 class GainChange {
  public:
   GainChange(const Gains& gains, double period_s) noexcept;
@@ -80,7 +83,7 @@ class GainChange {
   void observe(const GainWatchInput& seen) noexcept;
   bool mustWait() const noexcept;
   void begin() noexcept;
-  void advance(GainState next) noexcept;
+  void advance(const GainWatchInput& seen, GainState next) noexcept;
   void watch(const GainWatchInput& seen) noexcept;
   bool isOver() noexcept;
   void ramp(const Gains& to, double duration_s) noexcept;
