@@ -10,21 +10,37 @@ namespace {
 /// m or rad; less is an encoder's rounding, and no jump.
 constexpr double kBeside = 1e-4;
 
+Variant variantOf(const ControllerConfig& config) {
+  return config.force_control ? config.force_control->variant : Variant::kNone;
+}
+
+/// Whether the law remembers a push that the way back to the task balances.
+bool opposesTask(Variant variant) {
+  return variant == Variant::kTaskSpace || variant == Variant::kJointSpace ||
+         isOfTwoSpaces(variant);
+}
+
 }  // namespace
 
 void Controller::restart(const Gains& gains, ControllerState& state) const noexcept {
-  if (joint_limit_avoidance_ && state.return_share > 0.0) {  // else it has not moved since
-    state.way_out_before =
-        -joint_limit_avoidance_->evaluate(gains.joint_limit_avoidance, state.q_desired, state.zones)
-             .gradient;
-    softenWayOut(state.return_share, ScaledVector::Zero(), state.way_out_added,
-                 state.way_out_before);
-  }
+  if (joint_limit_avoidance_ && state.return_share > 0.0)  // else it has not moved since
+    state.way_out_before = state.retreat.has_moved ? state.retreat.way_out : wayOut(gains, state);
   state.return_share = 0.0;
+  state.retreat.has_moved = false;
+  state.has_leaned = false;
   for (TactileReading& reading : state.modules) reading.cover.has_started = false;
   if (contact_controller_) state.contact = contact_controller_->initialState();
   state.contact.is_resting = true;  // so that it goes on by what it feels then
   if (several_contacts_) state.several = several_contacts_->initialState();
+}
+
+/// Of joint limits alone: a posture holds no push off.
+ScaledVector Controller::wayOut(const Gains& gains, ControllerState& state) const noexcept {
+  ScaledVector way_out =
+      -joint_limit_avoidance_->evaluate(gains.joint_limit_avoidance, state.q_desired, state.zones)
+           .gradient;
+  softenWayOut(state.return_share, ScaledVector::Zero(), state.way_out_added, way_out);
+  return way_out;
 }
 
 void Controller::place(const JointVector& q, const Gains& gains,
@@ -33,11 +49,14 @@ void Controller::place(const JointVector& q, const Gains& gains,
   state.velocity_before = JointVector::Zero(config_.chain.size());
   state.fault = Fault::kNone;
   state.retreat.velocity_at_fault = state.velocity_before;
-  if (!joint_limit_avoidance_) return;
+  if (joint_limit_avoidance_) leadAnew(gains, leans(gains, state), state);
+}
+
+bool Controller::leans(const Gains& gains, const ControllerState& state) const noexcept {
   const auto isPushed = [&](const TactileReading& reading) {
     return reading.contact.force_N > gains.force.transition.release_force_N;
   };
-  leadAnew(gains, config_.force_control && std::ranges::any_of(state.modules, isPushed), state);
+  return config_.force_control && std::ranges::any_of(state.modules, isPushed);
 }
 
 /// What of the null space's motion comes back gently: all, or where the arm leans on something
@@ -55,17 +74,28 @@ void Controller::begin(ControllerState& state) const noexcept {
   if (posture_ || beside.cwiseAbs().maxCoeff() > kBeside) state.return_share = 0.0;
 }
 
+void Controller::hold(const Gains& gains, ControllerState& state) const noexcept {
+  state.has_leaned = leans(gains, state);
+}
+
 void Controller::goOn(const Gains& gains, ControllerState& state) const noexcept {
   state.retreat.is_under_way = false;
-  if (state.retreat.has_moved) {
-    state.retreat.has_moved = false;
+  // The reference of a task by commands is put where the tool is: nothing balances its push.
+  const bool loses_balance = state.tool_motion && opposesTask(variantOf(config_));
+  if (state.retreat.has_moved || (loses_balance && state.return_share > 0.0)) {
     restart(gains, state);
     place(JointVector(state.q_desired), gains, state);
-  } else if (posture_ && state.return_share > 0.0) {  // else it only begins
-    // A hold has changed nothing for the law, but the posture may lead on by a jump.
-    state.return_share = 0.0;
-    leadAnew(gains, false, state);
+    return;
   }
+  // A law that holds a push off goes on in the balance that it had. But a posture leads an arm that
+  // is free, or was, on by a jump, and without its pull (joint_space_transition.h) joint space is
+  // out of balance.
+  const bool keeps_balance = state.has_leaned && leans(gains, state);
+  const bool comes_back_gently =
+      variantOf(config_) == Variant::kJointSpace || (posture_ && !keeps_balance);
+  if (!comes_back_gently || state.return_share == 0.0) return;
+  state.return_share = 0.0;
+  if (joint_limit_avoidance_) leadAnew(gains, false, state);
 }
 
 }  // namespace tactus

@@ -56,8 +56,11 @@ void Controller::beginRetreat(const Gains& gains, ControllerState& state) const 
   const JointVector velocity =
       state.fault == Fault::kNone ? state.velocity_before : state.retreat.velocity_at_fault;
   const bool has_moved = state.retreat.has_moved;
+  ScaledVector way_out = state.retreat.way_out;
+  if (!has_moved && joint_limit_avoidance_) way_out = wayOut(gains, state);
   state.retreat = {};
   state.retreat.has_moved = has_moved;
+  state.retreat.way_out = way_out;
   state.retreat.velocity_at_fault = velocity;
   takePush(gains, state);
   if (state.retreat.has_push) return;

@@ -39,9 +39,8 @@ bool LogContinuity::add(const CycleRecord& recorded) {
   if (is_gap) running_cycles_ = 0.0;
   if (is_reset && running_cycles_ >= settled_cycles_ && !has_waited && has_samples)
     is_known_ = true;
-  // What goes on after a retreat returns as gently as after a reset.
-  if (is_reset || mode == Mode::kRetreating || (has_posture_ && mode == Mode::kHolding))
-    running_cycles_ = 0.0;
+  // What goes on after a retreat, or may after a hold, returns as gently as after a reset.
+  if (is_reset || mode == Mode::kRetreating || mode == Mode::kHolding) running_cycles_ = 0.0;
   if (mode == Mode::kRunning)
     running_cycles_ += 1.0 + (!is_gap && mode_before_ == Mode::kRunning ? missed_ : 0);
   if (!is_known_) stretches_.back().to_s = recorded.t_s;

@@ -19,12 +19,13 @@ void applyMode(const Controller& controller, Mode mode, Mode before, const Robot
   if (!isCommanding(mode) || !isCommanding(before))
     controller.place(input.q_measured, gains, state);
   if (isCommanding(mode) && !isCommanding(before)) controller.begin(state);
+  const auto isStill = [](Mode m) { return m == Mode::kRetreating || m == Mode::kHolding; };
+  if (isStill(mode) && before == Mode::kRunning) controller.hold(gains, state);
   if (mode == Mode::kRetreating && before != Mode::kRetreating)
     controller.beginRetreat(gains, state);
   state.retreat.is_under_way = mode == Mode::kRetreating;
-  if (mode == Mode::kRunning && before != Mode::kRunning) controller.goOn(gains, state);
+  if (mode == Mode::kRunning && isStill(before)) controller.goOn(gains, state);
   // While it retreats or holds, faults come and go: the mode remembers them.
-  const auto isStill = [](Mode m) { return m == Mode::kRetreating || m == Mode::kHolding; };
   if (isStill(mode) || isStill(before)) state.fault = Fault::kNone;
   state.is_stopping = mode != Mode::kRunning;
 }

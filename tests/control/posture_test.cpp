@@ -183,6 +183,24 @@ TEST_P(SoftPosture, GoesOnSoftlyAfterAHold) {
   Speeds(arm_).expectSoft();
 }
 
+/// Whoever touches it meanwhile is no contact that the law has held off.
+TEST_P(SoftPosture, GoesOnSoftlyAfterAHoldInWhichItIsTouched) {
+  Speeds moved(arm_);
+  for (const bool was_touched : {true, false}) {
+    ControllerState& state = arm_.state;
+    state.modules[0].contact.force_N = was_touched ? 5.0 : 0.0;
+    arm_.controller.hold(arm_.config.gains, state);
+    state.is_stopping = true;
+    Speeds stopped(arm_);
+    state.is_stopping = false;
+    state.return_share = 1.0;
+    state.modules[0].contact.force_N = 5.0;
+    arm_.controller.goOn(arm_.config.gains, state);
+    EXPECT_EQ(state.return_share, was_touched ? 1.0 : 0.0) << "in balance";
+  }
+  Speeds(arm_).expectSoft();
+}
+
 /// What held a push off is back at once there; a posture has held nothing off.
 TEST_P(SoftPosture, GoesOnSoftlyWhereTheArmLeansOnSomething) {
   Speeds moved(arm_);

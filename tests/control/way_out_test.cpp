@@ -64,6 +64,28 @@ TEST(WayOut, IsThatOfBeforeTheFirstOfTwoStops) {
   EXPECT_NE(state.way_out_before, before);
 }
 
+/// What a retreat leads deeper into a zone has held nothing off. Of two of them the first one
+/// counts.
+TEST(WayOut, IsThatOfBeforeARetreat) {
+  const ArmInItsZones arm;
+  const Controller controller(arm.config);
+  ControllerState state = controller.initialState();
+  ControllerState unmoved = state;
+  controller.restart(arm.config.gains, unmoved);
+  ASSERT_GT(unmoved.way_out_before.norm(), 0.1);
+  for (int i = 0; i < 2; ++i) {
+    controller.beginRetreat(arm.config.gains, state);
+    state.q_desired.array() += 0.05;
+    state.retreat.has_moved = true;
+  }
+  controller.goOn(arm.config.gains, state);
+  EXPECT_EQ(state.way_out_before, unmoved.way_out_before);
+  EXPECT_FALSE(state.retreat.has_moved);
+  state.return_share = 1.0;
+  controller.restart(arm.config.gains, state);
+  EXPECT_NE(state.way_out_before, unmoved.way_out_before) << "the retreat is over";
+}
+
 TEST(PlacedArm, StandsWhereItIsWithinItsLimits) {
   test::Random random(2402);
   const ControllerConfig config = test::fullController(random, 6, Variant::kNullSpace);

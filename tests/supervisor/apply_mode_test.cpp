@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/controller_run.h"
 #include "support/random_limits.h"
 #include "support/random_robot.h"
 
@@ -74,6 +75,21 @@ TEST(ApplyMode, BeginsAWayOutOnceAndGoesOnOnce) {
 
 /// Drives that are set up may say anything of where joints are: what covers feel of it is no
 /// motion. In every other mode what they have felt goes on.
+/// One that starts where its scene begins is at once on its path, as simulated.
+TEST(ApplyMode, OnlyAnArmThatWasHeldGoesOnGently) {
+  test::Random random(2604);
+  const ControllerConfig config = test::fullController(random, 6, Variant::kJointSpace);
+  const Controller controller(config);
+  const auto shareAfter = [&](Mode before) {
+    ControllerState state = controller.initialState();
+    applyMode(controller, Mode::kRunning, before, {state.q_desired, {}}, config.gains, state);
+    return state.return_share;
+  };
+  for (const Mode before : {Mode::kBoot, Mode::kReady, Mode::kEnabling, Mode::kRunning})
+    EXPECT_EQ(shareAfter(before), 1.0);
+  EXPECT_EQ(shareAfter(Mode::kHolding), 0.0);
+}
+
 TEST(ApplyMode, ForgetsTheMotionOfCoversInABootAndInItsFirstCycleAfter) {
   for (int to = 0; to < kModeCount; ++to) {
     for (int from = 0; from < kModeCount; ++from) {

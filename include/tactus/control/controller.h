@@ -50,6 +50,7 @@ struct ControllerState {
   /// it by the place where the arm stands since.
   ScaledVector way_out_before = ScaledVector::Zero(), way_out_added = ScaledVector::Zero();
   bool is_leaning = false;   ///< on something, where it stands since
+  bool has_leaned = false;   ///< likewise, when it was held last
   double speed_share = 1.0;  ///< of all but answers to contacts; less without a tactile module
   std::array<TactileReading, kMaxTactileModules> modules;
   ContactControllerState contact;
@@ -110,8 +111,10 @@ class Controller {
   /// For an arm that a tactile fault takes from its task, with is_stopping: out of the contact, or
   /// back the way it came, until state.retreat.is_over; see retreat.h.
   void beginRetreat(const Gains& gains, ControllerState& state) const noexcept;
-  /// For an arm that goes on where a stop has left it: if that was after a retreat, it returns to
-  /// its path as after restart().
+  /// For an arm that runs and is held: remembers whether it leans on something.
+  void hold(const Gains& gains, ControllerState& state) const noexcept;
+  /// For an arm that goes on where a hold or a retreat has left it: if that was after a retreat, or
+  /// its task is gone that its law opposed, it returns to its path as after restart().
   void goOn(const Gains& gains, ControllerState& state) const noexcept;
 
   /// For a cycle in which the controller has nothing to do: only samples are taken over, or age.
@@ -163,6 +166,8 @@ class Controller {
   FreeAcceleration freeAcceleration(const Gains& gains, double path_time_s, double period_s,
                                     const PreparedCycle& prepared,
                                     ControllerState& state) const noexcept;
+  ScaledVector wayOut(const Gains& gains, ControllerState& state) const noexcept;
+  bool leans(const Gains& gains, const ControllerState& state) const noexcept;
   void leadAnew(const Gains& gains, bool is_leaning, ControllerState& state) const noexcept;
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
   Fault read(int module, const RobotInput& input, double period_s,

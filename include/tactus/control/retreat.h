@@ -39,6 +39,8 @@ struct RetreatState {
   ContactPointState push;                    ///< the contact, as that module said
   Vector3 direction_Base = Vector3::Zero();  ///< of the push, held
   JointVector velocity_at_fault;             ///< m/s or rad/s
+  /// Of joint limits, when it first began: m/s or rad/s, scaled
+  ScaledVector way_out = ScaledVector::Zero();
   double stiffness_N_per_m = 0.0;
   double untold_s = 0.0;
   ScaledVector row = ScaledVector::Zero();  ///< of the way: d way / dt = row^T q_dot

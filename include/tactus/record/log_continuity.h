@@ -29,7 +29,6 @@ class LogContinuity {
   LogContinuity(const ControllerConfig& config, double period_s, bool has_missed)
       : period_s_(period_s),
         has_missed_(has_missed),
-        has_posture_(config.q_posture.has_value()),
         settled_cycles_(config.has_joint_limit_avoidance ? kReturnRise_s / period_s + 1.0 : 0.0) {}
 
   /// What comes is part `part` of the run, counted from 0. Without a call it is part 0.
@@ -49,7 +48,6 @@ class LogContinuity {
 
   double period_s_;
   bool has_missed_;
-  bool has_posture_;       ///< to which a hold returns as gently as a reset
   double settled_cycles_;  ///< of running, in which a reset keeps nothing from before them
   int next_part_ = 0;
   bool is_part_missing_ = false;  ///< just before the next cycle
