@@ -46,7 +46,7 @@ Json statusJson(const RunStatus& status, double monotonic_s) {
                {"mode", modeName(status.mode)},
                {"fault", faultName(status.fault)},
                {"description", status.description},
-               {"waits_for", wayOnText(status.way_on)},
+               {"waits_for", wayOnText(status.way_on, status.fault)},
                {"cycles", status.loop.cycles},
                {"missed_cycles", status.loop.missed_cycles},
                {"dropped_records", status.loop.dropped_records},

@@ -112,7 +112,9 @@ std::string describeMode(const ModeReport& report, const Scene& scene) {
   return report.fault == Fault::kNone ? mode : mode + ": " + describeFault(report, scene);
 }
 
-std::string wayOnText(const WayOn& way_on) {
+std::string wayOnText(const WayOn& way_on, Fault fault) {
+  const std::string place =
+      fault == Fault::kNotAtStart ? "the arm to be back where it is expected, and " : "";
   switch (way_on.waits_for) {
     case WaitsFor::kFaultGone:
       if (way_on.fault == Fault::kForbiddenSystemCall) return "a new start of the daemon";
@@ -120,9 +122,9 @@ std::string wayOnText(const WayOn& way_on) {
     case WaitsFor::kDrivesOff:
       return "the drives to be off; an enable line that is switched before counts for nothing";
     case WaitsFor::kEnableOff:
-      return "the enable line to be switched off, then on";
+      return place + "the enable line to be switched off, then on";
     case WaitsFor::kEnableOn:
-      return "the enable line to be switched on";
+      return place + "the enable line to be switched on";
     case WaitsFor::kNothing:
       break;
   }

@@ -172,12 +172,22 @@ TEST_F(FaultText, AsJsonHasTheMembersOfTheContract) {
 TEST(WayOnText, SaysSomethingOfAllButNothing) {
   std::set<std::string> texts;
   for (int i = 0; i <= static_cast<int>(WaitsFor::kEnableOn); ++i)
-    texts.insert(wayOnText({static_cast<WaitsFor>(i), Fault::kTactileStale}));
+    texts.insert(wayOnText({static_cast<WaitsFor>(i), Fault::kTactileStale}, Fault::kDriveSilent));
   EXPECT_EQ(texts.size(), 5u);
   EXPECT_EQ(texts.count(""), 1u);
   EXPECT_EQ(texts.count("tactile_stale to be gone"), 1u);
-  EXPECT_EQ(wayOnText({WaitsFor::kFaultGone, Fault::kForbiddenSystemCall}),
-            "a new start of the daemon");
+  EXPECT_EQ(
+      wayOnText({WaitsFor::kFaultGone, Fault::kForbiddenSystemCall}, Fault::kForbiddenSystemCall),
+      "a new start of the daemon");
+}
+
+TEST(WayOnText, SaysFirstThatAnArmHasToBeBack) {
+  EXPECT_EQ(
+      wayOnText({WaitsFor::kEnableOff}, Fault::kNotAtStart),
+      "the arm to be back where it is expected, and the enable line to be switched off, then on");
+  EXPECT_EQ(wayOnText({WaitsFor::kEnableOn}, Fault::kNotAtStart),
+            "the arm to be back where it is expected, and the enable line to be switched on");
+  EXPECT_EQ(wayOnText({}, Fault::kNotAtStart), "");
 }
 
 }  // namespace

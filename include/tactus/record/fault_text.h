@@ -22,8 +22,9 @@ std::string refusalText(const DriveConfig& drive, const DriveReport& report);
 /// "running", or "fault: drive_silent, drive 2 on can1 (joint j5), ...: no feedback ..." and so on.
 std::string describeMode(const ModeReport& report, const Scene& scene);
 
-/// What follows "waits for"; empty: for nothing.
-std::string wayOnText(const WayOn& way_on);
+/// What follows "waits for"; empty: for nothing. The fault is the one that has stopped the arm: of
+/// kNotAtStart nobody looks at the place before the next start, so it is said here.
+std::string wayOnText(const WayOn& way_on, Fault fault);
 
 /// The member "fault" of summary.json: name, time_s, joint, bus, tactile_module, value, limit,
 /// unit, description; null for what is not known, and as a whole without a fault.
