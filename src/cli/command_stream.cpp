@@ -53,9 +53,10 @@ void send(const CycleRecord& record, const std::vector<RecordColumn>& columns,
   socket.send(json + "}");
 }
 
-/// One file of the log; true: it goes on in another one.
-bool streamFile(const StreamOptions& options, const std::string& path,
-                const DatagramSocket& socket) {
+/// One file of the log; true: it goes on in another one. is_live: all is to be sent, also what the
+/// next file holds already.
+bool streamFile(const StreamOptions& options, const std::string& path, const DatagramSocket& socket,
+                bool& is_live) {
   GrowingFile file(path);
   std::istream in(&file);
   UlogReader reader(in, path);
@@ -63,10 +64,12 @@ bool streamFile(const StreamOptions& options, const std::string& path,
   CycleRecord record;
   double next_s = 0.0;
   while (reader.next(record)) {
-    if (!file.isLive() || record.t_s < next_s) continue;
+    is_live = is_live || file.isLive();
+    if (!is_live || record.t_s < next_s) continue;
     next_s = record.t_s + 1.0 / options.rate_hz - 1e-9;
     send(record, columns, socket);
   }
+  is_live = is_live || file.isLive();
   return file.goesOn();
 }
 
@@ -82,7 +85,8 @@ int stream(StreamOptions options) {
   const std::string path = options.log.empty() ? runningLog() : options.log;
   try {
     const DatagramSocket socket(options.to);
-    while (streamFile(options, path, socket)) {
+    bool is_live = false;
+    while (streamFile(options, path, socket, is_live)) {
     }
   } catch (const std::system_error& error) {
     throw RunError(fmt::format("{}: {}", escaped(options.to), error.code().message()));

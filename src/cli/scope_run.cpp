@@ -71,17 +71,17 @@ class Scope {
         screen_(ownScreen()),
         view_{options.log, trigger.condition, options.pre_s, options.post_s, {}} {}
 
-  /// True: that was all. is_live: it is to be shown at once.
-  bool add(const CycleRecord& record, bool is_live) {
-    if (is_live && !was_live_) goLive(record.t_s);
+  /// True: that was all. has_caught_up: it is to be shown at once, as all that comes later.
+  bool add(const CycleRecord& record, bool has_caught_up) {
+    if (has_caught_up && !is_live_) goLive(record.t_s);
     const std::optional<Capture> capture = ring_.add(record);
     if (capture && isWanted(*capture)) {
       keep(*capture);
-      if (is_live) show();
+      if (is_live_) show();
       return options_.is_single;
     }
     const bool is_late = record.t_s > shown_s_ + options_.pre_s + options_.post_s;
-    if (is_live && options_.is_auto && is_late) showNewest();
+    if (is_live_ && options_.is_auto && is_late) showNewest();
     return false;
   }
 
@@ -105,7 +105,7 @@ class Scope {
  private:
   /// What came before is shown once, but not to who waits for one.
   void goLive(double t_s) {
-    was_live_ = true;
+    is_live_ = true;
     live_s_ = shown_s_ = t_s;
     if (!view_.traces.empty() && !options_.is_single) show();
   }
@@ -196,7 +196,7 @@ class Scope {
   CaptureRing ring_;
   ScopeScreen screen_;
   ScopeView view_;
-  bool was_live_ = false, has_new_ = false;
+  bool is_live_ = false, has_new_ = false;
   double live_s_ = kNoLimit, shown_s_ = 0.0;
   double printed_s_ = -kNoLimit;  ///< the newest of those that are followed and printed
 };
@@ -246,12 +246,15 @@ void runScope(ScopeOptions options) {
     scopeCycles(reader, options, gains, scope, [] { return false; });
   }
   std::optional<std::string> run;
+  bool has_caught_up = false;
   for (bool goes_on = options.follows; goes_on;) {
     GrowingFile file(options.log);
     std::istream in(&file);
     UlogReader reader(in, options.log);
     if (!isOfRun(reader.description(), options.log, run)) break;
-    if (scopeCycles(reader, options, gains, scope, [&file] { return file.isLive(); })) return;
+    const auto look = [&] { return has_caught_up = has_caught_up || file.isLive(); };
+    if (scopeCycles(reader, options, gains, scope, look)) return;
+    look();
     goes_on = file.goesOn();
   }
   scope.finish();
