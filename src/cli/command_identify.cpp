@@ -157,7 +157,7 @@ std::string toText(const Identified& found) {
   std::string text = fmt::format(
       "module    {}, {} s without contact\n"
       "gravity   changes by {:.2g} m/s^2 across the axis, {:.2g} along\n",
-      found.link, estimate.blocks, estimate.change_across, estimate.change_along);
+      escaped(found.link), estimate.blocks, estimate.change_across, estimate.change_along);
   if (found.simulated) {
     const Vector3& center = found.simulated->p_ModuleCenter;
     text += fmt::format("simulated {:.4f} kg, centre x {:.4f}, y {:.4f}, z {:.4f} m\n",

@@ -12,6 +12,7 @@
 #include "tactus/daemon/measured_start.h"
 #include "tactus/scene/command_scene.h"
 #include "tactus/scene/json.h"
+#include "tactus/scene/located_error.h"
 
 namespace tactus {
 namespace {
@@ -26,11 +27,12 @@ std::string whereText(const Scene& scene, const JointVector& q) {
   std::string text = fmt::format("start: {}\n", startText(startAt(scene, q)));
   for (int joint = 0; joint < q.size(); ++joint) {
     const double start = scene.controller.q_start[joint];
-    text += fmt::format(
-        "# {}: {:.4f} {}, {:+.4f} from where the scene begins{}\n", scene.joint_names[joint],
-        q[joint], unitOf(scene.controller.chain.type(joint)), q[joint] - start,
-        std::abs(q[joint] - start) > scene.hardware->start_tolerance ? ": too far to start there"
-                                                                     : "");
+    text += fmt::format("# {}: {:.4f} {}, {:+.4f} from where the scene begins{}\n",
+                        escaped(scene.joint_names[joint]), q[joint],
+                        unitOf(scene.controller.chain.type(joint)), q[joint] - start,
+                        std::abs(q[joint] - start) > scene.hardware->start_tolerance
+                            ? ": too far to start there"
+                            : "");
   }
   return text;
 }

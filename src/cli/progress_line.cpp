@@ -5,7 +5,8 @@
 
 #include <cmath>
 #include <cstdio>
-#include <utility>
+
+#include "tactus/scene/located_error.h"
 
 namespace tactus {
 namespace {
@@ -33,8 +34,8 @@ std::string progressText(std::string_view name, double share, double elapsed_s) 
                      leftText(elapsed_s * (1.0 - share) / share));
 }
 
-ProgressLine::ProgressLine(std::string name)
-    : name_(std::move(name)), is_terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressLine::ProgressLine(const std::string& name)
+    : name_(escaped(name)), is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
   if (is_there_) std::fputs("\r\x1b[K", stderr);

@@ -13,7 +13,7 @@ std::string progressText(std::string_view name, double share, double elapsed_s);
 /// Keeps one line of a terminal on standard error up to date; says nothing elsewhere.
 class ProgressLine {
  public:
-  explicit ProgressLine(std::string name);
+  explicit ProgressLine(const std::string& name);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
