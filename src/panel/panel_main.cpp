@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "tactus/daemon/named_file.h"
 #include "tactus/panel/daemon_watch.h"
 #include "tactus/panel/event_feed.h"
 #include "tactus/panel/panel_requests.h"
@@ -69,7 +70,8 @@ int run(int argc, char** argv) {
           ->check(CLI::Range(0, 65535))
           ->capture_default_str();
   app.add_option("--socket", place.socket, "Path of an AF_UNIX socket to listen at in its place")
-      ->excludes(port);
+      ->excludes(port)
+      ->check(isNamed);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

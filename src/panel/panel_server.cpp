@@ -58,6 +58,7 @@ RequestHead headOf(const httplib::Request& request) {
   head.content_type = request.get_header_value("Content-Type");
   head.is_encoded =
       request.has_header("Transfer-Encoding") || request.has_header("Content-Encoding");
+  head.is_partial = request.has_header("Range");
   return head;
 }
 

@@ -42,11 +42,13 @@ std::optional<HttpRefusal> strangerRefusal(const RequestHead& head) {
 
 }  // namespace
 
-/// The library reads what is encoded without a limit, and what has a length up to it.
+/// The library reads what is encoded without a limit, and what has a length up to it. Of a range it
+/// makes a copy for each of thousands that fit into a header.
 std::optional<HttpRefusal> bodyRefusal(const RequestHead& head) {
   if (head.method != "GET" && head.method != "HEAD" && head.method != "POST")
     return HttpRefusal{405, "expected GET or POST"};
   if (head.is_encoded) return HttpRefusal{415, "a body is to be sent as it is, with its length"};
+  if (head.is_partial) return HttpRefusal{416, "files are sent whole"};
   std::size_t length = 0;
   for (const std::string& text : head.lengths) {
     const char* const end = text.data() + text.size();

@@ -108,6 +108,7 @@ TEST(RequestGuardTest, RefusesBodiesThatCannotBeReadSafely) {
     EXPECT_EQ(with([&](RequestHead& head) { head.lengths = {length}; }), 400) << length;
   EXPECT_EQ(with([](RequestHead& head) { head.lengths = {"1", "1"}; }), 400);
   EXPECT_EQ(with([](RequestHead& head) { head.is_encoded = true; }), 415);
+  EXPECT_EQ(with([](RequestHead& head) { head.is_partial = true; }), 416);
   EXPECT_EQ(with([](RequestHead& head) { head.method = "GET"; }), 400);
   EXPECT_EQ(with([](RequestHead& head) { head.method = "PUT"; }), 405);
   for (const char* type :

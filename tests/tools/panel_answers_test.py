@@ -148,6 +148,11 @@ class Places(unittest.TestCase):
                               env=self.rig.environment())  # fmt: skip
         self.assertEqual((done.returncode, path.read_text()), (3, "mine"), done.stderr)
 
+    def test_a_socket_without_a_name_is_no_port(self):
+        done = subprocess.run([PANEL, "--socket", ""], capture_output=True, text=True, timeout=PATIENCE_S,
+                              env=self.rig.environment())  # fmt: skip
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+
     def test_a_socket_that_is_in_use_stays(self):
         for kind in (socket.SOCK_SEQPACKET, socket.SOCK_STREAM):
             path = self.rig.folder / f"other{kind}"

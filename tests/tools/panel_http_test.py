@@ -160,6 +160,10 @@ class Nonsense(Served):
             self.assertIn(status, (404, 414), path)
             self.assertNotIn("root:", text)
 
+    def test_parts_of_a_file(self):
+        for ranges in ("bytes=0-1", "bytes=" + ",".join(["0-"] * 2000)):
+            self.refused(416, "GET", "/dygraph.min.js", Range=ranges)
+
     def test_other_methods(self):
         for method in ("PUT", "DELETE", "PATCH", "TRACE"):
             self.assertIn(self.rig.ask(method, "/")[0], (400, 405), method)

@@ -21,6 +21,7 @@ struct RequestHead {
   std::string fetch_site;    ///< Sec-Fetch-Site, empty without
   std::string content_type;  ///< likewise
   bool is_encoded = false;   ///< has a Transfer-Encoding or Content-Encoding
+  bool is_partial = false;   ///< has a Range
 };
 
 struct HttpRefusal {
