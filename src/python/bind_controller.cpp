@@ -2,6 +2,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -41,6 +42,9 @@ void checkFinite(const char* name, const Array<double>& array) {
       throw py::value_error(
           fmt::format("{}: entry {} is {}, expected finite numbers", name, i, array.data()[i]));
 }
+
+/// m or rad, as keys of scenes have it: of more, sine and cosine would be nonsense.
+constexpr double kMostTurned = 1e6;
 
 /// A controller in the loop of a program that has a robot of its own.
 class ExternalLoop {
@@ -83,8 +87,11 @@ class ExternalLoop {
 
   /// Of the modules' frames in the base frame, [R p; 0 1] each.
   Array<double> modulePoses(const Array<double>& q) const {
+    const JointVector configuration = positions("q", q);
+    const JointVector furthest = JointVector::Constant(shape_.joints, kMostTurned);
+    checkWithin("q", q, -furthest, furthest);
     ChainPose pose;
-    cycle_.config().chain.computePose(positions("q", q), pose);
+    cycle_.config().chain.computePose(configuration, pose);
     Array<double> poses({modules_, 4, 4});
     for (int i = 0; i < modules_; ++i) {
       const Pose module = framePose(pose, cycle_.config().tactile_modules[i].link);
@@ -107,10 +114,13 @@ class ExternalLoop {
 
   void checkWithin(const char* name, const Array<double>& q, const JointVector& lower,
                    const JointVector& upper) const {
-    for (int i = 0; i < shape_.joints; ++i)
-      if (q.data()[i] < lower[i] || q.data()[i] > upper[i])
+    for (int i = 0; i < shape_.joints; ++i) {
+      const double least = std::max(lower[i], -kMostTurned);
+      const double most = std::min(upper[i], kMostTurned);
+      if (q.data()[i] < least || q.data()[i] > most)
         throw py::value_error(fmt::format("{}: joint {} at {}, expected {} to {}", name,
-                                          joint_names_[i], q.data()[i], lower[i], upper[i]));
+                                          joint_names_[i], q.data()[i], least, most));
+    }
   }
 
   /// An engine's arm may be pushed past its limits, but not far. The daemon's drives stop long

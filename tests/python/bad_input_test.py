@@ -152,6 +152,8 @@ class Objects(unittest.TestCase):
                 controller.update(*arguments)
         with self.assertRaisesRegex(ValueError, "q: joint j1 at 9(.0)?, expected -0.4 to 0.4"):
             tactus.Controller(self.scene, q + 9 - q[0])
+        with self.assertRaisesRegex(ValueError, r"q: joint j1 at 1e\+18, expected -1\S* to 1\S*"):
+            controller.module_poses(q + 1e18)
         with self.assertRaisesRegex(RuntimeError, "expected update"):
             controller.record()
         slightly_past = np.r_[0.5, q[1:]]  # j1 goes to 0.4
