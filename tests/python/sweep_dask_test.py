@@ -12,9 +12,13 @@ import subprocess
 import sys
 import time
 import unittest
+from unittest import mock
 
 from common import FOLDER
 from sweep_common import RUNS, STUDY, Sweeps, runs_in, table_of, without_progress
+from tactus._sweep import OtherVersion
+
+from tactus_sweep.pool import PoolError
 
 NO_DASK = 4
 ON_WORKER = ["--nthreads", "1", "--no-dashboard", "--no-nanny", "--death-timeout", "30"]
@@ -112,6 +116,45 @@ class Cluster(Sweeps):
         done = self.sweep(self.study(), self.folder / "out", "--scheduler", self.scheduler)
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertRegex(done.stderr, rf"\A{self.scheduler}: no Dask scheduler with a worker .*\n\Z")
+
+
+class Errors(unittest.TestCase):
+    """Of a batch, which the runs in it cannot have: theirs are rows already."""
+
+    def setUp(self):
+        from tactus_sweep.dask_pool import DaskPool
+
+        self.pool = DaskPool.__new__(DaskPool)
+        self.pool.identity = {"version": "1", "build": "2"}
+        self.submitted = []
+        self.pool.submit = lambda _, numbers, size: self.submitted.append(numbers)
+
+    def take(self, error, numbers):
+        future = mock.Mock(status="error", exception=lambda: error)
+        self.pool.batches = {future: numbers}
+        return self.pool.take(None, future)
+
+    def test_of_a_worker_end_the_sweep_and_are_no_rows(self):
+        for error, exit_code, expected in (
+                (ModuleNotFoundError("No module named 'tactus'"), 1,
+                 "a worker is refused: No module named 'tactus', expected tactus 1, build 2"),
+                (OtherVersion("tactus 0"), 1, "a worker is refused: tactus 0, expected tactus 1, build 2"),
+                (OSError(24, "Too many open files"), 3, r"a worker cannot compute, OSError: .*Too many open files; the "
+                 "runs before are kept, and the same command goes on")):
+            for numbers in ([4], [4, 5]):
+                with self.subTest(error=error, numbers=numbers), self.assertRaisesRegex(PoolError, expected) as ended:
+                    self.take(error, numbers)
+                self.assertEqual((ended.exception.exit_code, self.submitted), (exit_code, []))
+
+    def test_by_which_workers_die_are_tried_alone_and_then_a_row(self):
+        from distributed import KilledWorker
+
+        killed = KilledWorker("run_batch", mock.Mock(address="tcp://b:1"), 3)
+        self.assertEqual(self.take(killed, [4, 5]), [])
+        self.assertEqual(self.submitted, [[4], [5]])
+        [row] = self.take(killed, [4])
+        self.assertEqual((row["run"], row["outcome"]), (4, "failed"))
+        self.assertIn("KilledWorker", row["reason"])
 
 
 if __name__ == "__main__":

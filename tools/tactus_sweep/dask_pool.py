@@ -78,8 +78,8 @@ class DaskPool:
         if future.status != "error":
             raise lost()
         error = future.exception()
-        if isinstance(error, OtherVersion):
-            raise other_version("a worker", str(error), self.identity)
+        if not isinstance(error, distributed.KilledWorker):  # the runs' own errors are rows already
+            raise unfit(error, self.identity)
         if len(numbers) > 1:
             for number in numbers:
                 self.submit(finished, [number], 1)
@@ -97,6 +97,14 @@ class DaskPool:
 
 def lost():
     return PoolError("the Dask scheduler is lost; the runs before are kept, and the same command goes on", 3)
+
+
+def unfit(error, identity):
+    """Of a worker that has joined late, or whose machine has a trouble of its own."""
+    if isinstance(error, (OtherVersion, ImportError)):
+        return other_version("a worker", first_line(error), identity)
+    return PoolError(one_line(f"a worker cannot compute, {type(error).__name__}: {first_line(error)}; the runs "
+                              "before are kept, and the same command goes on"), 3)
 
 
 def is_identity(answer):
