@@ -225,7 +225,9 @@ class Others(Sweeps):
                     text.replace("1]", "2]"))
         self.refuse(folder, r"of other runs: grid: 2 choices, now 3", text.replace("1]", "1, 2]"))
         scene.write_text(self.scene_text().replace("stiffness_N_per_m: 300", "stiffness_N_per_m: 310"))
-        self.refuse(folder, r"scene.yaml: was '.*300.*', is '.*310.*'", text)
+        self.refuse(folder, r"scene.yaml:15: was '    - .*300.*', is '    - .*310.*'", text)
+        scene.write_text(self.scene_text().replace("\ntask:", "\n\ntask:"))
+        self.refuse(folder, r"scene.yaml:4: was 'task:', is ''; expected the same study", text)
         scene.write_text(self.scene_text())
         content = (folder / "results.jsonl").read_bytes()
         for name, expected in (("version", r"of another tactus, version 9, this one is "),
@@ -238,6 +240,19 @@ class Others(Sweeps):
         self.refuse(folder, "no results of a sweep, or damaged", text)
         (folder / "results.jsonl").write_bytes(b"something else")
         self.refuse(folder, "no results of a sweep, expected another folder", text)
+
+    def test_tell_at_once_what_differs_in_a_long_file(self):
+        """All lines of it, by blanks alone; a comparison that looks for moved lines takes minutes."""
+        lines = [f"  key_{number}: {number}" for number in range(2000)]
+
+        def difference(new):
+            return results.file_difference({"a.yaml": "\n".join(lines)}, {"a.yaml": new})
+
+        self.assertEqual(difference("\n".join("  " + line for line in lines)),
+                         "a.yaml:1: was '  key_0: 0', is '    key_0: 0'")
+        self.assertEqual(difference("\n".join(lines[:-1])), "a.yaml:2000: was '  key_1999: 1999', is nothing")
+        self.assertEqual(difference("\n".join([*lines, ""])), "a.yaml:2001: was nothing, is ''")
+        self.assertEqual(difference("\r\n".join(lines)), "a.yaml:1: was '  key_0: 0', is '  key_0: 0\r'")
 
     def scene_text(self):
         free = SCENE.with_name("planar2_free.yaml")

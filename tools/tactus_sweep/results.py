@@ -5,8 +5,8 @@ the writer, at any byte, leaves whole lines and perhaps the beginning of one, wh
 is written; a line that is damaged does not count, either. Its run is then done again.
 """
 
-import difflib
 import fcntl
+import itertools
 import json
 import os
 import time
@@ -167,16 +167,26 @@ def file_difference(was, is_):
         return list_difference([list(was)], [list(is_)])
     for path, text in was.items():
         if text != is_[path]:
-            return f"{path}: {list_difference([text.splitlines()], [is_[path].splitlines()])}"
+            number, difference = line_difference(text.split("\n"), is_[path].split("\n"))
+            return f"{path}:{number}: {difference}"
     return None
 
 
 def list_difference(was, is_):
-    """The first lines that differ."""
+    """Of the first choices that differ."""
     if len(was) != len(is_):
         return f"{len(was)} choices, now {len(is_)}"
-    for old, new in zip(was, is_):
-        changed = [line for line in difflib.ndiff(old, new) if line[:2] in ("- ", "+ ")]
-        if changed:
-            return ", ".join(f"{'was' if line[0] == '-' else 'is'} '{line[2:].strip()}'" for line in changed[:2])
-    return "ends of lines"
+    return next(line_difference(old, new)[1] for old, new in zip(was, is_) if old != new)
+
+
+def line_difference(was, is_):
+    """Number and text of the first lines that differ. What was put in between is not looked for: it takes minutes
+    of a long file."""
+    for number, (old, new) in enumerate(itertools.zip_longest(was, is_), 1):
+        if old != new:
+            return number, f"was {quoted(old)}, is {quoted(new)}"
+    return None
+
+
+def quoted(line):
+    return "nothing" if line is None else f"'{line}'"
