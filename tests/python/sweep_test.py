@@ -4,6 +4,7 @@
 usage: sweep_test.py FOLDER TACTUS"""
 
 import html
+import itertools
 import json
 import math
 import pathlib
@@ -20,6 +21,7 @@ import numpy as np
 from common import ROOT, SCENES, TACTUS, Scratch, tactus
 from scipy import stats
 from sweep_common import RUNS, SCENE, Sweeps, rows_of, runs_in, table_of
+from tactus._sweep import run
 
 from tactus_sweep import judge, pool, progress, scenes, study
 
@@ -262,6 +264,70 @@ class BadStudies(Sweeps):
         for arguments in ((), ("-o", "out", "-j", "0"), ("-o", "out", "--nonsense")):
             done = subprocess.run([TACTUS, "sweep", self.study(), *arguments], capture_output=True, cwd=self.folder)
             self.assertEqual(done.returncode, 2)
+
+
+class Conflicts(Sweeps):
+    """Values that are possible, but not together: found by their runs, whatever the order of the study."""
+
+    BEGIN = f"scenes: [{SCENE}]\nset: {{simulation.duration_s: 0.1}}\n"
+    VANISHES, APPEARS = "'simulation.obstacles[0].vanishes_s'", "'simulation.obstacles[0].appears_s'"
+
+    def read(self, text):
+        read = study.read_study(self.study(text))
+        plan = study.make_plan(read, scenes.load_files(read))
+        scenes.check_keys(read, plan)
+        return plan
+
+    def refusals(self, text):
+        plan = self.read(text)
+        return sum(run(plan.files(number), plan.settings(number))["outcome"] == "refused" for number in range(plan.runs))
+
+    def test_are_rows_in_any_order_of_values_and_keys(self):
+        for vanishes, appears in itertools.product(("[2, 5]", "[5, 2]", "[5, 2, 5.5]"),
+                                                   ("[3, 1]", "[1, 3]", "[3, 1, 4]")):
+            lines = [f"{self.VANISHES}: {vanishes}", f"{self.APPEARS}: {appears}"]
+            late = sum(float(a) > 2 for a in json.loads(appears))
+            for text in (lines, lines[::-1]):
+                with self.subTest(text=text):
+                    self.assertEqual(self.refusals(f"{self.BEGIN}grid: {{{', '.join(text)}}}"), late)
+
+    def test_are_rows_whatever_section_the_keys_are_in(self):
+        for text in (f"grid: {{{self.VANISHES}: [2, 5]}}\n"
+                     f"disturbances: {{draws: 20, keys: {{{self.APPEARS}: {{from: 1, to: 4}}}}}}",
+                     f"sobol: {{points: 16, keys: {{{self.VANISHES}: {{from: 2, to: 5}}}}}}\n"
+                     f"disturbances: {{draws: 3, keys: {{{self.APPEARS}: {{from: 1, to: 4}}}}}}"):
+            with self.subTest(text=text):
+                plan = self.read(self.BEGIN + text)
+                self.assertTrue(0 < self.refusals(self.BEGIN + text) < plan.runs)
+
+    def scene(self, obstacles):
+        begin, mark, _ = SCENE.read_text().partition("  obstacles:")
+        text = begin.replace("planar2_free.yaml", str(SCENE.with_name("planar2_free.yaml")))
+        return self.BEGIN.replace(str(SCENE), str(self.file("scene.yaml", f"{text}{mark} {obstacles}\n")))
+
+    def test_of_two_obstacles_do_not_hide_one_another(self):
+        begin = self.scene("[{x_m: 0.51, y_m: 0.124, stiffness_N_per_m: 300}, "
+                           "{x_m: 0.6, y_m: 0.3, stiffness_N_per_m: 300}]")
+        others = [key.replace("[0]", "[1]") for key in (self.VANISHES, self.APPEARS)]
+        for vanishes, appears in (("[2, 5]", "[3, 1]"), ("[5, 2]", "[1, 3]")):
+            grid = (f"grid: {{{self.VANISHES}: [2, 5], {self.APPEARS}: [3, 1], {others[0]}: {vanishes}, "
+                    f"{others[1]}: {appears}")
+            self.assertEqual(self.refusals(f"{begin}{grid}}}"), 16 - 3 * 3)
+            with self.assertRaisesRegex(study.StudyError, r"controller.damping: '-1' is out of range"):
+                self.read(f"{begin}{grid}, controller.damping: [0.5, -1]}}")
+
+    def test_of_what_is_set_with_the_scene_are_none_of_the_study(self):
+        begin = self.scene("[{x_m: 0.51, y_m: 0.124, stiffness_N_per_m: 300, appears_s: 3}]")
+        text = begin.replace("{", f"{{{self.VANISHES}: 2, ") + f"grid: {{{self.APPEARS}: "
+        self.assertEqual(self.refusals(text + "[3, 1]}"), 1)
+        with self.assertRaisesRegex(study.StudyError, ":2:7: .*vanishes_s: 2 s is too early"):
+            self.read(text + "[3, 4]}")  # no run could be
+
+    def test_with_all_values_refuse_the_study(self):
+        for appears in ("[3, 4]", "[4, 3]"):
+            with self.assertRaisesRegex(study.StudyError, r":3:8: simulation.obstacles\[0\].vanishes_s: 2 s is too early"
+                                                          ", expected more than appears_s = [34], in "):
+                self.read(f"{self.BEGIN}grid: {{{self.VANISHES}: [2, 5], {self.APPEARS}: {appears}}}")
 
 
 class Shipped(unittest.TestCase):

@@ -8,6 +8,8 @@ from tactus._sweep import as_bytes, load
 
 from .study_text import StudyError, one_line
 
+MAX_WORDS = 8  # of a list, each tried with the values of the other keys
+
 
 def load_files(study):
     """Of each scene its files as they are now, [(path, text)]. Raises StudyError."""
@@ -28,25 +30,54 @@ def check_keys(study, plan):
     out: a run that a scene refuses is one of its rows."""
     places = {setting.split("=")[0]: entry for entry, setting in study.fixed}
     places |= {axis.key: axis.entry for axis in study.axes}
+    tried = [(setting, [plan.fixed, *choices(study, plan, None)]) for _, setting in study.fixed]
+    for axis in study.axes:
+        others = choices(study, plan, axis)  # of all settings of the axis
+        tried += [(setting, others) for setting in axis.ends()]
     for files, (_, name, _) in zip(plan.scenes, study.scenes):
-        for entry, setting in study.fixed:
-            try_setting(files, plan.fixed, setting, places, name)
-        first = plan.settings(0)
-        for axis in study.axes:
-            for setting in axis.ends():
-                try_setting(files, first, setting, places, name)
+        for setting, others in tried:
+            try_setting(files, others, setting, places, name)
 
 
-def try_setting(files, settings, setting, places, scene):
-    """In the order of a run: of several wrong keys one is the first that is seen, and it is tried, too."""
-    key = setting.split("=")[0]
+def choices(study, plan, axis):
+    """What a setting of the axis is tried with: the first run's settings, then the other axes at their ends, all
+    and one by one. A value that only some of these refuse is not impossible."""
+    ends = [outermost(other) for other in study.axes if other is not axis]
+    first = plan.settings(0)
+    bases = [first, replaced(first, [few[0] for few in ends]), replaced(first, [few[-1] for few in ends])]
+    found = bases + [replaced(base, [one]) for base in bases for few in ends for one in few]
+    return list(map(list, dict.fromkeys(map(tuple, found))))
+
+
+def outermost(axis):
+    ends = axis.ends()
     try:
-        load(files, [setting if other.split("=")[0] == key else other for other in settings])
-    except tactus.ConfigError as error:
-        mark = f"--set {key}"
-        if error.file != mark:
-            return
-        problem = str(error).removeprefix(f"{mark}:{error.line}:{error.column}: ")
+        ends.sort(key=lambda setting: float(setting.split("=", 1)[1]))
+    except ValueError:  # words, of which any may be the one that others fit
+        return ends[:MAX_WORDS]
+    return [ends[0], ends[-1]]
+
+
+def replaced(settings, new):
+    values = {setting.split("=")[0]: setting for setting in new}
+    return [values.get(setting.split("=")[0], setting) for setting in settings]
+
+
+def try_setting(files, others, setting, places, scene):
+    """Refuses it if none of the others takes it, and it is to blame. Each stands in the order of a run: of several
+    wrong keys one is the first that is seen, and it is tried, too."""
+    problem = None
+    for number, settings in enumerate(others):
+        try:
+            load(files, replaced(settings, [setting]))
+        except tactus.ConfigError as error:
+            key = setting.split("=")[0]
+            if problem is None and error.file == f"--set {key}":
+                problem = str(error).removeprefix(f"--set {key}:{error.line}:{error.column}: ")
+            continue
+        if number > 1:
+            others.insert(1, others.pop(number))  # likely to do for the next value, too
+        return
+    if problem is not None:
         at = places[key].name_mark
-        raise StudyError(one_line(f"{places[key].path}:{at.line + 1}:{at.column + 1}: {problem}, "
-                                  f"in {scene}")) from error
+        raise StudyError(one_line(f"{places[key].path}:{at.line + 1}:{at.column + 1}: {problem}, in {scene}"))
