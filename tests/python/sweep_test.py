@@ -249,12 +249,25 @@ class BadStudies(Sweeps):
                  "standard_deviation: 0}}}", r"'0', expected a number > 0"),
                 (begin + "set: {controller.damping: 1}\ngrid: {controller.damping: [1]}",
                  r":3:\d+: grid.controller.damping: has its values elsewhere"),
+                (begin + "set: {'a.b[0].c': 1}\ngrid: {'a.b[000].c': [1]}", r":3:\d+: grid.a.b\[000\].c: has its values"),
+                (begin + "set: {'a[10]': 1, 'a[010]': 1}", r":2:\d+: set.a\[010\]: has its values elsewhere"),
+                (begin + "grid: {a.b: [1], a.bc: [1], a.b0: [1], a.b.c: [1]}",
+                 r":2:\d+: grid.a.b.c: beside a.b: one is a section of the other, expected one of them"),
+                (begin + "set: {'a[1].b': 1}\ngrid: {'a[10].b': [1], 'a[01]': [1]}",
+                 r":3:\d+: grid.a\[01\]: beside a\[1\].b: one is a section"),
+                (begin + "grid: {'a[0]': [1], a: [1]}", r":2:\d+: grid.a: beside a\[0\]: "),
                 (begin + "grid: {controller.damping: {from: 0.5, to: 1, count: 1001}, "
                  "controller.time_constant_s: {from: 0.1, to: 1, count: 1001}}", r"1002001 runs, expected at"),
                 (begin + "limits: {peak: 1}", r"limits.peak: unknown key"),
                 (begin + "objective: nothing", r"'nothing', expected one of peak_force_N")):
             with self.subTest(text=text):
                 self.refuse(text, expected)
+
+    def test_are_not_those_with_keys_that_begin_alike(self):
+        keys = ["a", "ab", "b[1].c", "b[10].c", "b[11].c", "b[1].cd", "c.d", "c.d0", "c.d_e", "b[100].c"]
+        for order in (keys, keys[::-1]):
+            read = study.read_study(self.study("scenes: [a]\ngrid:\n" + "".join(f"  {key}: [1]\n" for key in order)))
+            self.assertEqual([axis.key for axis in read.axes], order)
 
     def test_name_what_is_wrong_with_a_scene(self):
         self.file("scene.yaml", f"extends: {SCENE}\ncontroller:\n  damping: x\n")

@@ -3,6 +3,7 @@
 import dataclasses
 import itertools
 import pathlib
+import re
 
 from tactus._sweep import ALL_FIGURES, Plan
 
@@ -132,11 +133,21 @@ def read_objective(section):
 
 
 def refuse_twice(study):
-    found = {setting.split("=")[0] for _, setting in study.fixed}
-    for axis in study.axes:
-        if axis.key in found:
-            raise axis.entry.error("has its values elsewhere in the study, too", "each key once")
-        found.add(axis.key)
+    """Also of keys that are spelled in two ways, or of which one is a section of the other: what comes last would
+    take the place of what is before."""
+    entries = [*((entry.key_set, entry) for entry, _ in study.fixed), *((axis.key, axis.entry) for axis in study.axes)]
+    sorted_keys = sorted((words_of(key), place) for place, (key, _) in enumerate(entries))
+    for (words, place), (next_words, next_place) in zip(sorted_keys, sorted_keys[1:]):  # a section is before its keys
+        if next_words[:len(words)] == words:
+            first, last = sorted((place, next_place))
+            if words == next_words:
+                raise entries[last][1].error("has its values elsewhere in the study, too", "each key once")
+            raise entries[last][1].error(f"beside {entries[first][0]}: one is a section of the other", "one of them")
+
+
+def words_of(key):
+    """"a.b[02].c" is a, b, 2], c."""
+    return [re.sub(r"^0+(?=[0-9]+\]$)", "", word) for word in re.split(r"[.\[]", key)]
 
 
 def draw(points):
