@@ -269,6 +269,15 @@ class BadStudies(Sweeps):
             read = study.read_study(self.study("scenes: [a]\ngrid:\n" + "".join(f"  {key}: [1]\n" for key in order)))
             self.assertEqual([axis.key for axis in read.axes], order)
 
+    def test_are_refused_without_a_folder(self):
+        for name in ("study.yaml", "gone.yaml"):
+            self.study()
+            done = self.sweep(name, "", cwd=self.folder)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (1, "", "-:1:1: -o: no folder, expected a path\n"))
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["study.yaml"])
+        answer = json.loads(self.sweep("study.yaml", "", "--json", cwd=self.folder).stdout)
+        self.assertEqual(answer, {"done": False, "error": "-:1:1: -o: no folder, expected a path"})
+
     def test_name_what_is_wrong_with_a_scene(self):
         self.file("scene.yaml", f"extends: {SCENE}\ncontroller:\n  damping: x\n")
         self.refuse("scenes: [scene.yaml]", r"scene.yaml:3:12: controller.damping: 'x' is not a number")

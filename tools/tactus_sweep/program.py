@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import pathlib
 import signal
 import sys
 
@@ -30,6 +31,9 @@ def run_program(arguments):
     """Exit code."""
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, stop)
+    if not arguments.output:  # which pathlib takes for the current folder
+        return refuse("-:1:1: -o: no folder, expected a path", BAD_INPUT, arguments)
+    arguments.output = pathlib.Path(arguments.output)
     try:
         study = read_study(arguments.study)
         plan = make_plan(study, scenes.load_files(study))
