@@ -225,7 +225,8 @@ class BadStudies(Sweeps):
                 ("grid: {}", r":1:1: -: without scenes, "),
                 ("scenes: []", r":1:9: scenes: an empty list, "),
                 ("scenes: [gone.yaml]", r":1:10: scenes\[0\]: 'gone.yaml' is no file, "),
-                ("scenes: [a\x07b]", r"^study.yaml:1:\d+: .*expected YAML"),
+                ("scenes: [a\x07b]", r"^study.yaml:1:11: -: the character #x07, expected YAML"),
+                ("scenes:\n- ä\n\n- bc\x1b[2J\n", r"^study.yaml:4:5: -: the character #x1b, expected YAML"),
                 ("scenes: &a [b]\nset: *a", r":2:6: -: an alias, "),
                 (begin + begin, r":2:1: scenes: is there twice, "),
                 (begin + "grid: {controller.damping: [0.5", r"expected YAML"),
@@ -286,6 +287,32 @@ class BadStudies(Sweeps):
         for arguments in ((), ("-o", "out", "-j", "0"), ("-o", "out", "--nonsense")):
             done = subprocess.run([TACTUS, "sweep", self.study(), *arguments], capture_output=True, cwd=self.folder)
             self.assertEqual(done.returncode, 2)
+
+
+class Texts(Scratch):
+    def settings(self, text):
+        read = study.read_study(self.file("study.yaml", f"scenes: [a]\nset:\n  k: {text}\n"))
+        return [setting.removeprefix("k=") for _, setting in read.fixed]
+
+    def test_in_one_line_are_set_as_they_stand(self):
+        for text in ("\"ti  p\"", "'  ti \t p '", "\"a # b\"", "'#'", "[1,  'a  b',  2]", "{a:  'b  c'}", "['a#b']", "''",
+                     "a  b"):
+            with self.subTest(text=text):
+                self.assertEqual(self.settings(text), [text])
+        self.assertEqual(self.settings("'a  b' # c"), ["'a  b'"])
+
+    def test_in_several_lines_become_one(self):
+        self.assertEqual(self.settings("[1,\n    2]"), ["[1, 2]"])
+        self.assertEqual(self.settings("'a\n    b'"), ["'a b'"])
+        for text in ("[1, # one\n    2]", "|\n    a", "\n    a: 1", "\n    - 1"):
+            with self.subTest(text=text), self.assertRaisesRegex(study.StudyError, "a value, or a list or section in"):
+                self.settings(text)
+
+    def test_of_a_robot_keep_their_blanks(self):
+        text = f"scenes: [{SCENE}]\nset: {{robot.tip: \"ti  p\"}}\n"
+        read = study.read_study(self.file("study.yaml", text))
+        with self.assertRaisesRegex(study.StudyError, "'ti  p'"):
+            scenes.check_keys(read, study.make_plan(read, scenes.load_files(read)))
 
 
 class Conflicts(Sweeps):

@@ -101,9 +101,10 @@ class Node:
         text = self.text[self.node.start_mark.index:self.node.end_mark.index]
         is_block = self.node.style in ("|", ">") if isinstance(self.node, yaml.ScalarNode) else (
             not self.node.flow_style)
-        if is_block or "#" in text:
+        is_one_line = len(text.splitlines()) == 1  # without a comment, for it would hide the end
+        if is_block or "#" in text and not is_one_line:
             raise self.wrong("a value, or a list or section in brackets without a comment")
-        return " ".join(text.split())
+        return text if is_one_line else " ".join(text.split())
 
 
 def error_at(path, line, column, key, problem, expected):
@@ -137,6 +138,10 @@ def read_node(path):
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         raise error_at(path, mark.line, mark.column, "-", error.problem or error.context, "YAML") from error
+    except yaml.reader.ReaderError as error:
+        before = text[:error.position]
+        raise error_at(path, before.count("\n"), len(before) - before.rfind("\n") - 1, "-",
+                       f"the character #x{error.character:02x}", "YAML") from error
     except (yaml.YAMLError, RecursionError) as error:
         raise error_at(path, 0, 0, "-", type(error).__name__, "YAML") from error
     if node is None:
