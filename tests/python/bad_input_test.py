@@ -53,6 +53,20 @@ class Messages(Scratch):
             self.expect(program("simulate", SCENE, "-o", self.folder, "--set", f"{key}={text}"),
                         refused.exception)
 
+    def test_of_texts_are_the_same_inside_lists_and_mappings(self):
+        """Each sign reaches the loader, which says of all that they are no word it knows."""
+        signs = {"\U0001f600": "\U0001f600", "é": "é", "\x7f": r"\x7f", "\x00": r"\x00", "\n": r"\x0a", '"': '"',
+                 "\x85": r"\xc2\x85", "\u2028": r"\xe2\x80\xa8", "\udcff": r"\xff", "\\u": r"\u"}
+        for sign, shown in signs.items():
+            for values, expected in (({"task.components": [f"a{sign}"]}, f"[0]: the text 'a{shown}', expected a list"),
+                                     ({"simulation.obstacles": [{f"a{sign}": 1}]}, f"[0].a{shown}: unknown key")):
+                with self.subTest(sign=sign, values=values), self.assertRaises(tactus.ConfigError) as refused:
+                    tactus.Scene(SCENE, set=values)
+                self.assertIn(expected, str(refused.exception))
+        for value in ("\ud800", ["\ud800"], [{"\ud800": 1}]):  # no sign, and no byte
+            with self.assertRaisesRegex(ValueError, "surrogates not allowed"):
+                tactus.Scene(SCENE, set={"task.components": value})
+
     def test_name_a_file_that_is_not_there(self):
         for path in (self.folder / "nix.yaml", str(self.folder / "nix.yaml"), self.folder):
             with self.assertRaisesRegex(tactus.ConfigError, "^[^:]+:1:1: -: .*, expected ") as refused:

@@ -49,10 +49,15 @@ def _yaml(key: str, value: object) -> str:
         text = repr(float(value))
         return {"inf": ".inf", "-inf": "-.inf", "nan": ".nan"}.get(text, text)
     if isinstance(value, str):
-        return json.dumps(value)
+        return _quoted(value)
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{json.dumps(_key(k))}: {_yaml(key, v)}" for k, v in value.items()) + "}"
+        return "{" + ", ".join(f"{_quoted(_key(k))}: {_yaml(key, v)}" for k, v in value.items()) + "}"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_yaml(key, v) for v in value) + "]"
     raise TypeError(f"set: {key} is a {type(value).__name__}, expected a number, a text, a bool, None, "
                     "or a list or mapping of these")
+
+
+def _quoted(text: str) -> str:
+    """Without JSON's pairs of surrogates, which are no characters of YAML."""
+    return json.dumps(text, ensure_ascii=False)
