@@ -280,6 +280,44 @@ class NoDaemon(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "closed"):
             daemon.hold()
 
+    def test_is_held_by_a_signal_while_another_request_waits(self):
+        """The server answers `show` only once it was told to hold; each gets its own answer."""
+        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as server:
+            server.bind(str(self.path))
+            server.listen()
+            thread = threading.Thread(target=self.answer_the_last_first, args=(server,))
+            thread.start()
+            self.addCleanup(thread.join)
+            daemon = tactus.Daemon(self.path)
+            held = []
+            before = signal.signal(signal.SIGALRM, lambda *_: held.append(daemon.hold()))
+            self.addCleanup(signal.signal, signal.SIGALRM, before)
+            self.assertEqual(daemon.show()["to"], "show")
+            self.assertEqual(held, [{"number": 1, "to": "hold"}])
+            self.assertEqual(daemon.ask({"do": "undo"})["to"], "undo")  # by the first connection, which is there still
+            daemon.close()
+
+    def answer_the_last_first(self, server):
+        def answer(connection, request):
+            to = json.loads(request)["do"]
+            connection.send(json.dumps({"done": True, "to": to, "task": {"number": 1, "to": to}}).encode())
+
+        first, _ = server.accept()
+        shown = first.recv(1 << 16)
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGALRM)
+        server.settimeout(20)
+        try:
+            second, _ = server.accept()
+        except TimeoutError:  # both by one connection
+            first.close()
+            return
+        answer(second, second.recv(1 << 16))
+        self.assertEqual(second.recv(1 << 16), b"")  # it is closed
+        second.close()
+        answer(first, shown)
+        answer(first, first.recv(1 << 16))
+        first.close()
+
     def test_that_may_not_be_looked_at_is_not_taken_for_one_without_a_log(self):
         self.path.parent.chmod(0o755)
         status = self.path.parent / "status.json"

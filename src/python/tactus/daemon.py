@@ -31,7 +31,8 @@ class Daemon:
     the commands. timeout_s: how long an answer may take. RunError: no daemon runs, it may not
     be asked, or does not answer; then a new connection is needed. DaemonError: it refuses.
 
-    Threads may share it: each gets the answer to its own request, one after the other.
+    Threads may share it: each gets the answer to its own request, one after the other. So may a handler of a
+    signal, which need not wait for the request that it interrupts: its own takes another connection.
     """
 
     def __init__(self, path: str | os.PathLike[str] | None = None,
@@ -40,7 +41,9 @@ class Daemon:
         self.path = os.path.join(folder, "control") if path is None else os.fspath(path)
         self._socket: socket.socket | None = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._socket.settimeout(timeout_s)
+        self._timeout_s = timeout_s
         self._turn = threading.RLock()  # a handler of a signal that holds the arm may not wait for itself
+        self._waiting: int | None = None  # thread whose request is on its way
         try:
             self._socket.connect(self.path)
         except (FileNotFoundError, ConnectionRefusedError) as error:
@@ -67,8 +70,15 @@ class Daemon:
     def ask(self, request: Mapping[str, object]) -> dict[str, Any]:
         """One request of docs/control.md as it stands there, and its answer."""
         text = json.dumps(dict(request), allow_nan=False, default=_plain)
+        if self._waiting == threading.get_ident():  # in a handler of a signal
+            with Daemon(self.path, self._timeout_s) as other:
+                return other.ask(request)
         with self._turn:  # an answer does not say to which request
-            packet = self._exchange(text.encode())
+            try:
+                self._waiting = threading.get_ident()
+                packet = self._exchange(text.encode())
+            finally:
+                self._waiting = None
         try:
             answer = json.loads(packet)
         except ValueError:
