@@ -252,11 +252,11 @@ class BadStudies(Sweeps):
                  r":3:\d+: grid.controller.damping: has its values elsewhere"),
                 (begin + "set: {'a.b[0].c': 1}\ngrid: {'a.b[000].c': [1]}", r":3:\d+: grid.a.b\[000\].c: has its val"),
                 (begin + "set: {'a[10]': 1, 'a[010]': 1}", r":2:\d+: set.a\[010\]: has its values elsewhere"),
-                (begin + "grid: {a.b: [1], a.bc: [1], a.b0: [1], a.b.c: [1]}",
-                 r":2:\d+: grid.a.b.c: beside a.b: one is a section of the other, expected one of them"),
+                (begin + "grid: {a.b.c: [1], a.bc: [1], a.b0: [1], a.b: [1]}",
+                 r":2:\d+: grid.a.b: takes the place of a.b.c, which is before, expected one of them"),
                 (begin + "set: {'a[1].b': 1}\ngrid: {'a[10].b': [1], 'a[01]': [1]}",
-                 r":3:\d+: grid.a\[01\]: beside a\[1\].b: one is a section"),
-                (begin + "grid: {'a[0]': [1], a: [1]}", r":2:\d+: grid.a: beside a\[0\]: "),
+                 r":3:\d+: grid.a\[01\]: takes the place of a\[1\].b, "),
+                (begin + "grid: {'a[0]': [1], a: [1]}", r":2:\d+: grid.a: takes the place of a\[0\], "),
                 (begin + "grid: {controller.damping: {from: 0.5, to: 1, count: 1001}, "
                  "controller.time_constant_s: {from: 0.1, to: 1, count: 1001}}", r"1002001 runs, expected at"),
                 (begin + "limits: {peak: 1}", r"limits.peak: unknown key"),
@@ -269,6 +269,11 @@ class BadStudies(Sweeps):
         for order in (keys, keys[::-1]):
             read = study.read_study(self.study("scenes: [a]\ngrid:\n" + "".join(f"  {key}: [1]\n" for key in order)))
             self.assertEqual([axis.key for axis in read.axes], order)
+
+    def test_are_not_those_with_a_section_before_its_keys(self):
+        read = study.read_study(self.study("scenes: [a]\nset: {a: [{b: 1, c: 1}]}\n"
+                                           "grid: {'a[0].b': [1], 'a[0].c': [1]}"))
+        self.assertEqual(len(read.axes), 2)
 
     def test_are_refused_without_a_folder(self):
         for name in ("study.yaml", "gone.yaml"):

@@ -133,16 +133,20 @@ def read_objective(section):
 
 
 def refuse_twice(study):
-    """Also of keys that are spelled in two ways, or of which one is a section of the other: what comes last would
-    take the place of what is before."""
+    """Also keys that are spelled in two ways, and a section that comes after one of its keys: it would take the
+    place of what is before."""
     entries = [*((entry.key_set, entry) for entry, _ in study.fixed), *((axis.key, axis.entry) for axis in study.axes)]
-    sorted_keys = sorted((words_of(key), place) for place, (key, _) in enumerate(entries))
-    for (words, place), (next_words, next_place) in zip(sorted_keys, sorted_keys[1:]):  # a section is before its keys
-        if next_words[:len(words)] == words:
-            first, last = sorted((place, next_place))
-            if words == next_words:
-                raise entries[last][1].error("has its values elsewhere in the study, too", "each key once")
-            raise entries[last][1].error(f"beside {entries[first][0]}: one is a section of the other", "one of them")
+    sections = []  # that the next key is in
+    for words, place in sorted((words_of(key), place) for place, (key, _) in enumerate(entries)):
+        sections = [section for section in sections if words[:len(section[0])] == section[0]]
+        for section, section_place in sections:
+            if words == section:
+                entry = entries[max(place, section_place)][1]
+                raise entry.error("has its values elsewhere in the study, too", "each key once")
+            if place < section_place:
+                raise entries[section_place][1].error(f"takes the place of {entries[place][0]}, which is before",
+                                                      "one of them")
+        sections.append((words, place))
 
 
 def words_of(key):
