@@ -25,8 +25,8 @@ struct StateVisitor {
 
   void all(const ControllerState& state) const {
     const auto& [q_desired, velocity_before, fault, is_stopping, waited_s, progress, return_share,
-                 way_out_before, way_out_added, is_leaning, speed_share, modules, contact, several,
-                 zones, retreat, tool_motion] = state;
+                 way_out_before, way_out_added, is_leaning, has_leaned, speed_share, modules,
+                 contact, several, zones, retreat, tool_motion] = state;
     visit("speed_share", 0, speed_share);
     visit("waited_s", 0, waited_s);
     visit("progress", 0, progress);
@@ -49,11 +49,12 @@ struct StateVisitor {
 
   void wayOut(const RetreatState& retreat) const {
     const auto& [is_under_way, is_over, has_moved, is_felt, is_free, has_push, is_placed, module,
-                 push, direction, velocity_at_fault, stiffness, untold_s, row, time_s, free_s, way,
-                 way_to, speed, marked_N, way_at_mark] = retreat;
+                 push, direction, velocity_at_fault, way_out, stiffness, untold_s, row, time_s,
+                 free_s, way, way_to, speed, marked_N, way_at_mark] = retreat;
     point("retreat.force_N", "retreat.position_m", "retreat.push", push);
     list("retreat.direction", direction);
     list("retreat.velocity", velocity_at_fault);
+    list("retreat.way_out", way_out);
     visit("retreat.stiffness", 0, stiffness);
     visit("retreat.untold_s", 0, untold_s);
     list("retreat.row", row);
