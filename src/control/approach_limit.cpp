@@ -71,16 +71,16 @@ void ApproachLimit::observe(const ForceGains& gains, const ScaledVector& a, cons
   state.way_ahead_m = approach(a, joints, state.position.sensed, state.position.commanded);
 }
 
-void ApproachLimit::observeAtRest(const ForceGains& gains, const ScaledVector& a,
-                                  const FeltForce& force, const JointVector& q_desired,
-                                  double period_s, ApproachLimitState& state) const noexcept {
-  const ApproachEstimatorState before = state.estimator;
-  observe(gains, a, force, q_desired, period_s, state);
-  const bool has_learnt = has_estimator_ && force.F_p_N > 0.0 && before.stiffness_N_per_m > 0.0;
-  if (!has_learnt) return;
-  state.estimator = before;
-  beginWay(force.F_p_N, state.estimator);
-  state.memory_N_per_m = stiffnessInContact(gains, state.estimator);
+void ApproachLimit::rest(const ForceGains& gains, double F_p_N,
+                         ApproachLimitState& state) const noexcept {
+  if (!has_estimator_) return;
+  ApproachEstimatorState& estimator = state.estimator;
+  if (F_p_N <= 0.0 || state.rested_N_per_m == 0.0)
+    state.rested_N_per_m = estimator.stiffness_N_per_m;
+  if (F_p_N <= 0.0) return;
+  estimator.stiffness_N_per_m = estimator.stiffness_raw_N_per_m = state.rested_N_per_m;
+  beginWay(F_p_N, estimator);
+  state.memory_N_per_m = stiffnessInContact(gains, estimator);
 }
 
 double ApproachLimit::excess(const ForceGains& gains, double F_p_N, double v_res_m_per_s,

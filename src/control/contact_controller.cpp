@@ -22,6 +22,7 @@ const ContactPointState& holdLost(const ForceGains& gains, const ContactPointSta
 /// By what the sensor says now: an arm that leans on something is in contact, even below F_th; any
 /// other has never touched.
 void goOn(const Vector3& p_BaseContact, bool is_touching, ContactControllerState& state) noexcept {
+  state.approach.rested_N_per_m = 0.0;
   const double gamma = is_touching ? 1.0 : 0.0;
   state.transition = {is_touching, p_BaseContact, gamma};
   state.joint_space_transition.touching = is_touching;
@@ -109,7 +110,7 @@ void ContactController::update(const Gains& gains, const TaskKinematics& kinemat
     goOn(contact.p_Base, point.force_N > gains.force.transition.release_force_N, state);
   state.is_resting = !commanded.is_followed;
   if (!commanded.is_followed) {
-    rest(gains.force, contact, period_s, state, report, input);
+    rest(gains.force, contact, commanded.isAtRest(), period_s, state, report, input);
   } else if (is_joint_space_) {
     passJointSpaceContact(gains, kinematics, contact, commanded.return_share, period_s, state,
                           report, input, motion);
@@ -155,12 +156,8 @@ void ContactController::estimate(const ForceGains& gains, const Contact& contact
   if (approach_limit_) {
     const bool is_felt = state.approach.smoother.contact.force_N > gains.transition.release_force_N;
     const double nearness = is_felt ? state.transition.gamma : 0.0;
-    const FeltForce force{input.F_p_N, nearness};
-    if (commanded.isAtRest())
-      approach_limit_->observeAtRest(gains, contact.a, force, commanded.q, period_s,
-                                     state.approach);
-    else
-      approach_limit_->observe(gains, contact.a, force, commanded.q, period_s, state.approach);
+    approach_limit_->observe(gains, contact.a, {input.F_p_N, nearness}, commanded.q, period_s,
+                             state.approach);
     input.stiffness_N_per_m = state.approach.estimator.stiffness_N_per_m;
     input.hold_integral = state.approach.is_limiting;
     report.stiffness_raw_N_per_m = state.approach.estimator.stiffness_raw_N_per_m;
@@ -219,9 +216,11 @@ ContactController::Contact ContactController::locate(const TaskKinematics& kinem
 
 /// What the arm feels while it does not move says nothing of how it goes on: only the integral
 /// fades where nothing is felt.
-void ContactController::rest(const ForceGains& gains, const Contact& contact, double period_s,
-                             ContactControllerState& state, ContactReport& report,
+void ContactController::rest(const ForceGains& gains, const Contact& contact, bool is_at_rest,
+                             double period_s, ContactControllerState& state, ContactReport& report,
                              ControlLawInput& input) const noexcept {
+  if (!is_at_rest) state.approach.rested_N_per_m = 0.0;
+  if (is_at_rest && approach_limit_) approach_limit_->rest(gains, input.F_p_N, state.approach);
   const double fade = lagShare(period_s, gains.transition.max_time_constant_s);
   input.integral_decay = input.F_p_N > 0.0 ? 1.0 : 1.0 - fade;
   state.approach.obstacle.v_m_per_s = state.approach.obstacle.high_s = 0.0;

@@ -156,14 +156,16 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
   locate(kinematics, module, contact, place);
   const double F_p_N = contactForce_N(gains.force, state);
   const double share = fading(gains.force, F_p_N, place.at.p_Base, state);
-  const FeltForce force{F_p_N, share == 0.0 ? 1.0 : state.transition.gamma, share};
-  if (commanded.isAtRest())
-    module.limit.observeAtRest(gains.force, place.a, force, commanded.q, period_s, state.approach);
-  else
-    module.limit.observe(gains.force, place.a, force, commanded.q, period_s, state.approach);
+  module.limit.observe(gains.force, place.a,
+                       {F_p_N, share == 0.0 ? 1.0 : state.transition.gamma, share}, commanded.q,
+                       period_s, state.approach);
   passTransition(gains.force.transition, F_p_N, place.at.p_Base, period_s, state.transition);
   if (!commanded.is_followed)
     state.approach.obstacle.v_m_per_s = state.approach.obstacle.high_s = 0.0;
+  if (commanded.isAtRest())
+    module.limit.rest(gains.force, F_p_N, state.approach);
+  else
+    state.approach.rested_N_per_m = 0.0;
   if (module.centre) {
     if (state.approach.memory_N_per_m == 0.0 || reading.is_lost)
       state.centre = {};

@@ -96,10 +96,8 @@ TEST(ApproachLimit, LearnsNothingOfWhoPressesOnAnArmAtRest) {
   const auto observe = [&](double F_p_N, bool is_at_rest, ApproachLimitState& state) {
     state.smoother.contact.interval_s = kPeriod_s;
     state.smoother.significant_N = 0.01;
-    if (is_at_rest)
-      limit.observeAtRest(kGains, a, {F_p_N, 1.0}, q, kPeriod_s, state);
-    else
-      limit.observe(kGains, a, {F_p_N, 1.0}, q, kPeriod_s, state);
+    limit.observe(kGains, a, {F_p_N, 1.0}, q, kPeriod_s, state);
+    if (is_at_rest) limit.rest(kGains, F_p_N, state);
   };
   for (int i = 0; i < 100; ++i) {
     q[0] += 1e-5;
@@ -110,7 +108,7 @@ TEST(ApproachLimit, LearnsNothingOfWhoPressesOnAnArmAtRest) {
     ApproachLimitState state = touched;
     for (int i = 0; i < 50; ++i) observe(1.0 + 0.1 * i, is_at_rest, state);
     q[0] += 1e-4;
-    observe(6.1, false, state);
+    observe(5.9, false, state);
     q[0] -= 1e-4;
     EXPECT_EQ(state.memory_N_per_m, state.estimator.stiffness_N_per_m);
     return state.estimator.stiffness_N_per_m;

@@ -112,7 +112,8 @@ struct StateVisitor {
 
   void limit(const ApproachLimitState& approach) const {
     const auto& [smoother, position, approach_estimator, obstacle, memory, way_ahead, is_limiting,
-                 memory_fade] = approach;
+                 rested, memory_fade] = approach;
+    visit("approach.rested", 0, rested);
     const auto& [significant, before, two_before, peak, weight, X_BaseModule, smooth, ringing,
                  smoothing] = smoother;
     visit("smoother.significant", 0, significant);

@@ -18,6 +18,7 @@ struct ApproachLimitState {
   double memory_N_per_m = 0.0;  ///< m; 0: no limit
   double way_ahead_m = 0.0;     ///< e
   bool is_limiting = false;     ///< the residual motion was cut in the last cycle
+  double rested_N_per_m = 0.0;  ///< c since the arm rests; 0: it does not
   KnownLagShare fade;           ///< of m
 };
 
@@ -64,11 +65,9 @@ class ApproachLimit {
                const JointVector& q_desired, double period_s,
                ApproachLimitState& state) const noexcept;
 
-  /// The same for an arm at rest that follows nothing: what changes the force then, a hand or an
-  /// obstacle that moves, says nothing of how stiff a contact is.
-  void observeAtRest(const ForceGains& gains, const ScaledVector& a, const FeltForce& force,
-                     const JointVector& q_desired, double period_s,
-                     ApproachLimitState& state) const noexcept;
+  /// After observe(), for an arm at rest that follows nothing: what changes the force then, a hand
+  /// or an obstacle that moves, says nothing of how stiff a contact is.
+  void rest(const ForceGains& gains, double F_p_N, ApproachLimitState& state) const noexcept;
 
   /// min(0, v_res + v_max), m/s; after observe().
   double excess(const ForceGains& gains, double F_p_N, double v_res_m_per_s,

@@ -69,7 +69,7 @@ class ContactController {
   void estimate(const ForceGains& gains, const Contact& contact, const CommandedMotion& commanded,
                 double period_s, ContactControllerState& state, ContactReport& report,
                 ControlLawInput& input) const noexcept;
-  void rest(const ForceGains& gains, const Contact& contact, double period_s,
+  void rest(const ForceGains& gains, const Contact& contact, bool is_at_rest, double period_s,
             ContactControllerState& state, ContactReport& report,
             ControlLawInput& input) const noexcept;
   Contact locate(const TaskKinematics& kinematics, const ContactPointState& point,
