@@ -60,8 +60,8 @@ void GainChange::update(const GainWatchInput& seen) noexcept {
         if (isSame(to_, kept_) || !trips(seen)) advance(seen, GainState::kWaiting);
         return;
       }
-      // Over others that are on trial, which are watched as before.
-      if (isSame(gains_, kept_) || (!trips(seen) && !isOver())) begin();
+      // Over others that are on trial, which are watched as before, their time once they are there.
+      if (isSame(gains_, kept_) || (!trips(seen) && !(isSame(gains_, to_) && isOver()))) begin();
       return;
     case GainState::kRamping:
       if (!trips(seen)) advance(seen, GainState::kOnTrial);

@@ -137,6 +137,19 @@ TEST_F(GainChangeTest, GoesBackByItselfAfterItsTime) {
   EXPECT_EQ(change_.report().trouble, GainTrouble::kTimeIsOver);
 }
 
+/// It has not begun on the way there.
+TEST_F(GainChangeTest, TheTimeOfGainsEndsNoOrderThatComesOnTheirWay) {
+  GainOrder timed = order(1, 0.2);
+  timed.for_s = 0.3;
+  change_.order(timed);
+  pass(0.6);
+  EXPECT_EQ(state(), GainState::kRamping);
+  change_.order(order(2, 0.3));
+  pass(3.0);
+  EXPECT_EQ(T_s(), 0.3);
+  EXPECT_EQ(change_.report().trouble, GainTrouble::kNone);
+}
+
 TEST_F(GainChangeTest, GoesBackWhereTheForceSwings) {
   pass(1.0);
   change_.order(order(1, 0.05));
