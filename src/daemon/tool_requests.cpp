@@ -58,9 +58,13 @@ Pose poseOf(const ToolSight& sight) {
 
 void ToolRequests::refresh() { link_.tool_sights.take(sight_); }
 
-void ToolRequests::requireArm() {
+void ToolRequests::requireCommands() const {
   if (!scene_.controller.task.commands)
     throw InputError("the scene's task is a trajectory, expected task.source: commands");
+}
+
+void ToolRequests::requireArm() {
+  requireCommands();
   refresh();
   if (!sight_.is_running)
     throw InputError("the arm does not run, expected mode running; `tactus status` says why");
@@ -73,12 +77,21 @@ bool ToolRequests::isStreamAlive() const {
          scene_.controller.task.commands->stream_timeout_s;
 }
 
-void ToolRequests::requireNoHold() {
-  is_stream_held_ = is_stream_held_ && isStreamAlive();
+/// Of a stream each target counts as heard, also one that is refused. A stop of the arm ends it
+/// like a hold: nobody has seen it come on, and the tool would leave at once.
+void ToolRequests::hearStream() {
+  requireCommands();
+  refresh();
+  const bool is_alive = isStreamAlive();
+  const bool has_outlived_stop = is_streaming_ && sight_.run != stream_run_;
+  is_stream_held_ = is_alive && (is_stream_held_ || has_outlived_stop);
   streamed_cycle_ = link_.pulse.cycles.load(std::memory_order_relaxed);
+}
+
+void ToolRequests::requireNoHold() const {
   if (is_stream_held_)
     throw InputError(
-        fmt::format("a hold has ended this stream, expected it to pause for {} s first",
+        fmt::format("a hold or a stop has ended this stream, expected it to pause for {} s first",
                     scene_.controller.task.commands->stream_timeout_s));
 }
 
@@ -110,8 +123,9 @@ Reach ToolRequests::reach(const std::string& what, const JointVector& q,
 Json ToolRequests::move(const Json& request, const IsAsked& is_asked) {
   refuseUnknown(request, {"do", "to_m", "rotate_rad", "relative", "to_posture", "speed_m_per_s",
                           "speed_rad_per_s"});
-  requireArm();
   const bool is_stream = wishOf(request) == "stream";
+  if (is_stream) hearStream();
+  requireArm();
   if (is_stream && flagOf(request, "to_posture"))
     refuseRequest("to_posture is given, but the way of a stream is not checked", "move");
   const ToolTarget goal =
@@ -187,6 +201,7 @@ Json ToolRequests::order(const ToolOrder& order, double duration_s) {
   const bool is_stream = order.kind == Kind::kStream;
   if (!is_stream || !is_streaming_) ++number_;
   is_streaming_ = is_stream;
+  stream_run_ = sight_.run;
   ToolOrder numbered = order;
   numbered.number = number_;
   numbered.run = sight_.run;

@@ -38,8 +38,10 @@ class ToolRequests {
   std::string look();
 
  private:
+  void requireCommands() const;
   void requireArm();
-  void requireNoHold();
+  void hearStream();
+  void requireNoHold() const;
   bool isStreamAlive() const;
   Json postureJson() const;
   ToolTarget asked(const std::string& what, const Json& waypoint, const Pose& from,
@@ -58,7 +60,8 @@ class ToolRequests {
   std::uint32_t number_ = 0;
   bool is_streaming_ = false;
   std::int64_t streamed_cycle_ = 0;  ///< of the loop, when a stream's last target came
-  bool is_stream_held_ = false;      ///< a hold came in the midst of a stream
+  std::uint32_t stream_run_ = 0;     ///< of the last order, as ToolSight has it
+  bool is_stream_held_ = false;      ///< a hold or a stop came in the midst of a stream
   ToolReport told_;                  ///< to whoever asks, until the loop has reported
   ToolReport looked_;                ///< as told to the journal
 };
