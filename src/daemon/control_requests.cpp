@@ -134,6 +134,7 @@ Json ControlRequests::reload(const Json& request) {
   std::vector<Override> settings = only_read ? settingsThatHold() : settings_;
   GainPlan plan = planReload(newest(), settings, leastMargin());
   if (only_read) refuseOthers(plan);
+  if (!plan.keys.empty()) refuseUntilBack(isWaiting() || plan.waits_for_free);
   settings_ = std::move(settings);
   read_hash_ = sourceHash(plan.scene.sources.front().text);
   if (!plan.keys.empty()) return order(std::move(plan), request, {.waits_for_free = isWaiting()});
@@ -207,14 +208,19 @@ Json ControlRequests::showGains() {
           {"ordered", gainsJson(newest().controller.gains)}};
 }
 
+/// Else gains that go back would stay half way.
+void ControlRequests::refuseUntilBack(bool waits_for_free) const {
+  if (waits_for_free && !trials_.empty() && !isTrying())
+    refuseRequest("a key that waits for a moment without contact, while gains go back",
+                  "it once they are back");
+}
+
 Json ControlRequests::order(GainPlan plan, const Json& request, Place place, std::uint32_t over) {
   GainOrder order{.number = number_ + 1, .gains = plan.scene.controller.gains};
   order.for_s = duration_s(request);  // may refuse, so before anything changes
   order.over = over;
   order.waits_for_free = place.waits_for_free = place.waits_for_free || plan.waits_for_free;
-  if (order.waits_for_free && !trials_.empty() && !isTrying())  // else they would stay half way
-    refuseRequest("a key that waits for a moment without contact, while gains go back",
-                  "it once they are back");
+  refuseUntilBack(order.waits_for_free);
   const Json changes = changesJson(newest().controller.gains, order.gains, plan.keys);
   if (trials_.size() == kMaxTrials) trials_.erase(trials_.begin());
   trials_.push_back({order.number, std::move(plan.scene), place, order.for_s < kNoLimit});

@@ -64,6 +64,7 @@ class ControlRequests {
   void refuseOthers(const GainPlan& plan);
   bool isTrying() const;
   bool isWaiting() const;
+  void refuseUntilBack(bool waits_for_free) const;
   Scene& newest() { return isTrying() ? trials_.back().scene : kept_; }
 
   LoopLink& link_;
