@@ -159,6 +159,9 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   if (auto refusal = lockMemory(kHeapBytes)) refusals.push_back(*refusal);
   const CpuLatencyHold latency_hold;
   if (latency_hold.refusal()) refusals.push_back(*latency_hold.refusal());
+  // Before the loop's thread, and so after its end: whatever ends this function, a ramp to rest may
+  // last.
+  const ServiceWatchdog watchdog(link.pulse, real_time.max_late_cycles);
   PeriodicThreadConfig config;
   config.period_ns = std::llround(1e9 * scene.period_s);
   config.real_time = {real_time.priority, real_time.cpu};
@@ -173,7 +176,6 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
 
   // While stop signals are blocked, so that their threads never get one.
   const ControlSocket control(scene, link);
-  const ServiceWatchdog watchdog(link.pulse, real_time.max_late_cycles);
   const std::int64_t process_start_ns = processTime_ns();
   thread.start();
   const StopRequests stop_requests(link.stop_requested);

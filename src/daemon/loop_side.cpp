@@ -37,8 +37,7 @@ void LoopSide::publish(const Wake& wake, const LoopTimes& times,
   const ModeReport& report = cycle.report();
   const bool is_new = report.mode != reported_.mode || report.fault != reported_.fault;
   if (!is_new && cycles_ > 1) return;
-  reported_ = report;
-  link_.reports.push(report);
+  if (link_.reports.push(report)) reported_ = report;  // else in the next cycle
 }
 
 void LoopSide::takeOrders(ControlCycle& cycle) noexcept {
