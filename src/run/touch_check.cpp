@@ -17,13 +17,20 @@ namespace {
 
 constexpr double kLeastFriction = 0.05;  ///< of obstacles: less adds a tenth to a force at most
 
+/// At which the speed of the touch is taken off, N. Where nothing else does it than a feedforward
+/// that engages with the force, that is whole F_eng above F_th.
+double answeredForce_N(const ControllerConfig& config) {
+  const ForceGains& gains = config.gains.force;
+  const bool has_more = hasActivationForce(config.force_control->variant);
+  return gains.contact_threshold_N + (has_more ? 0.0 : gains.transition.engage_force_N);
+}
+
 /// A touch of this spring by the scene's arm, whose loop of one space has its delays.
 TouchedSpring touchedSpring(const Scene& scene, int module, const ObstacleConfig& obstacle,
                             double robot_stiffness_N_per_m) {
   const PlantConfig plant = plantOf(scene);
   return {variantLoops(scene.controller, plant, scene.period_s, module).front().loop,
-          scene.controller.gains.force.contact_threshold_N,
-          ContactSpring(obstacle, robot_stiffness_N_per_m)};
+          answeredForce_N(scene.controller), ContactSpring(obstacle, robot_stiffness_N_per_m)};
 }
 
 /// F_act + F_th where the law keeps to it, else half of the peak.

@@ -86,6 +86,23 @@ TEST(TouchCheck, KnowsWhenAndHowHardTheArmTouches) {
   }
 }
 
+/// Simulated, joint space comes to 3.1 N with F_eng of 0 and to 50 N with 50 N; null_task gives way
+/// with its second space all the same.
+TEST(TouchCheck, KnowsAFeedforwardThatEngagesWithTheForce) {
+  const auto peak_N = [](const char* variant, const char* engage_force_N) {
+    const ExpectedContact expected =
+        expectedOf("scenario3_assumed", {obstacle("0.65413", "0.06351"),
+                                         {"task.trajectory.line.speed_m_per_s", "0.03"},
+                                         {"controller.variant", variant},
+                                         {"controller.transition.engage_force_N", engage_force_N}});
+    return expected.touches.empty() ? 0.0 : expected.touches.front().peak_N;
+  };
+  EXPECT_LT(peak_N("joint_space", "0"), 5.0);
+  EXPECT_GT(peak_N("joint_space", "50"), 45.0);
+  EXPECT_GT(peak_N("null_task", "0"), 0.0);
+  EXPECT_EQ(peak_N("null_task", "50"), peak_N("null_task", "0"));
+}
+
 TEST(TouchCheck, NamesASpeedThatKeepsTheForceOfTheLaw) {
   const std::vector<Override> fast{{"task.trajectory.line.speed_m_per_s", "0.3"},
                                    obstacle("0.70771", "0.00265")};

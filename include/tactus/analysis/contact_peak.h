@@ -16,8 +16,9 @@ struct TouchedSpring {
 
 // clang-format off: equations
 /// Largest force of a first touch at a constant speed v > 0 along the normal, N. Nothing answers
-/// until a sample shows more than F_th; with it the feedforward of (5) takes the whole of v off,
-/// and the drives' lag carries the arm on. So the force F(x) of the spring grows to
+/// until a sample shows more than F_th (of a law of one space F_th + F_eng); with it the
+/// feedforward of (5) takes the whole of v off, and the drives' lag carries the arm on. So the
+/// force F(x) of the spring grows to
 ///   F_peak = F(v t_delay),   t_delay = t_filter + (T_s - T_f) / 2 + (T_c - T_f) / 2 + T_drive
 /// with t_filter until the filter, fed with F(v t), passes F_th; half a sample period, for the age
 /// of the first sample that shows it; half a cycle, if that is longer than the filter's period;
