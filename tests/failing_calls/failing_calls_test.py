@@ -72,8 +72,8 @@ class FailingCallsTest(unittest.TestCase):
 
     def test_a_line_says_what_failed(self):
         for call, number, said in [("socket", 2, "tactusd: can0: cannot open a socket to ask for it: "),
-                                   ("pthread_create", 2, "tactusd: starting the thread of the control socket: "),
-                                   ("pthread_create", 3, "tactusd: starting the thread of the service's watchdog: ")]:
+                                   ("pthread_create", 1, "tactusd: starting the thread of the service's watchdog: "),
+                                   ("pthread_create", 3, "tactusd: starting the thread of the control socket: ")]:
             with tempfile.TemporaryDirectory() as folder:
                 done = run("daemon", folder, FAIL_CALL=call, FAIL_AT=str(number))
                 self.assertTrue(done.stderr.startswith(said), done.stderr)
