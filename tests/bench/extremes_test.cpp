@@ -115,7 +115,7 @@ TEST(Extremes, WatchEveryNumberOfTheState) {
   });
   EXPECT_EQ(count, 9 + 9 + 2 * kMaxJoints + 4 + 2 + 5 + 5 + 5 + 1 + 4 + 5 + 5 + 5 +
                        (30 + 7 * kMaxJoints + 5 + 2) + 2 + (1 + 2 * 3 + 4 * 5) + 1 +
-                       (5 + 5 + 3 + 2 + kMaxJoints + 7));
+                       (5 + 5 + 3 + 2 + 2 * kMaxJoints + 7) + 1);
   EXPECT_EQ(found[7.0], "law.It");
   EXPECT_EQ(found[8.0], "joint_space.direction");
 }

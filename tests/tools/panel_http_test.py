@@ -162,7 +162,9 @@ class Nonsense(Served):
 
     def test_parts_of_a_file(self):
         for ranges in ("bytes=0-1", "bytes=" + ",".join(["0-"] * 2000)):
-            self.refused(416, "GET", "/dygraph.min.js", Range=ranges)
+            got, _, text = self.rig.ask("GET", "/dygraph.min.js", Range=ranges)
+            self.assertEqual(got, 416)
+            self.assertLess(len(text), 1_000_000, "the file is 100 kB")  # the library cuts the refusal, too
 
     def test_other_methods(self):
         for method in ("PUT", "DELETE", "PATCH", "TRACE"):
