@@ -86,6 +86,27 @@ TEST(WayOut, IsThatOfBeforeARetreat) {
   EXPECT_NE(state.way_out_before, unmoved.way_out_before) << "the retreat is over";
 }
 
+/// What a law remembers of a push that its task balanced is gone with that task; not twice.
+TEST(GoneTask, TakesThePushAlongThatItBalanced) {
+  for (const Variant variant : {Variant::kTaskSpace, Variant::kJointSpace, Variant::kNullTask,
+                                Variant::kNullJoint, Variant::kNullSpace, Variant::kNone}) {
+    test::Random random(2409);
+    const ControllerConfig config = test::fullController(random, 6, variant);
+    const Controller controller(config);
+    const auto pushAfter = [&](double return_share) {
+      ControllerState state = controller.initialState();
+      state.tool_motion.emplace(tipPose(config.chain, config.q_start));
+      state.contact.law.V_m_per_s = 0.1;
+      state.return_share = return_share;
+      controller.goOn(config.gains, state);
+      return state.contact.law.V_m_per_s;
+    };
+    const bool is_balanced_by_task = variant != Variant::kNullSpace && variant != Variant::kNone;
+    EXPECT_EQ(pushAfter(1.0), is_balanced_by_task ? 0.0 : 0.1);
+    EXPECT_EQ(pushAfter(0.0), 0.1) << "it has begun anew already";
+  }
+}
+
 TEST(PlacedArm, StandsWhereItIsWithinItsLimits) {
   test::Random random(2402);
   const ControllerConfig config = test::fullController(random, 6, Variant::kNullSpace);

@@ -92,6 +92,16 @@ TEST_F(GainChangeTest, StandsStillWhileAnArmIsHeldInContact) {
   EXPECT_EQ(T_s(), 0.3) << "nothing is balanced";
 }
 
+TEST_F(GainChangeTest, GoesBackFromTroubleAlsoWhileAnArmIsHeld) {
+  change_.order(order(1, 0.2));
+  pass(1.5);
+  pass(kPeriod_s, {.force_N = 5.0, .has_fault = true, .is_running = false, .is_held = true});
+  EXPECT_EQ(state(), GainState::kGoingBack);
+  pass(0.2, {.force_N = 5.0, .has_fault = true, .is_running = false, .is_held = true});
+  EXPECT_EQ(state(), GainState::kKept);
+  EXPECT_EQ(T_s(), 0.1);
+}
+
 TEST_F(GainChangeTest, WaitsForAMomentWithoutContact) {
   GainOrder free = order(1, 0.2);
   free.waits_for_free = true;
