@@ -117,6 +117,30 @@ TEST(ApproachLimit, LearnsNothingOfWhoPressesOnAnArmAtRest) {
   EXPECT_EQ(stiffnessAfter(true), c_N_per_m);
 }
 
+/// What an arm at rest has forgotten of a contact that is gone stays so when it is pressed anew.
+TEST(ApproachLimit, ForgetsAContactThatGoesWhileTheArmRests) {
+  ControllerConfig config = bareRail(0.1);
+  config.force_control->has_estimator = true;
+  const ApproachLimit limit(config, config.tactile_modules.front());
+  ApproachLimitState state = limit.initialState();
+  const auto rest = [&](double F_p_N) {
+    state.smoother.contact.interval_s = kPeriod_s;
+    state.smoother.significant_N = 0.01;
+    limit.observe(kGains, -ScaledVector::Unit(0), {F_p_N, 0.0}, config.q_start, kPeriod_s, state);
+    limit.rest(kGains, F_p_N, state);
+  };
+  rest(0.0);
+  EXPECT_EQ(state.memory_N_per_m, 0.0) << "nothing was touched";
+  state.estimator.stiffness_N_per_m = state.rested_N_per_m = 20.0 * kC_N_per_m;
+  rest(0.5);
+  EXPECT_EQ(state.estimator.stiffness_N_per_m, 20.0 * kC_N_per_m);
+  EXPECT_EQ(state.memory_N_per_m, 20.0 * kC_N_per_m);
+  for (int i = 0; i < 20000; ++i) rest(0.0);
+  EXPECT_NEAR(state.estimator.stiffness_N_per_m, kC_N_per_m, 1.0);
+  rest(0.5);
+  EXPECT_NEAR(state.estimator.stiffness_N_per_m, kC_N_per_m, 1.0);
+}
+
 /// What was commanded since the last sample counts as gone; the next sample tells of it.
 TEST(ApproachLimit, LooksAheadAsFarAsNoSampleHasToldOf) {
   ControllerConfig config = bareRail(0.1);

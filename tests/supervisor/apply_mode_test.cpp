@@ -90,6 +90,24 @@ TEST(ApplyMode, OnlyAnArmThatWasHeldGoesOnGently) {
   EXPECT_EQ(shareAfter(Mode::kHolding), 0.0);
 }
 
+/// Only as it begins to be held: a hand that touches it later is nothing that it leant on.
+TEST(ApplyMode, RemembersWhetherAnArmLeantWhenItWasHeld) {
+  test::Random random(2605);
+  const ControllerConfig config = test::fullController(random, 6, Variant::kNullSpace);
+  const Controller controller(config);
+  const auto hasLeaned = [&](Mode mode, Mode before) {
+    ControllerState state = controller.initialState();
+    state.modules[0].contact.force_N = 5.0;
+    applyMode(controller, mode, before, {state.q_desired, {}}, config.gains, state);
+    return state.has_leaned;
+  };
+  EXPECT_TRUE(hasLeaned(Mode::kHolding, Mode::kRunning));
+  EXPECT_TRUE(hasLeaned(Mode::kRetreating, Mode::kRunning));
+  EXPECT_FALSE(hasLeaned(Mode::kHolding, Mode::kHolding));
+  EXPECT_FALSE(hasLeaned(Mode::kHolding, Mode::kRetreating));
+  EXPECT_FALSE(hasLeaned(Mode::kRunning, Mode::kRunning));
+}
+
 TEST(ApplyMode, ForgetsTheMotionOfCoversInABootAndInItsFirstCycleAfter) {
   for (int to = 0; to < kModeCount; ++to) {
     for (int from = 0; from < kModeCount; ++from) {
