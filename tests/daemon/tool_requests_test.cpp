@@ -406,7 +406,7 @@ TEST_F(ToolRequestsTest, AHoldHoldsUntilAStreamHasPaused) {
   orders();
   for (int i = 0; i < 5; ++i) {
     pause(0.9 * timeout_s);
-    EXPECT_NE(refusal(target).find("has ended this stream"), std::string::npos);
+    EXPECT_NE(refusal(target).find("a hold or a stop has ended this stream"), std::string::npos);
   }
   EXPECT_EQ(ask({{"do", "hold"}}).at("done"), true);
   EXPECT_EQ(ask({{"do", "move"}, {"to_m", {0.95, 0.3, 0.25}}}).at("done"), true);
@@ -442,7 +442,7 @@ TEST_F(ToolRequestsTest, AStopHoldsUntilAStreamHasPaused) {
     ++sight.run;
     see(true);
     for (int i = 0; i < 5; ++i) {
-      EXPECT_NE(refusal(target).find("has ended this stream"), std::string::npos);
+      EXPECT_NE(refusal(target).find("a hold or a stop has ended this stream"), std::string::npos);
       pause(0.9);
     }
     pause(0.2);
