@@ -27,7 +27,6 @@ void Controller::restart(const Gains& gains, ControllerState& state) const noexc
     state.way_out_before = state.retreat.has_moved ? state.retreat.way_out : wayOut(gains, state);
   state.return_share = 0.0;
   state.retreat.has_moved = false;
-  state.has_leaned = false;
   for (TactileReading& reading : state.modules) reading.cover.has_started = false;
   if (contact_controller_) state.contact = contact_controller_->initialState();
   state.contact.is_resting = true;  // so that it goes on by what it feels then
