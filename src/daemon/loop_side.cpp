@@ -44,12 +44,23 @@ void LoopSide::takeOrders(ControlCycle& cycle) noexcept {
   GainOrder gains;
   if (link_.gain_orders.take(gains)) cycle.order(gains);
   if (!cycle.toolReport()) return;
-  for (int i = 0; i < kMaxOrdersACycle; ++i) {
+  ToolOrder hold;
+  if (link_.tool_holds.take(hold)) takeOrder(hold, cycle);
+  std::size_t seen = 0;
+  for (int taken = 0; taken < kMaxOrdersACycle && seen < LoopLink::kToolOrders; ++seen) {
     const ToolOrder* const order = link_.tool_orders.front();
     if (!order) return;
-    cycle.order(*order);
+    if (takeOrder(*order, cycle)) ++taken;
     link_.tool_orders.release();
   }
+}
+
+/// Not what comes after a newer one: an order that a hold has overtaken, or a hold that comes late.
+bool LoopSide::takeOrder(const ToolOrder& order, ControlCycle& cycle) noexcept {
+  if (static_cast<std::int32_t>(order.number - newest_order_) < 0) return false;
+  newest_order_ = order.number;
+  cycle.order(order);
+  return true;
 }
 
 void LoopSide::reportGains(const ControlCycle& cycle) noexcept {

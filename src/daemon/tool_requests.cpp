@@ -197,7 +197,8 @@ Json ToolRequests::hold(const Json& request) {
 
 /// All of a stream has one number.
 Json ToolRequests::order(const ToolOrder& order, double duration_s) {
-  if (!link_.tool_orders.hasRoom(1)) throw InputError(kNoRoom);
+  const bool is_hold = order.kind == Kind::kHold;
+  if (!is_hold && !link_.tool_orders.hasRoom(1)) throw InputError(kNoRoom);
   const bool is_stream = order.kind == Kind::kStream;
   if (!is_stream || !is_streaming_) ++number_;
   is_streaming_ = is_stream;
@@ -205,8 +206,11 @@ Json ToolRequests::order(const ToolOrder& order, double duration_s) {
   ToolOrder numbered = order;
   numbered.number = number_;
   numbered.run = sight_.run;
-  link_.tool_orders.push(numbered);
-  told_ = {number_, order.kind == Kind::kHold ? ToolState::kHolding : ToolState::kMoving, 0};
+  if (is_hold)
+    link_.tool_holds.put(numbered);
+  else
+    link_.tool_orders.push(numbered);
+  told_ = {number_, is_hold ? ToolState::kHolding : ToolState::kMoving, 0};
   Json json = show();
   if (duration_s > 0.0) json["duration_s"] = duration_s;
   return json;

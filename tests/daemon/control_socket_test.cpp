@@ -51,7 +51,7 @@ TEST_F(ControlSocketTest, AnswersAndHandsOn) {
   link_->tool_sights.put(sight);
   client.ask({{"do", "hold"}});
   ToolOrder order;
-  ASSERT_TRUE(link_->tool_orders.pop(order));
+  ASSERT_TRUE(link_->tool_holds.take(order));
   EXPECT_EQ(order.kind, ToolOrder::Kind::kHold);
   EXPECT_THROW(client.ask({{"do", "jump"}}), InputError);
 }
@@ -96,8 +96,7 @@ TEST_F(ControlSocketTest, TakesOfWhoHasLeftNothingButAHold) {
   const ControlClient client(controlPath());
   client.ask({{"do", "show"}});  // behind all of them
   ToolOrder order;
-  ASSERT_TRUE(link_->tool_orders.pop(order));
-  EXPECT_EQ(order.kind, ToolOrder::Kind::kHold);
+  EXPECT_TRUE(link_->tool_holds.take(order));
   EXPECT_FALSE(link_->tool_orders.pop(order));
   client.ask(Json::parse(stream));
   ASSERT_TRUE(link_->tool_orders.pop(order));

@@ -354,6 +354,8 @@ TEST_F(ToolRequestsTest, RefusesWhileTheArmDoesNotRun) {
   EXPECT_NE(refusal({{"do", "move"}, {"to_m", {0.9, 0.3, 0.3}}}).find("does not run"),
             std::string::npos);
   EXPECT_NE(refusal({{"do", "hold"}}).find("does not run"), std::string::npos);
+  ToolOrder hold;
+  EXPECT_FALSE(link.tool_holds.take(hold));
 }
 
 TEST_F(ToolRequestsTest, TellsWhatHoldsTheToolOff) {
@@ -395,8 +397,9 @@ TEST_F(ToolRequestsTest, AStreamHasOneNumber) {
 TEST_F(ToolRequestsTest, AHoldHoldsUntilAStreamHasPaused) {
   const Json target = {{"do", "stream"}, {"to_m", {0.95, 0.3, 0.25}}};
   const auto orders = [&] {
-    int count = 0;
-    for (ToolOrder order; link.tool_orders.pop(order);) ++count;
+    ToolOrder order;
+    int count = link.tool_holds.take(order) ? 1 : 0;
+    while (link.tool_orders.pop(order)) ++count;
     return count;
   };
   const auto pause = [&](double s) { link.pulse.cycles += std::lround(s / scene.period_s); };

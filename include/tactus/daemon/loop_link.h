@@ -35,9 +35,10 @@ struct LoopLink {
   SpscQueue<LoopRecord> records{kRecords};
   SpscQueue<ModeReport> reports{kReports};  ///< one for each change of mode or fault
   NewestValue<GainOrder> gain_orders;
-  NewestValue<GainReport> gain_reports;  ///< each time that one is new
-  SpscQueue<ToolOrder> tool_orders{kToolOrders};
-  NewestValue<ToolSight> tool_sights;  ///< of tasks by command, many times a second
+  NewestValue<GainReport> gain_reports;           ///< each time that one is new
+  SpscQueue<ToolOrder> tool_orders{kToolOrders};  ///< all but holds
+  NewestValue<ToolOrder> tool_holds;              ///< which wait behind no other order
+  NewestValue<ToolSight> tool_sights;             ///< of tasks by command, many times a second
   LoopPulse pulse;
   std::atomic<bool> stop_requested{false};
 };

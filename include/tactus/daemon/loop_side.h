@@ -28,6 +28,7 @@ class LoopSide {
  private:
   void publish(const Wake& wake, const LoopTimes& times, const ControlCycle& cycle) noexcept;
   void takeOrders(ControlCycle& cycle) noexcept;
+  bool takeOrder(const ToolOrder& order, ControlCycle& cycle) noexcept;
   void reportGains(const ControlCycle& cycle) noexcept;
   void reportTool(const ControlCycle& cycle) noexcept;
 
@@ -37,6 +38,7 @@ class LoopSide {
   ModeReport reported_;
   GainReport reported_gains_;
   ToolReport reported_tool_;
+  std::uint32_t newest_order_ = 0;  ///< its number
   ToolSight tool_sight_;
 };
 
