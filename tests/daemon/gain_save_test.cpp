@@ -129,6 +129,24 @@ TEST_F(SavedGainsTest, AreNotThoseOfATime) {
   EXPECT_EQ(file_.text(), before);
 }
 
+/// Else saving would write over what nobody has read.
+TEST_F(SavedGainsTest, AreNotReadByAReloadThatIsRefused) {
+  const auto shown = [this] { return Json::parse(requests_.answer(R"({"do": "show"})")); };
+  requests_.answer(kSet);
+  link_->gain_reports.put(
+      {.number = 1, .state = GainState::kGoingBack, .trouble = GainTrouble::kFault});
+  const Json before = shown();
+  std::ofstream(file_.path(), std::ios::app) << "  contact_threshold_N: 0.6\n";
+  const Json refused = Json::parse(requests_.answer(R"({"do": "reload"})"));
+  EXPECT_NE(refused.value("error", "").find("while gains go back"), std::string::npos) << refused;
+  EXPECT_EQ(shown(), before);
+  EXPECT_NE(before.at("scene_hash"), file_.hash());
+  link_->gain_reports.put({.number = 1, .state = GainState::kKept, .trouble = GainTrouble::kFault});
+  shown();
+  EXPECT_EQ(Json::parse(requests_.answer(R"({"do": "reload"})")).at("done"), true);
+  EXPECT_EQ(shown().at("scene_hash"), file_.hash());
+}
+
 /// A daemon that was started with --set controller.damping=0.9.
 class SetAtTheStart : public SavedGainsTest {
  protected:
