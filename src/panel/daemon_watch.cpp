@@ -136,7 +136,10 @@ void DaemonWatch::look() {
 
 void DaemonWatch::followLog(const Json& status) {
   const std::string path = logOf(status);
-  const std::string run = fmt::format("{} {}", entry(status, "pid").dump(), path);
+  const Json cycles = entry(status, "cycles");
+  if (cycles < cycles_) ++restarts_;  // in a container each daemon has the same pid
+  cycles_ = cycles;
+  const std::string run = fmt::format("{} {} {}", entry(status, "pid").dump(), restarts_, path);
   if (run == run_) return;
   run_ = run;
   log_.reset();

@@ -49,6 +49,8 @@ class DaemonWatch {
   Said said_;
   std::unique_ptr<LogFollower> log_;
   std::string run_;  ///< which daemon and which log
+  Json cycles_;      ///< of that daemon, when it was looked at last
+  int restarts_ = 0;
   PanelState panel_;
   std::jthread asking_, watching_;  ///< the last members: they use all others
 };
