@@ -28,15 +28,17 @@ void checkHeartbeat(const YamlNode& root, double period_s, const CanSection& can
 }
 
 /// A measured position answers a setpoint two cycles later: with more, the loop overshoots.
-void checkTrackingGains(const YamlNode& root, double period_s,
-                        const std::vector<DriveSection>& drives) {
-  constexpr double kMaxStep = 0.5;
-  for (std::size_t i = 0; i < drives.size(); ++i) {
-    const double gain_per_s = drives[i].config.tracking_gain_per_s;
-    if (gain_per_s * period_s <= kMaxStep) continue;
+/// K (q_d - q) is a loop of its own, whose delay is the drive's lag and the two cycles in which the
+/// feedback of one comes back as a setpoint: up to a quarter of 1 / delay it does not swing.
+void checkTrackingGains(const YamlNode& root, double period_s, const DrivesSection& drives) {
+  const double most_per_s = 0.25 / (drives.position_lag_s + 2.0 * period_s);
+  for (std::size_t i = 0; i < drives.joints.size(); ++i) {
+    const double gain_per_s = drives.joints[i].config.tracking_gain_per_s;
+    if (gain_per_s <= most_per_s) continue;
     const std::string key = fmt::format("drives.joints[{}].tracking_gain_per_s", i);
-    failAt(locate(root, key), key, fmt::format("{} is too high", gain_per_s),
-           fmt::format("expected at most {} / period_s = {}", kMaxStep, kMaxStep / period_s));
+    failAt(
+        locate(root, key), key, fmt::format("{} is too high", gain_per_s),
+        fmt::format("expected at most 1 / (4 (position_lag_s + 2 period_s)) = {:.4g}", most_per_s));
   }
 }
 
@@ -112,7 +114,7 @@ void checkHardware(const YamlNode& scene, const LoadedRobot& robot, double perio
   const RobotConfig& config = robot.config;
   checkCycle(scene, period_s);
   checkHeartbeat(robot.root, period_s, *config.can);
-  checkTrackingGains(robot.root, period_s, config.drives.joints);
+  checkTrackingGains(robot.root, period_s, config.drives);
   checkSheets(robot, period_s, hardware);
   checkBusLoads(robot.root, period_s, config, hardware);
 }

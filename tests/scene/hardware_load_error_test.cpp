@@ -120,9 +120,9 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenText{"offset_m: 0.25", "offset_m: 1000",
                    "robot.yaml:15:64: drives.joints[1].counts_per_m: ", "do not fit into 32 bits",
                    "at most 2.14"},
-        BrokenText{"tracking_gain_per_s: 10", "tracking_gain_per_s: 501",
-                   "robot.yaml:14:102: drives.joints[0].tracking_gain_per_s: ", "501 is too high",
-                   "at most 0.5 / period_s = 500"},
+        BrokenText{"tracking_gain_per_s: 10", "tracking_gain_per_s: 36",
+                   "robot.yaml:14:102: drives.joints[0].tracking_gain_per_s: ", "36 is too high",
+                   "at most 1 / (4 (position_lag_s + 2 period_s)) = 35.71"},
         BrokenText{"start_tolerance: 0.03", "start_tolerance: 0",
                    "robot.yaml:12:20: drives.start_tolerance: ", "out of range", "in m or rad"}));
 
@@ -305,6 +305,7 @@ TEST(RobotWithCan, HasNoMoreFramesACycleThanAreRead) {
   SceneFiles files = test::hardwareFiles();
   files.robot = test::replaced(files.robot, "sample_period_s: 0.005",
                                "sample_period_s: 0.001\n  max_sample_age_s: 0.05");
+  files.robot = test::replaced(files.robot, "tracking_gain_per_s: 10", "tracking_gain_per_s: 5");
   test::expectError(test::loadError(files.sources(), {{"period_s", "0.02"}}),
                     {"", "", "robot.yaml:7:7: can.buses[1]: ", "can1 has up to 85 frames a cycle: ",
                      "at most 63: a shorter period_s"});
