@@ -67,12 +67,14 @@ void loadDriveEffects(const YamlNode& scene, const SimulationSection& simulation
   const SimulatedDrivesSection& section = *simulation.drives;
   const DriveChecks checks{scene, robot};
   if (section.bandwidth_hz) checkLoop(checks, simulation, period_s);
+  if (section.damping_ratio && !section.bandwidth_hz)
+    checks.fail("damping_ratio", "damps nothing", "bandwidth_hz beside it");
   checkArm(checks, simulation);
   DriveEffectsConfig& drives = plant.drives;
   drives.dead_time_s = section.dead_time_s;
   drives.max_acceleration = checks.oneAJoint(section.max_acceleration, "max_acceleration");
-  if (section.bandwidth_hz)
-    drives.loop = VelocityLoopConfig{*section.bandwidth_hz, section.damping_ratio};
+  if (section.bandwidth_hz) drives.loop = VelocityLoopConfig{.bandwidth_hz = *section.bandwidth_hz};
+  if (section.damping_ratio) drives.loop->damping_ratio = *section.damping_ratio;
   drives.reports_links = section.feedback == EncoderSide::kLink;
   if (!plant.dynamics) return;
   ArmDynamicsConfig& dynamics = *plant.dynamics;

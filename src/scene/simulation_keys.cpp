@@ -134,7 +134,7 @@ Table<SimulatedModuleConfig> imperfectionKeys() {
 Row<SimulationSection> moduleSection() {
   const Table<SimulationSection> cutoff = {
       number("filter_cutoff_hz", "Hz", within(0.1, 1e5),
-             "of its filter; absent: as robot.yaml says", &SimulationSection::filter_cutoff_hz),
+             "of its own filter; absent: as robot.yaml says", &SimulationSection::filter_cutoff_hz),
       optional(section("cover", "absent: as robot.yaml says", &SimulationSection::cover,
                        coverLoadKeys()))};
   return group("tactile_module", "imperfections of the simulated tactile modules",
@@ -148,7 +148,8 @@ Table<SimulatedDrivesSection> driveEffectKeys() {
                       "of a second-order velocity loop, in place of drive_lag_s; of a quasi-static "
                       "arm alone",
                       &Config::bandwidth_hz)),
-      number("damping_ratio", "", within(0.05, 10), "of that loop", &Config::damping_ratio),
+      optional(number("damping_ratio", "", within(0.05, 10), "of that loop; absent: 0.7",
+                      &Config::damping_ratio)),
       number("dead_time_s", "s", within(0, 0.1), "by which setpoints come late",
              &Config::dead_time_s),
       oneAJoint("max_acceleration", "m/s^2 or rad/s^2", above(0, 1e6),

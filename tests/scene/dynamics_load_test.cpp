@@ -150,11 +150,15 @@ TEST(DriveEffectsLoad, GoWhereTheyActInThePlant) {
   EXPECT_EQ(heavy.dynamics->coulomb_friction[2], 6.0);
   EXPECT_EQ(heavy.dynamics->viscous_friction[0], 7.0);
   EXPECT_EQ(heavy.dynamics->backlash[2], 0.002);
-  const PlantConfig line =
-      test::SceneFiles{}.load({{"simulation.drives", "{bandwidth_hz: 8}"}}).plant;
+  EXPECT_FALSE(heavy.drives.loop);
+  const auto loaded = [](const char* drives) {
+    return test::SceneFiles{}.load({{"simulation.drives", drives}}).plant;
+  };
+  const PlantConfig line = loaded("{bandwidth_hz: 8}");
   ASSERT_TRUE(line.drives.loop);
   EXPECT_EQ(line.drives.loop->bandwidth_hz, 8.0);
   EXPECT_EQ(line.drives.loop->damping_ratio, 0.7);
+  EXPECT_EQ(loaded("{bandwidth_hz: 8, damping_ratio: 0.4}").drives.loop->damping_ratio, 0.4);
 }
 
 TEST(DriveEffectsLoad, EndAsOneLineWhereTheArmCannotHaveThem) {
@@ -165,6 +169,7 @@ TEST(DriveEffectsLoad, EndAsOneLineWhereTheArmCannotHaveThem) {
            Wrong{"quasi_static", "{bandwidth_hz: 501}", "bandwidth_hz: ", "501 Hz is too high"},
            Wrong{"quasi_static", "{bandwidth_hz: -1}", "bandwidth_hz: ", "out of range"},
            Wrong{"quasi_static", "{dead_time_s: 0.2}", "dead_time_s: ", "out of range"},
+           Wrong{"quasi_static", "{damping_ratio: 0.5}", "damping_ratio: ", "damps nothing"},
            Wrong{"rigid_gears", "{bandwidth_hz: 8}", "bandwidth_hz: ", "servos of its own"},
            Wrong{"quasi_static", "{max_torque: [1, 1, 1]}", "max_torque: ", "no torques"},
            Wrong{"quasi_static", "{coulomb_friction: [1, 1, 1]}",

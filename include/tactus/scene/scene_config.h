@@ -52,7 +52,7 @@ enum class EncoderSide : std::uint8_t { kMotor, kLink };
 /// What drives do beside following; lists have one entry a joint.
 struct SimulatedDrivesSection {
   std::optional<double> bandwidth_hz;
-  double damping_ratio = VelocityLoopConfig{}.damping_ratio;
+  std::optional<double> damping_ratio;
   double dead_time_s = DriveEffectsConfig{}.dead_time_s;
   std::optional<std::vector<double>> max_acceleration, max_torque;
   std::optional<std::vector<double>> coulomb_friction, viscous_friction, backlash;
