@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/math/filter.h"
+
 namespace tactus {
 namespace {
 
@@ -26,6 +28,10 @@ void checkModule(const YamlNode& root, const TactileModuleSection& section,
   if (config.filter_cutoff_hz >= 0.5 * filter_rate_hz) {
     fail("filter_cutoff_hz", fmt::format("{} Hz is too high", config.filter_cutoff_hz),
          fmt::format("less than half the filter's rate of {} Hz", filter_rate_hz));
+  }
+  if (config.filter_cutoff_hz < kLeastCutoff * filter_rate_hz) {
+    fail("filter_cutoff_hz", fmt::format("{} Hz is too low", config.filter_cutoff_hz),
+         fmt::format("at least {} Hz, 1e-4 of the filter's rate", kLeastCutoff * filter_rate_hz));
   }
   const double filter_steps = channels.sample_period_s * filter_rate_hz;
   constexpr double kTolerance = 1e-6;

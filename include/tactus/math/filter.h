@@ -33,6 +33,10 @@ class KnownLagShare {
   double share_ = 1.0;
 };
 
+/// Of the rate: below it a filter of doubles, whose sum of coefficients is (2 pi cutoff / rate)^3,
+/// no longer shows a constant as it is; here to 4e-7.
+inline constexpr double kLeastCutoff = 1e-4;
+
 /// 3rd-order Butterworth low pass by the bilinear transform with prewarping, direct form II
 /// transposed: the filter of the tactile module (scipy.signal.butter(3, cutoff, fs=rate)). After a
 /// force is gone it ends at zero.
