@@ -19,7 +19,7 @@ ContactLoop loopOf(const ControllerConfig& config, const PlantConfig& plant, dou
           .filter_cutoff_hz = module.filter_cutoff_hz,
           .filter_rate_hz = module.filter_rate_hz,
           .sample_period_s = module.channels.sample_period_s,
-          .filters_at_samples = !module.filtered,
+          .filters_at_samples = module.filter_place == FilterPlace::kReader,
           .answer_lag_s = is_acceleration ? 1.0 / force.velocity_gain_per_s : 0.0};
 }
 

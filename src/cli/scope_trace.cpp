@@ -81,7 +81,7 @@ ScopeCurve aligned(const std::vector<PredictedForce>& forces, double threshold_N
 
 void predict(const Scene& scene, int module, const CycleRecord* felt, ScopeTrace& trace) {
   const std::optional<PredictedTouch> known =
-      predictedTouch(scene.controller, plantOf(scene), scene.period_s, module,
+      predictedTouch(scene.controller, scene.plant, scene.period_s, module,
                      felt ? felt->gains : scene.controller.gains);
   if (!known) {
     trace.why_not_predicted = "the scene's law or its rates have no such loop";

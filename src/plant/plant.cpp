@@ -32,7 +32,7 @@ PlantConfig withModulesOf(const HardwareConfig& hardware, PlantConfig plant) {
     SimulatedModuleConfig& module = plant.modules[i];
     module.quantised = true;
     module.channels.sample_period_s = on_bus.channels.sample_period_s;
-    module.filtered = !on_bus.filter_cutoff_hz;
+    if (on_bus.filter_cutoff_hz) module.filter_place = FilterPlace::kNone;
     module.tared = false;
   }
   return plant;

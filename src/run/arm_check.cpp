@@ -82,10 +82,9 @@ double massOf(const std::optional<CoverConfig>& cover) { return cover ? cover->m
 /// What is left of the inertia of a simulated cover moves the arm, and that the cover.
 void checkCoverLoads(const Scene& scene, Warnings& warnings) {
   if (!scene.controller.force_control) return;
-  const PlantConfig plant = plantOf(scene);
   for (std::size_t i = 0; i < scene.controller.tactile_modules.size(); ++i) {
     const TactileModuleConfig& read = scene.controller.tactile_modules[i];
-    const SimulatedModuleConfig& module = plant.modules[i];
+    const SimulatedModuleConfig& module = scene.plant.modules[i];
     const double taken_kg = massOf(read.cover), simulated_kg = massOf(module.cover);
     const double most_off_kg = std::max(kLightCover_kg, kMostOff * taken_kg);
     const double most_off_hz = taken_kg > 0.0 ? kMostOff * read.filter_cutoff_hz : kNoLimit;

@@ -28,8 +28,7 @@ double answeredForce_N(const ControllerConfig& config) {
 /// A touch of this spring by the scene's arm, whose loop of one space has its delays.
 TouchedSpring touchedSpring(const Scene& scene, int module, const ObstacleConfig& obstacle,
                             double robot_stiffness_N_per_m) {
-  const PlantConfig plant = plantOf(scene);
-  return {variantLoops(scene.controller, plant, scene.period_s, module).front().loop,
+  return {variantLoops(scene.controller, scene.plant, scene.period_s, module).front().loop,
           answeredForce_N(scene.controller), ContactSpring(obstacle, robot_stiffness_N_per_m)};
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/math/filter.h"
 #include "tactus/scene/gain_keys.h"
 #include "tactus/scene/key_words.h"
 #include "tactus/scene/obstacle_checks.h"
@@ -127,13 +128,22 @@ void checkDuration(const CheckedScene& c) {
 
 void checkSimulatedModule(const CheckedScene& c) {
   const std::optional<double>& cutoff_hz = c.scene.simulation.filter_cutoff_hz;
-  if (!cutoff_hz) return;
-  for (const TactileModuleSection& module : c.robot.config.tactile_modules) {
+  const std::vector<TactileModuleSection>& modules = c.robot.config.tactile_modules;
+  if (!cutoff_hz || modules.empty()) return;
+  const std::string key = "simulation.tactile_module.filter_cutoff_hz";
+  if (std::ranges::all_of(modules, &TactileModuleSection::filter_in_daemon))
+    c.fail(key, "has no filter: the daemon has it, with filter_in_daemon",
+           "filter_cutoff_hz of robot.yaml in its place");
+  for (const TactileModuleSection& module : modules) {
+    if (module.filter_in_daemon) continue;
     const double limit_hz = 0.5 * module.simulated.filter_rate_hz;
-    if (*cutoff_hz < limit_hz) continue;
-    c.fail("simulation.tactile_module.filter_cutoff_hz",
-           fmt::format("{} Hz is too high", *cutoff_hz),
-           fmt::format("less than half the filter's rate, {} Hz", limit_hz));
+    const double least_hz = kLeastCutoff * module.simulated.filter_rate_hz;
+    if (*cutoff_hz >= limit_hz)
+      c.fail(key, fmt::format("{} Hz is too high", *cutoff_hz),
+             fmt::format("less than half the filter's rate, {} Hz", limit_hz));
+    if (*cutoff_hz < least_hz)
+      c.fail(key, fmt::format("{} Hz is too low", *cutoff_hz),
+             fmt::format("at least {} Hz, 1e-4 of the filter's rate", least_hz));
   }
 }
 

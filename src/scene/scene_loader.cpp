@@ -144,7 +144,11 @@ SimulatedModuleConfig makeSimulatedModule(const SimulationSection& simulation,
   module.seed += index;
   module.cover_radius_m = section.config.cover_radius_m;
   module.filter_rate_hz = section.simulated.filter_rate_hz;
-  module.filter_cutoff_hz = simulation.filter_cutoff_hz.value_or(section.config.filter_cutoff_hz);
+  module.filter_cutoff_hz = section.config.filter_cutoff_hz;
+  if (section.filter_in_daemon)
+    module.filter_place = FilterPlace::kReader;
+  else
+    module.filter_cutoff_hz = simulation.filter_cutoff_hz.value_or(module.filter_cutoff_hz);
   module.channels = section.channels;
   const std::optional<CoverSection>& cover = simulation.cover ? simulation.cover : section.cover;
   if (cover && cover->mass_kg > 0.0) module.cover = makeCover(*cover, section.config.length_m);

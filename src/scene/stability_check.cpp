@@ -118,8 +118,19 @@ std::string leftOut(const PlantConfig& plant) {
   std::vector<std::string> keys;
   if (plant.drives.loop) keys.emplace_back("drives.bandwidth_hz");
   if (plant.drives.dead_time_s > 0.0) keys.emplace_back("drives.dead_time_s");
-  if (std::ranges::any_of(plant.modules, [](const auto& module) { return module.jitter_s > 0.0; }))
-    keys.emplace_back("tactile_module.jitter_s");
+  if (plant.drives.max_acceleration.size() > 0) keys.emplace_back("drives.max_acceleration");
+  const auto nameIfAny = [&](const char* key, auto isImperfect) {
+    if (std::ranges::any_of(plant.modules, isImperfect)) keys.emplace_back(key);
+  };
+  using Module = SimulatedModuleConfig;
+  nameIfAny("tactile_module.channel_gains", [](const Module& module) {
+    return std::ranges::any_of(module.channel_gains, [](double gain) { return gain != 1.0; });
+  });
+  nameIfAny("tactile_module.direction_error_rad",
+            [](const Module& module) { return module.direction_error_rad != 0.0; });
+  nameIfAny("tactile_module.jitter_s", [](const Module& module) { return module.jitter_s > 0.0; });
+  nameIfAny("tactile_module.lost_share",
+            [](const Module& module) { return module.lost_share > 0.0; });
   if (keys.empty()) return "";
   return fmt::format("the margins do not know simulation.{}: its contacts may be less stable",
                      fmt::join(keys, ", "));
@@ -177,7 +188,7 @@ void noteGears(const std::vector<VariantLoop>& loops, int module, StabilityRepor
 /// What tactusd runs on is the robot of robot.yaml: a scene that simulates quicker drives or
 /// filters says nothing of it, slower ones count.
 PlantConfig judgedPlant(const Scene& scene) {
-  PlantConfig plant = plantOf(scene);
+  PlantConfig plant = scene.plant;
   if (!scene.hardware) return plant;
   plant.drive_lag_s = std::max(plant.drive_lag_s, scene.controller.drive_lag_s);
   const std::size_t modules =
@@ -193,18 +204,6 @@ PlantConfig judgedPlant(const Scene& scene) {
 
 std::string ofModule(const Scene& scene, int module) {
   return scene.module_links.size() > 1 ? " of " + scene.module_links[module] : "";
-}
-
-PlantConfig plantOf(const Scene& scene) {
-  PlantConfig plant = scene.plant;
-  if (!scene.hardware) return plant;
-  const std::vector<CanTactileConfig>& on_bus = scene.hardware->tactile_modules;
-  for (std::size_t i = 0; i < on_bus.size(); ++i) {
-    SimulatedModuleConfig& module = plant.modules[i];
-    module.filtered = !on_bus[i].filter_cutoff_hz;
-    module.filter_cutoff_hz = on_bus[i].filter_cutoff_hz.value_or(module.filter_cutoff_hz);
-  }
-  return plant;
 }
 
 std::optional<StabilityReport> checkStability(const Scene& scene) {

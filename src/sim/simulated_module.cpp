@@ -14,16 +14,19 @@ Eigen::Matrix<double, 8, kRows> pseudoinverse(const Eigen::Matrix<double, kRows,
   const Eigen::Matrix<double, kRows, kRows> gram = C * C.transpose();
   return C.transpose() * gram.inverse();
 }
+
+ButterworthLowPass filterOf(const SimulatedModuleConfig& config) {
+  const bool is_in_module = config.filter_place == FilterPlace::kModule;
+  return {config.filter_cutoff_hz,
+          is_in_module ? config.filter_rate_hz : 1.0 / config.channels.sample_period_s};
+}
 }  // namespace
 
 SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config,
                                  const std::optional<Wrench5>& at_rest)
     : config_(config),
-      filters_{ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
-               ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
-               ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
-               ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz),
-               ButterworthLowPass(config.filter_cutoff_hz, config.filter_rate_hz)},
+      filters_{filterOf(config), filterOf(config), filterOf(config), filterOf(config),
+               filterOf(config)},
       channels_from_wrench_(pseudoinverse(config.channels.calibration)),
       channels_from_moment_x_(Channels::Zero()),
       at_rest_(at_rest),
@@ -46,15 +49,17 @@ SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config,
 }
 
 void SimulatedModule::update(const Wrench5& wrench) noexcept {
-  const Wrench5 filtered = filter(wrench);
+  const Wrench5 felt =
+      config_.filter_place == FilterPlace::kModule ? filterFromRest(wrench) : wrench;
   t_s_ += 1.0 / config_.filter_rate_hz;
   if (steps_to_delivery_ > 0 && --steps_to_delivery_ == 0) deliver();
   if (steps_to_sample_-- > 0) return;
   steps_to_sample_ = steps_a_sample_ - 1;
   if (config_.lost_share > 0.0 && chance() < config_.lost_share) return;
   if (steps_to_delivery_ > 0) deliver();
-  Wrench5 measured = measure(filtered);
+  Wrench5 measured = measure(felt);
   if (at_rest_) measured -= tare_;
+  if (config_.filter_place == FilterPlace::kReader) measured = filter(measured);
   measured_ = {measured[0], measured[1], measured[2], measured[3], measured_.sequence + 1,
                measured[4]};
   steps_to_delivery_ = 0;
@@ -64,15 +69,16 @@ void SimulatedModule::update(const Wrench5& wrench) noexcept {
   if (steps_to_delivery_ == 0) deliver();
 }
 
-/// What was felt from the beginning has long come through the filter.
 Wrench5 SimulatedModule::filter(const Wrench5& wrench) noexcept {
-  if (!config_.filtered) return wrench;
-  Wrench5 input = wrench;
-  if (at_rest_) input -= *at_rest_;
   Wrench5 filtered;
-  for (int i = 0; i < 5; ++i) filtered[i] = filters_[i].update(input[i]);
-  if (at_rest_) filtered += *at_rest_;
+  for (int i = 0; i < 5; ++i) filtered[i] = filters_[i].update(wrench[i]);
   return filtered;
+}
+
+/// What was felt from the beginning has long come through the filter.
+Wrench5 SimulatedModule::filterFromRest(const Wrench5& wrench) noexcept {
+  if (!at_rest_) return filter(wrench);
+  return filter(wrench - *at_rest_) + *at_rest_;
 }
 
 void SimulatedModule::deliver() noexcept {

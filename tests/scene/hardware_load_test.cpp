@@ -97,6 +97,17 @@ TEST(HardwareLoad, FiltersInTheModuleUnlessTold) {
   EXPECT_FALSE(files.load().hardware.value().tactile_modules.at(0).filter_cutoff_hz);
 }
 
+/// Which the daemon does not have, and simulations could not show.
+TEST(HardwareLoad, TakesNoOtherFilterOfAModuleThatHasNone) {
+  SceneFiles files = hardwareFiles();
+  const std::vector<Override> other{{"simulation.tactile_module.filter_cutoff_hz", "8"}};
+  EXPECT_NE(test::loadError(files.sources(), other)
+                .find("simulation.tactile_module.filter_cutoff_hz: has no filter: the daemon has"),
+            std::string::npos);
+  files.robot = test::replaced(files.robot, "filter_in_daemon: true", "filter_in_daemon: false");
+  EXPECT_EQ(files.load(other).plant.modules[0].filter_cutoff_hz, 8.0);
+}
+
 TEST(HardwareLoad, PutsLinesAndRealTimeInTheirPlace) {
   const HardwareConfig hardware =
       hardwareFiles().load({{"real_time.required", "false"}}).hardware.value();

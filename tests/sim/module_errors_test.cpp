@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include "support/crops9.h"
 #include "support/random.h"
+#include "tactus/math/filter.h"
 #include "tactus/sim/simulated_module.h"
 
 /// What a real module does that a perfect one does not.
@@ -39,6 +41,31 @@ TEST(ModuleErrors, GainsOfChannelsAreThoseOfTheCells) {
   SimulatedModule one(config);
   EXPECT_LT((settled(one, forceAt(0.04, 4.0, 0.0)) - forceAt(0.04, 6.0, 0.0)).norm(), 1e-9);
   EXPECT_LT((settled(one, forceAt(0.34, 4.0, 0.0)) - forceAt(0.34, 4.0, 0.0)).norm(), 1e-9);
+}
+
+/// Noise and counts of a module that leaves the filter to its reader go through it, too.
+TEST(ModuleErrors, GoThroughTheFilterOfAReaderThatHasIt) {
+  SimulatedModuleConfig config = realModule();
+  config.noise_N = 0.1;
+  config.filter_place = FilterPlace::kNone;
+  SimulatedModule raw(config);
+  config.filter_place = FilterPlace::kReader;
+  SimulatedModule read(config);
+  std::vector<ButterworthLowPass> filters(
+      5, ButterworthLowPass(config.filter_cutoff_hz, 1.0 / config.channels.sample_period_s));
+  test::Random random(922);
+  unsigned sample = 0;
+  for (int step = 0; step < 4000; ++step) {
+    const Wrench5 felt = forceAt(0.1, random.uniform(-9.0, 9.0), random.uniform(-9.0, 9.0));
+    raw.update(felt);
+    read.update(felt);
+    if (raw.sample().sequence == sample) continue;
+    sample = raw.sample().sequence;
+    const Wrench5 unfiltered = readingOf(raw);
+    for (int i = 0; i < 5; ++i)
+      EXPECT_EQ(readingOf(read)[i], filters[i].update(unfiltered[i])) << step;
+  }
+  EXPECT_GT(sample, 900U);
 }
 
 TEST(ModuleErrors, ChannelsDriftFromTheStart) {

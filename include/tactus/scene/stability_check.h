@@ -39,9 +39,6 @@ struct StabilityReport {
 /// " of link6" where the scene reads several modules, else nothing.
 std::string ofModule(const Scene& scene, int module);
 
-/// The plant that filters as the loop does: its modules do not where the daemon does.
-PlantConfig plantOf(const Scene& scene);
-
 /// Absent for a scene without force control. Throws InputError if one of its loops is unstable in
 /// that contact. Not a part of loading: simulations and replays of unstable gains are of use.
 std::optional<StabilityReport> checkStability(const Scene& scene);

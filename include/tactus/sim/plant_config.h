@@ -52,6 +52,13 @@ struct ObstacleConfig {
   std::optional<PostConfig> post{};
 };
 
+/// Where the force is filtered.
+enum class FilterPlace {
+  kModule,  ///< in the module, at its own rate
+  kReader,  ///< once a sample in who reads it, which is simulated, too
+  kNone,    ///< in a reader that is not
+};
+
 /// A simulated tactile module: its cover and its electronics.
 struct SimulatedModuleConfig {
   double cover_radius_m = 0.06;
@@ -59,16 +66,16 @@ struct SimulatedModuleConfig {
   double filter_rate_hz = 1000.0;  ///< rate at which the module filters
   TactileChannels channels;
   bool quantised = true;
-  bool filtered = true;               ///< false: a module that leaves the filter to its reader
-  double noise_N = 0.0;               ///< standard deviation of one channel
-  double lost_share = 0.0;            ///< of the samples, each by chance
-  double jitter_s = 0.0;              ///< a sample comes late by up to that, by chance
-  std::uint64_t seed = 1;             ///< of noise, losses and jitter
-  std::vector<double> channel_gains;  ///< of the eight channels; empty: 1
+  FilterPlace filter_place = FilterPlace::kModule;
+  double noise_N = 0.0;                        ///< standard deviation of one channel
+  double lost_share = 0.0;                     ///< of the samples, each by chance
+  double jitter_s = 0.0;                       ///< a sample comes late by up to that, by chance
+  std::uint64_t seed = 1;                      ///< of noise, losses and jitter
+  std::vector<double> channel_gains;           ///< of the eight channels; empty: 1
   std::vector<double> channel_drifts_N_per_s;  ///< likewise, since the start; empty: 0
   double direction_error_rad = 0.0;            ///< by which the cells are turned about x
   std::optional<CoverConfig> cover;            ///< absent: it weighs nothing
-  bool tared = true;  ///< false: a module that leaves the tare to its reader
+  bool tared = true;  ///< false: a module that leaves the tare to a reader that is not simulated
 };
 
 /// A velocity loop of second order.

@@ -13,8 +13,8 @@ namespace tactus {
 
 /// The cells and electronics of the tactile module: filters at its own rate, and every sample
 /// period turns force and moment into eight channels of signed 24-bit counts, and back by the
-/// calibration that its reader knows. After a lost sample the one before stays; a late one comes at
-/// the latest with the next.
+/// calibration that its reader knows, who tares and, if it is his part, filters them. After a lost
+/// sample the one before stays; a late one comes at the latest with the next.
 class SimulatedModule {
  public:
   /// at_rest: what it feels at the start without a contact, and has for long.
@@ -34,6 +34,7 @@ class SimulatedModule {
   using Channels = Eigen::Matrix<double, 8, 1>;
 
   Wrench5 filter(const Wrench5& wrench) noexcept;
+  Wrench5 filterFromRest(const Wrench5& wrench) noexcept;
   double chance() noexcept;
   void deliver() noexcept;
   Wrench5 turned(const Wrench5& wrench) const noexcept;
