@@ -17,12 +17,12 @@ std::int64_t threadTime_ns() noexcept {
   return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
 }
 
-/// Of the enable line, before an arm that begins where it is may move.
+/// Of the enable line, before it lets an arm go on; no hand is quicker.
 int offCycles(const Scene& scene) {
   constexpr double kLeastOff_s = 0.05;
-  if (!startsMeasured(scene) || !scene.hardware->gpio) return 0;
-  const auto& line = scene.hardware->gpio->enable;
-  return cyclesLasting(std::max(kLeastOff_s, line ? line->debounce_s : 0.0), scene.period_s);
+  if (!scene.hardware->gpio || !scene.hardware->gpio->enable) return 0;
+  const double debounce_s = scene.hardware->gpio->enable->debounce_s;
+  return cyclesLasting(std::max(kLeastOff_s, debounce_s), scene.period_s);
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ HardwareLoop::HardwareLoop(const Scene& scene, long long max_task_cycles,
       filter_(filter),
       max_task_cycles_(max_task_cycles),
       buses_(openBuses(*scene.hardware, scene.period_s)),
-      enable_wait_(offCycles(scene)),
+      enable_wait_(offCycles(scene), !startsMeasured(scene)),
       cycle_(scene.controller, *scene.hardware, scene.period_s),
       side_(link) {
   const HardwareConfig& hardware = *scene.hardware;

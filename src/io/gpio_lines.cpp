@@ -164,6 +164,7 @@ GpioInputs GpioLines::read() noexcept {
   const bool is_stop_pressed = lines_->is_stop_pressed || was_pressed;
   return {.emergency_stop = lines_->debounced_stop.update(is_stop_pressed),
           .enable = lines_->debounced_enable.update(lines_->is_enabled),
+          .is_enable_off = !lines_->is_enabled,
           .is_valid = has_edges && has_stop && has_inputs};
 }
 

@@ -113,6 +113,10 @@ constexpr auto kHazards = std::to_array<Hazard>({
      "`EnableWait.CountsTheLineOnceItWasOff`, `hil.told`", "an enable line that was on before",
      "waits until it was off and is on", "before motion", "who switches has to look",
      "mode `ready`"},
+    {kUnasked, "a contact of the enable line chatters while a stopped arm waits for it",
+     Fault::kNone, "`EnableWait.TakesALineThatFlickersForOff`", "how long the line is off",
+     "counts as off until it was off for 0.05 s, or `debounce_s` if that is longer", "1 cycle",
+     "one that is off for longer, and on again", "mode `holding`, `fault` or `ready`"},
     {kUnasked, "links move to `redundancy.posture` while the tool holds", Fault::kNone,
      "`SoftPosture.BeginsSoftlyAlsoWhereTheSceneBegins`, `SoftPosture.GoesOnSoftlyAfterAHold`, "
      "`Posture.IsBoundedInItsSpeedAndNotTurned`",

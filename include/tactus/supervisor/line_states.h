@@ -6,6 +6,7 @@ namespace tactus {
 struct GpioInputs {
   bool emergency_stop = false;
   bool enable = true;
+  bool is_enable_off = false;  ///< as it was read, for however short
   bool must_go_off = false;  ///< the enable line is on, and counts once it was off: see EnableWait
   bool is_valid = true;      ///< false: the chip could not be read
 };

@@ -84,7 +84,7 @@ terminate() {
 restart() {
   sleep 0.1
   mark enable_off "$(line $enable 0)"
-  sleep 0.05
+  sleep 0.1
   mark enable_on "$(line $enable 1)"
   wait_for running "$out/tactusd.txt" 2
   sleep 0.1

@@ -37,7 +37,7 @@ done
 random_frames 10 2000 $per_second hostile & sender=$!
 while kill -0 $sender 2>/dev/null; do
   line $enable 0 >/dev/null
-  sleep 0.06
+  sleep 0.1
   line $enable 1 >/dev/null
   sleep 0.2
 done

@@ -53,7 +53,7 @@ go_on() {
   wait_mode fault
   sleep 0.2
   line $enable 0 >/dev/null
-  sleep 0.05
+  sleep 0.1
   line $enable 1 >/dev/null
   wait_mode running
 }
@@ -68,6 +68,7 @@ press_e_stop() {
 switch_off() {
   line $enable 0 >/dev/null
   wait_mode holding
+  sleep 0.1
   line $enable 1 >/dev/null
   wait_mode running
 }

@@ -48,6 +48,7 @@ line $enable 0 >/dev/null
 wait_for holding "$out/tactusd.txt"
 wait_for stopped "$out/tactusd.txt"
 refused 'does not run' tactus move --relative --to 0,-0.1,0
+sleep 0.1
 line $enable 1 >/dev/null
 wait_for running "$out/tactusd.txt" 2
 sleep 0.3
