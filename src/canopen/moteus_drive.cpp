@@ -100,7 +100,7 @@ void MoteusDrive::startSetup() noexcept {
 }
 
 void MoteusDrive::judgeSetup() noexcept {
-  const bool is_ready = reply_ && last_->map == kMoteusMap && last_->fault == 0 &&
+  const bool is_ready = reply_ && last_->map == kMoteusMap && isHome() && last_->fault == 0 &&
                         report_.state == DriveState::kSwitchOnDisabled && report_.has_position;
   if (is_ready) {
     phase_ = Phase::kConfigured;
@@ -108,6 +108,11 @@ void MoteusDrive::judgeSetup() noexcept {
     return;
   }
   if (++setup_cycles_ > boot_timeout_cycles_) refuseSetup();
+}
+
+/// A position that refers to less is another one after the power was off.
+bool MoteusDrive::isHome() const noexcept {
+  return last_->home.value_or(0) >= static_cast<std::int32_t>(config_.home);
 }
 
 /// Names the register that was not as it has to be.
@@ -124,6 +129,8 @@ void MoteusDrive::refuseSetup() noexcept {
   };
   if (last_ && last_->map != kMoteusMap)
     blame(moteus_register::kMapVersion, last_->map.value_or(0), kMoteusMap);
+  else if (last_ && !isHome())
+    blame(moteus_register::kHome, last_->home.value_or(0), static_cast<std::int32_t>(config_.home));
   else if (last_ && last_->fault != 0)
     blame(moteus_register::kFault, last_->fault, 0);
   else if (last_ && report_.state != DriveState::kSwitchOnDisabled)
@@ -145,6 +152,7 @@ void MoteusDrive::countSilence() noexcept {
 void MoteusDrive::takeReply() noexcept {
   if (!reply_ || phase_ == Phase::kUnconfigured) return;
   if (last_ && !reply_->map) reply_->map = last_->map;
+  if (last_ && !reply_->home) reply_->home = last_->home;
   last_ = reply_;
   const auto state = stateOf(reply_->mode);
   report_.has_state = state.has_value();
@@ -193,7 +201,7 @@ bool MoteusDrive::isRunning(DriveGoal goal) const noexcept {
 }
 
 MoteusCommand MoteusDrive::command(DriveGoal goal, double velocity, double position) noexcept {
-  MoteusCommand command{.watchdog_s = watchdog_s_, .asks_for_map = phase_ == Phase::kSetup};
+  MoteusCommand command{.watchdog_s = watchdog_s_, .asks_for_setup = phase_ == Phase::kSetup};
   const bool is_to_run =
       goal == DriveGoal::kEnabled && phase_ == Phase::kConfigured && report_.fault == Fault::kNone;
   if (is_to_run) still_watch_.restart();  // it may have begun to move just now

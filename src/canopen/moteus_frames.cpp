@@ -134,6 +134,8 @@ struct FoundRegisters {
       has_fault = true;
     } else if (number == number_of::kMapVersion) {
       reply.map = value.whole();
+    } else if (number == number_of::kHome) {
+      reply.home = value.whole();
     }
   }
   bool isWhole() const noexcept { return has_mode && has_position && has_velocity && has_fault; }
@@ -175,7 +177,10 @@ CanFrame moteusCommandFrame(int node_id, const MoteusCommand& command) noexcept 
   writer.begin(kRead, kInt8, 1, number_of::kMode);
   writer.begin(kRead, kFloat, 2, number_of::kPosition);
   writer.begin(kRead, kInt8, 1, number_of::kFault);
-  if (command.asks_for_map) writer.begin(kRead, kInt32, 1, number_of::kMapVersion);
+  if (command.asks_for_setup) {
+    writer.begin(kRead, kInt8, 1, number_of::kHome);
+    writer.begin(kRead, kInt8, 1, number_of::kMapVersion);
+  }
   writer.pad();
   return frame;
 }

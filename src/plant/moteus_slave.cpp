@@ -211,6 +211,8 @@ double MoteusSlave::read(std::uint32_t number) const noexcept {
       return position_turns_;
     case 0x002:
       return config_.sign * config_.counts_per_unit * velocity_;
+    case 0x00C:
+      return home_;
     case 0x00F:
       return fault_;
     case 0x102:

@@ -111,10 +111,13 @@ DriveConfig makeDrive(const LoadingRobot& l, std::size_t i) {
   drive.max_following_error = units.max_following_error.value_or(drive.max_following_error);
   drive.max_velocity = l.chain.limits.max_velocity[drive.joint];
   checkCounts(l, drive, path);
-  if (drive.kind == DriveKind::kMoteus)
+  if (drive.kind == DriveKind::kMoteus) {
     checkMoteus(l, given, drive, path);
-  else
-    applySheet(l.sheets[i], drive);
+    return drive;
+  }
+  if (drive.home != MoteusHome::kOutput)
+    l.fail(path + ".home", "the drive is no moteus", "not this key");
+  applySheet(l.sheets[i], drive);
   return drive;
 }
 

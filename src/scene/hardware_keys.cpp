@@ -81,6 +81,11 @@ Table<DriveConfig> driveConfigKeys() {
               &Config::sign),
       number("tracking_gain_per_s", "1/s", within(0, 5e3),
              "pulls the drive to the commanded position; 0: not", &Config::tracking_gain_per_s),
+      choice(
+          "home",
+          "by what a moteus has to know where it is, its register 0x00C; rotor: its joint is not "
+          "moved by a turn of the rotor while it has no power",
+          &Config::home, kHomeWords),
   };
 }
 

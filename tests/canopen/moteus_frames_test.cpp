@@ -43,14 +43,14 @@ TEST(MoteusFrames, AreThoseOfItsReference) {
   EXPECT_EQ(hexOf(moteusCommandFrame(5, {.kind = MoteusAsk::kZeroVelocity})),
             "01000c11001e01110f505050");
   EXPECT_EQ(hexOf(moteusCommandFrame(5, {.kind = MoteusAsk::kStop})), "01000011001e01110f505050");
-  EXPECT_EQ(hexOf(moteusCommandFrame(5, {.asks_for_map = true})), "11001e01110f198202505050");
+  EXPECT_EQ(hexOf(moteusCommandFrame(5, {.asks_for_setup = true})), "11001e01110f110c11820250");
   EXPECT_EQ(hexOf(moteusCommandFrame(5, {})), "11001e01110f");
 }
 
 TEST(MoteusFrames, FitIntoWhatTheBusIsReckonedWith) {
   for (const auto kind :
        {MoteusAsk::kQuery, MoteusAsk::kStop, MoteusAsk::kZeroVelocity, MoteusAsk::kVelocity}) {
-    const CanFrame frame = moteusCommandFrame(127, {.kind = kind, .asks_for_map = true});
+    const CanFrame frame = moteusCommandFrame(127, {.kind = kind, .asks_for_setup = true});
     EXPECT_EQ(frame.size, fdSize(frame.size));
     EXPECT_LE(frame.size, kMoteusCommandBytes);
   }
@@ -68,7 +68,7 @@ TEST(MoteusFrames, AReplyIsReadInAnyType) {
   const auto floats =
       decodeMoteusReply(replyOf(3, "21000b2e010000803f000020c0210f2129820205000000505050"), 3);
   ASSERT_TRUE(floats);
-  EXPECT_EQ(*floats, (MoteusReply{11, 1.0, -2.5, 33, 5}));
+  EXPECT_EQ(*floats, (MoteusReply{11, 1.0, -2.5, 33, 5, std::nullopt}));
   const auto unknown = decodeMoteusReply(replyOf(3, "2d00000020412a0100000080ffffff7f210f00"), 3);
   ASSERT_TRUE(unknown);
   EXPECT_EQ(unknown->mode, 10);

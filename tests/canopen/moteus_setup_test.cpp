@@ -36,16 +36,18 @@ TEST(MoteusSetup, NamesTheRegisterThatKeepsItFromItsSetUp) {
                         static_cast<std::uint32_t>(value),
                         static_cast<std::uint32_t>(expected)};
   };
-  const Refused all[] = {{moteusReply(0, 0.0F, 0.0F, 0, kOtherMap),
-                          other(moteus_register::kMapVersion, kOtherMap, kMoteusMap)},
-                         {withoutMap(moteusReply(0, 0.0F, 0.0F, 0)),
-                          other(moteus_register::kMapVersion, 0, kMoteusMap)},
-                         {moteusReply(5, 0.0F, 0.0F, 33, kOtherMap),
-                          other(moteus_register::kMapVersion, kOtherMap, kMoteusMap)},
-                         {moteusReply(1, 0.0F, 0.0F, 33), other(moteus_register::kFault, 33, 0)},
-                         {moteusReply(5, 0.0F, 0.0F, 0), other(moteus_register::kMode, 5, 0)},
-                         {moteusReply(0, kNaN, 0.0F, 0), {moteus_register::kPosition, 0, 0}},
-                         {std::nullopt, {moteus_register::kPosition, 0, 0}}};
+  const Refused all[] = {
+      {moteusReply(0, 0.0F, 0.0F, 0, kOtherMap),
+       other(moteus_register::kMapVersion, kOtherMap, kMoteusMap)},
+      {withoutMap(moteusReply(0, 0.0F, 0.0F, 0)),
+       other(moteus_register::kMapVersion, 0, kMoteusMap)},
+      {moteusReply(5, 0.0F, 0.0F, 33, kOtherMap),
+       other(moteus_register::kMapVersion, kOtherMap, kMoteusMap)},
+      {moteusReply(0, 0.0F, 0.0F, 0, kMoteusMap, 1), other(moteus_register::kHome, 1, 2)},
+      {moteusReply(1, 0.0F, 0.0F, 33), other(moteus_register::kFault, 33, 0)},
+      {moteusReply(5, 0.0F, 0.0F, 0), other(moteus_register::kMode, 5, 0)},
+      {moteusReply(0, kNaN, 0.0F, 0), {moteus_register::kPosition, 0, 0}},
+      {std::nullopt, {moteus_register::kPosition, 0, 0}}};
   CanopenConfig canopen;
   canopen.boot_timeout_s = 0.02;
   for (const Refused& refused : all) {
@@ -132,7 +134,7 @@ TEST(MoteusSetup, IsAskedForItsMapInItsSetUpAlone) {
     rig.drive.update(goal, restart, 0.0, rig.position, out);
     const auto isOf = [&out](bool asks) {
       for (const auto kind : {MoteusCommand::Kind::kQuery, MoteusCommand::Kind::kStop})
-        if (*out.begin() == moteusCommandFrame(kMoteusNode, {.kind = kind, .asks_for_map = asks}))
+        if (*out.begin() == moteusCommandFrame(kMoteusNode, {.kind = kind, .asks_for_setup = asks}))
           return true;
       return false;
     };

@@ -68,10 +68,11 @@ TEST_F(MoteusOfNode3, DoesNotAnswerBeyondAFrameWhateverIsAsked) {
 
 TEST_F(MoteusOfNode3, TellsWhereItIsAndWhatItIs) {
   slave_.setPosition(2.5);
-  const MoteusReply reply = ask({.asks_for_map = true});
+  const MoteusReply reply = ask({.asks_for_setup = true});
   EXPECT_EQ(reply.mode, 0);
   EXPECT_NEAR(reply.position, -0.5, 1e-6);
   EXPECT_EQ(reply.map, kMoteusMap);
+  EXPECT_EQ(reply.home, 2);
   EXPECT_EQ(reply.fault, 0);
 }
 

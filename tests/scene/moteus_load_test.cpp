@@ -30,6 +30,14 @@ TEST(MoteusLoad, CountsInTurns) {
   EXPECT_EQ(hardware.drives[2].kind, DriveKind::kCia402);
 }
 
+TEST(MoteusLoad, MayBeKnownByItsRotorAlone) {
+  test::SceneFiles files = moteusFiles();
+  EXPECT_EQ(files.load().hardware.value().drives[1].home, MoteusHome::kOutput);
+  files.robot = test::replaced(files.robot, "node_id: 2, kind: moteus",
+                               "node_id: 2, kind: moteus, home: rotor");
+  EXPECT_EQ(files.load().hardware.value().drives[1].home, MoteusHome::kRotor);
+}
+
 TEST(MoteusLoad, IsInTheLoadOfItsBusWithoutSyncAndHeartbeat) {
   const HardwareConfig hardware = moteusFiles().load().hardware.value();
   const BusLoad load = busLoads(hardware, 0.001)[0];
@@ -89,6 +97,11 @@ INSTANTIATE_TEST_SUITE_P(
                          "> 0"},
         test::BrokenText{"kind: moteus, turns_per_m: 100", "kind: moteux, turns_per_m: 100",
                          "robot.yaml:15:", "'moteux'", "one of cia402, moteus"},
+        test::BrokenText{"node_id: 9, counts_per_rad: 2e6",
+                         "node_id: 9, home: rotor, counts_per_rad: 2e6",
+                         "robot.yaml:", "the drive is no moteus", "not this key"},
+        test::BrokenText{"node_id: 2, kind: moteus", "node_id: 2, kind: moteus, home: relative",
+                         "robot.yaml:16:", "'relative'", "one of output, rotor"},
         test::BrokenText{"node_id: 2, kind: moteus", "node_id: 2, kind: moteus, eds: a.eds",
                          "robot.yaml:16:", "no CANopen device", "not this key"},
         test::BrokenText{"interface: can1\n  first_id: 0x110", "interface: can0\n  first_id: 0xFE",

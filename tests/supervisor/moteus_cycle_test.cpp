@@ -296,7 +296,9 @@ struct WrongStart {
 TEST(MoteusCycle, StartsWithNothingElse) {
   const std::vector<WrongStart> starts = {
       {"silent", [](CanFrame& frame) { frame.id = 0x7F00; }, moteus_register::kPosition},
-      {"another map", [](CanFrame& frame) { frame.data[19] = 4; }, moteus_register::kMapVersion},
+      {"another map", [](CanFrame& frame) { frame.data[22] = 4; }, moteus_register::kMapVersion},
+      {"known by its rotor alone", [](CanFrame& frame) { frame.data[18] = 1; },
+       moteus_register::kHome},
       {"in fault", [](CanFrame& frame) { frame.data[2] = 1, frame.data[15] = 35; },
        moteus_register::kFault},
       {"enabled", [](CanFrame& frame) { frame.data[2] = 10; }, moteus_register::kMode},

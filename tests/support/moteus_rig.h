@@ -24,7 +24,7 @@ inline DriveConfig moteusConfig() {
 }
 
 inline CanFrame moteusReply(int mode, float position, float velocity, int fault,
-                            int map = kMoteusMap) {
+                            int map = kMoteusMap, int home = 2) {
   CanFrame frame;
   frame.id = moteusReplyId(kMoteusNode);
   frame.is_fd = true;
@@ -39,7 +39,8 @@ inline CanFrame moteusReply(int mode, float position, float velocity, int fault,
   put(0x21), put(0x00), put(mode), put(0x2E), put(0x01);
   putFloat(position);
   putFloat(velocity);
-  put(0x21), put(0x0F), put(fault), put(0x29), put(0x82), put(0x02);
+  put(0x21), put(0x0F), put(fault), put(0x21), put(0x0C), put(home);
+  put(0x29), put(0x82), put(0x02);
   put(map), put(0), put(0), put(0);
   return frame;
 }

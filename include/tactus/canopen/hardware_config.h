@@ -28,6 +28,12 @@ enum class DriveKind : std::uint8_t {
   kMoteus,  ///< mjbots' moteus, on CAN FD
 };
 
+/// What the position of a moteus refers to, as its register 0x00C has it.
+enum class MoteusHome : std::int32_t {
+  kRotor = 1,   ///< the rotor, whose whole turns nobody counts while the power is off
+  kOutput = 2,  ///< the output shaft
+};
+
 /// counts = sign * counts_per_unit * (q - offset), with q in m or rad. The counts of a moteus are
 /// turns.
 struct DriveConfig {
@@ -47,7 +53,8 @@ struct DriveConfig {
   int transmit_pdos = 4;              ///< all but the first are switched off, those that are there
   bool has_quick_stop_option = true;  ///< entry 605A; else its quick stop is its own affair
   bool has_velocity_unit = true;      ///< entry 60A9, if it is there, says what 60FF is in
-  bool has_speed_limit = true;        ///< entry 607F, if it is there, is in counts/s as 60FF is
+  MoteusHome home = MoteusHome::kOutput;  ///< at least, of a moteus
+  bool has_speed_limit = true;            ///< entry 607F, if it is there, is in counts/s as 60FF is
 };
 
 /// CANopen settings common to all drives.

@@ -16,7 +16,8 @@ namespace tactus {
 /// The master's side of one moteus controller, which follows a velocity from where it is. Knows no
 /// socket and no clock: time is counted in cycles. Each cycle it gets one command and replies.
 ///
-/// Set up, it has the register map that is known, mode stopped, no fault, and knows where it is.
+/// Set up, it has the register map that is known, mode stopped, no fault, and knows where it is, by
+/// what DriveConfig::home says.
 /// One that still moves is slowed down before, and one in fault is told to stop, which clears it; a
 /// fault that comes later is never cleared but by a restart. A drive that is to stop is told zero
 /// velocity until it rests, and then to stop, which leaves it without torque. One that is not seen
@@ -47,6 +48,7 @@ class MoteusDrive {
 
   void startSetup() noexcept;
   void judgeSetup() noexcept;
+  bool isHome() const noexcept;
   void refuseSetup() noexcept;
   void countSilence() noexcept;
   void takeReply() noexcept;

@@ -30,6 +30,7 @@ namespace moteus_register {
 inline constexpr std::uint16_t kMode = 0x000;
 inline constexpr std::uint16_t kPosition = 0x001;
 inline constexpr std::uint16_t kVelocity = 0x002;
+inline constexpr std::uint16_t kHome = 0x00C;
 inline constexpr std::uint16_t kFault = 0x00F;
 inline constexpr std::uint16_t kCommandPosition = 0x020;
 inline constexpr std::uint16_t kWatchdogTimeout = 0x027;
@@ -49,9 +50,9 @@ struct MoteusCommand {
     kVelocity,      ///< kPosition from where it is, at a velocity
   };
   Kind kind = Kind::kQuery;
-  float velocity = 0.0F;    ///< turns/s
-  float watchdog_s = 0.0F;  ///< of kVelocity: it stops by itself unless another comes within
-  bool asks_for_map = false;
+  float velocity = 0.0F;        ///< turns/s
+  float watchdog_s = 0.0F;      ///< of kVelocity: it stops by itself unless another comes within
+  bool asks_for_setup = false;  ///< for the map of registers, and what the position refers to
 };
 
 /// Ids: a bit that asks for a reply, the sender (0), the node; 29 bits.
@@ -77,6 +78,7 @@ struct MoteusReply {
   double velocity = 0.0;  ///< turns/s
   int fault = 0;          ///< register 0x00F: of mode kFault, or what limits the torque
   std::optional<std::int32_t> map;
+  std::optional<std::int32_t> home;  ///< as MoteusHome
 
   bool operator==(const MoteusReply&) const = default;
 };

@@ -72,6 +72,11 @@ inline constexpr std::array kDriveKindWords = {
     Word<DriveKind>{"moteus", DriveKind::kMoteus},
 };
 
+inline constexpr std::array kHomeWords = {
+    Word<MoteusHome>{"output", MoteusHome::kOutput},
+    Word<MoteusHome>{"rotor", MoteusHome::kRotor},
+};
+
 inline constexpr std::array kFeedbackWords = {
     Word<EncoderSide>{"motor", EncoderSide::kMotor},
     Word<EncoderSide>{"link", EncoderSide::kLink},
