@@ -74,15 +74,17 @@ std::int64_t processTime_ns() noexcept {
   return time.tv_sec * 1'000'000'000LL + time.tv_nsec;
 }
 
-/// What waits in a long queue is old when it gets onto the bus.
-void warnOfLongQueues(const HardwareConfig& hardware) {
-  for (const BusConfig& bus : hardware.buses) {
-    const int length = transmitQueueLength(bus.interface);
-    if (length <= kMaxTransmitQueue) continue;
+/// What waits in a long queue is old when it gets onto the bus, and a short one loses frames.
+void warnOfQueues(const HardwareConfig& hardware) {
+  for (std::size_t i = 0; i < hardware.buses.size(); ++i) {
+    const std::string& interface = hardware.buses[i].interface;
+    const auto drives = std::ranges::count(hardware.drives, static_cast<int>(i), &DriveConfig::bus);
+    const int length = transmitQueueLength(interface);
+    const int wanted = transmitQueueFor(static_cast<int>(drives));
+    if (length <= kMaxTransmitQueue && (drives <= 8 || length >= wanted)) continue;
     fmt::print(stderr,
-               "tactusd: {}: transmit queue of {} frames; better: ip link set {} txqueuelen "
-               "10\n",
-               bus.interface, length, bus.interface);
+               "tactusd: {}: transmit queue of {} frames; better: ip link set {} txqueuelen {}\n",
+               interface, length, interface, wanted);
   }
 }
 
@@ -153,7 +155,7 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   SystemCallFilter filter(kLoopSystemCalls);
   LoopLink link;
   const auto loop = openHardware(scene, options.duration_s, filter, link);
-  warnOfLongQueues(*scene.hardware);
+  warnOfQueues(*scene.hardware);
 
   std::vector<Refusal> refusals;
   if (auto refusal = lockMemory(kHeapBytes)) refusals.push_back(*refusal);

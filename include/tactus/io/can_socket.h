@@ -64,8 +64,10 @@ class CanSocket {
 /// Frames that an interface queues for its controller, set by the administrator:
 /// `ip link set can0 txqueuelen 10`. Throws std::system_error.
 int transmitQueueLength(const std::string& interface);
-/// A longer one delays what follows; a cycle's frames fit.
-inline constexpr int kMaxTransmitQueue = 16;
+/// A longer one delays what follows; a cycle's frames fit: of 16 drives, SYNC and heartbeat.
+inline constexpr int kMaxTransmitQueue = 20;
+/// In which a cycle of so many drives fits, with SYNC and heartbeat.
+constexpr int transmitQueueFor(int drives) noexcept { return drives > 8 ? kMaxTransmitQueue : 10; }
 
 /// Throws std::system_error where the interface is down or missing, with the way to mend it.
 void requireUp(const std::string& interface);

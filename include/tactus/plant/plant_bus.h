@@ -32,7 +32,7 @@ struct QueuedFrame {
 /// Frames waiting in a node, first in, first out. No heap.
 class FrameQueue {
  public:
-  static constexpr std::size_t kCapacity = 16;
+  static constexpr std::size_t kCapacity = 32;  ///< of a cycle: 16 drives, SYNC, heartbeat, SDO
 
   bool push(const QueuedFrame& item) noexcept;  ///< false, and dropped, when full
   void pop() noexcept;
