@@ -162,10 +162,11 @@ void SeveralContacts::sense(const Gains& gains, const TaskKinematics& kinematics
   passTransition(gains.force.transition, F_p_N, place.at.p_Base, period_s, state.transition);
   if (!commanded.is_followed)
     state.approach.obstacle.v_m_per_s = state.approach.obstacle.high_s = 0.0;
-  if (commanded.isAtRest())
-    module.limit.rest(gains.force, F_p_N, state.approach);
-  else
-    state.approach.rested_N_per_m = 0.0;
+  // Nor does the first force after a rest or a loss: nobody knows the way that led to it.
+  const bool has_no_way = commanded.isAtRest() || reading.is_lost;
+  const bool is_first = state.approach.rested_N_per_m != 0.0 && reading.contact.isNew();
+  if (has_no_way || is_first) module.limit.rest(gains.force, F_p_N, state.approach);
+  if (!has_no_way && is_first) state.approach.rested_N_per_m = 0.0;
   if (module.centre) {
     if (state.approach.memory_N_per_m == 0.0 || reading.is_lost)
       state.centre = {};

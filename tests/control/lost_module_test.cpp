@@ -81,6 +81,41 @@ TEST(ModuleLoss, SlowsTheArmUntilTheModuleHasProvenItself) {
   EXPECT_EQ(arm.output.modules_lost, 0u);
 }
 
+/// Nobody knows the way on which the force came that it tells of first.
+TEST(ModuleLoss, TeachesNoStiffnessWhenTheModuleComesBackUnderLoad) {
+  for (std::uint64_t seed = 90; seed < 110; ++seed) {
+    test::Random random(seed);
+    ControllerConfig config = test::fullController(random, 7, Variant::kNullLimit);
+    while (config.tactile_modules.size() < kSkin)
+      config.tactile_modules.push_back(config.tactile_modules.front());
+    config.module_loss = ModuleLossConfig{kSlowShare};
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    double t_s = 0.1;
+    const auto run = [&](int cycles, bool speaks, double force_N) {
+      for (int i = 0; i < cycles; ++i, t_s += kPeriod_s) {
+        RobotInput input{state.q_desired, {}};
+        for (int k = 0; k < kSkin; ++k)
+          input.tactile[k] = test::touchAt(0.2, k == 0 ? force_N : 0.0, 0.0,
+                                           state.modules[k].sequence + (k > 0 || speaks ? 1 : 0));
+        controller.update(input, config.gains, t_s, kPeriod_s, state, output);
+      }
+    };
+    run(100, true, 0.0);
+    run(300, false, 0.0);
+    ASSERT_EQ(output.modules_lost, 1u) << seed;
+    const double assumed_N_per_m = config.gains.force.assumed_stiffness_N_per_m;
+    const ApproachEstimatorState& estimator = state.several.modules[0].approach.estimator;
+    EXPECT_NEAR(estimator.stiffness_N_per_m, assumed_N_per_m, 1e-6 * assumed_N_per_m);
+    run(1, true, 8.0);
+    ASSERT_EQ(output.fault, Fault::kNone) << seed;
+    EXPECT_NEAR(estimator.stiffness_N_per_m, assumed_N_per_m, 1e-6 * assumed_N_per_m) << seed;
+    EXPECT_EQ(estimator.F_ref_N, estimator.F_before_N);
+    EXPECT_GT(estimator.F_ref_N, 0.0);
+  }
+}
+
 /// What stops the arm is the module that was good until then, else the first of those that tell of
 /// a push.
 TEST(ModuleLoss, IsNotBlamedForTheFaultOfAnother) {
