@@ -41,6 +41,7 @@ Eigen::VectorXd writtenMultipliers(const test::RowsCase& c, const RowSpace& spac
   const Eigen::MatrixXd all = c.A * W_inv * c.A.transpose();
   for (int i = 0; i < c.rows.size; ++i) K(i, i) = std::max({K(i, i), 1e-3 * all(i, i), 1e-4});
   Eigen::VectorXd d = -c.A * c.joints(c.motion), delta(c.rows.size);
+  double share = 1.0;
   for (int i = 0; i < c.rows.size; ++i) {
     const SpeedRow& row = c.rows.row[i];
     d[i] -= row.v_max_m_per_s;
@@ -49,10 +50,10 @@ Eigen::VectorXd writtenMultipliers(const test::RowsCase& c, const RowSpace& spac
       if (j == i || K(i, j) >= 0.0) continue;
       opposed += row.presence * c.rows.row[j].presence * K(i, j) * K(i, j) / (K(i, i) * K(j, j));
     }
-    delta[i] = std::min(1.5 / row.damping_N_s_per_m, space.max_yielding * K(i, i)) *
-                   std::min(1.0, opposed) +
-               space.proximal * K(i, i);
+    delta[i] = 1.5 / row.damping_N_s_per_m * std::min(1.0, opposed);
+    if (opposed > 0.0) share = std::min(share, space.max_yielding * K(i, i) / delta[i]);
   }
+  delta = share * delta + space.proximal * K.diagonal();
   Eigen::VectorXd l = Eigen::VectorXd::Zero(c.rows.size);
   const Eigen::MatrixXd yielding = K + Eigen::MatrixXd(delta.asDiagonal());
   for (int i = 0; i < 4; ++i)

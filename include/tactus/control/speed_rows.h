@@ -34,7 +34,7 @@ struct SpeedRows {
 /// What a change of the motion costs: M = (task J#J + null_space N) W^-1.
 struct RowSpace {
   double task, null_space;
-  double max_yielding;  ///< of delta_i, as a share of K_ii
+  double max_yielding;  ///< y: of delta_i, as a share of K_ii
   double proximal;      ///< rho: of delta_i in any case, likewise
 };
 
@@ -44,7 +44,7 @@ struct RowSpace {
 /// be as large as sensitive. A row by itself is kept to rho^4.
 inline constexpr RowSpace kNullSpaceAlone{0.0, 1.0, 0.1, 0.03};
 /// The null space, being cheap, does most, and stopping all is within reach.
-inline constexpr RowSpace kBothSpaces{1.0, 30.0, kNoLimit, 1e-6};
+inline constexpr RowSpace kBothSpaces{1.0, 30.0, 0.01, 1e-6};
 
 // clang-format off: equations
 /// The least change of a motion q_1 that keeps all rows:
@@ -54,9 +54,11 @@ inline constexpr RowSpace kBothSpaces{1.0, 30.0, kNoLimit, 1e-6};
 /// l_i with delta_i in proportion to 1 / D_i, which is an equilibrium of forces; rows without
 /// opponents are exact. From l = 0 four times, or until nothing changes,
 ///   l <- LCP(K + diag(delta), d + delta l),
-///   delta_i = delta_0 / D_i min(1, sum_j o_ij) + rho K_ii
+///   delta_i = s delta_0 / D_i min(1, sum_j o_ij) + rho K_ii
 ///   o_ij = p_i p_j min(0, K_ij)^2 / (K_ii K_jj)
-/// with delta_0 = 1.5 N s m and K_ii at least max(1e-3 |W^-1/2 a_i|^2, 1e-4). Derived in
+/// with delta_0 = 1.5 N s m, s <= 1 the largest for which s delta_0 / D_i min(1, ..) <= y K_ii in
+/// all rows, for four repetitions to find what can be kept beside a row that does not yield, and
+/// K_ii at least max(1e-3 |W^-1/2 a_i|^2, 1e-4). Derived in
 /// docs/gate.md.
 // clang-format on
 struct RowMultipliers {
@@ -83,6 +85,8 @@ class RowProblem {
  private:
   void multiply() noexcept;
   void respond(const RowSpace& space, RowMatrix& K, RowVector& delta) const noexcept;
+  double yieldingShare(const RowSpace& space, const RowVector& own,
+                       const RowVector& opposition) const noexcept;
   template <typename Problem>
   RowMultipliers repeat(const RowMatrix& K, const RowVector& delta, const RowVector& lacking,
                         double negligible) noexcept;
