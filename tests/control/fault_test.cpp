@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 
@@ -16,6 +17,17 @@ TEST(Fault, HasItsRowAndName) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
   }
   EXPECT_STREQ(faultName(Fault::kNone), "none");
+}
+
+/// A phrase of plain text that each page puts into a line of its own; marks come in pairs.
+TEST(Fault, HasARemedy) {
+  for (const FaultRow& row : faultTable()) {
+    const std::string remedy = row.remedy;
+    EXPECT_EQ(remedy.empty(), row.fault == Fault::kNone) << row.name;
+    EXPECT_EQ(std::count(remedy.begin(), remedy.end(), '`') % 2, 0) << row.name;
+    EXPECT_EQ(remedy.find_first_of("|\\\n"), std::string::npos) << row.name;
+    EXPECT_FALSE(remedy.ends_with('.')) << row.name;
+  }
 }
 
 /// As of a log that a newer version has written.

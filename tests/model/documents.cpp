@@ -68,6 +68,19 @@ std::vector<Change> changes() {
   return all;
 }
 
+/// What is typed is bold, with the keyboard's hyphens.
+std::string manualText(const char* text) {
+  std::string manual;
+  bool is_typed = false;
+  for (; *text != '\0'; ++text) {
+    if (*text == '`')
+      manual += (is_typed = !is_typed) ? "\\fB" : "\\fR";
+    else
+      manual += is_typed && *text == '-' ? "\\-" : std::string(1, *text);
+  }
+  return manual;
+}
+
 }  // namespace
 
 std::string modeTable() {
@@ -89,12 +102,20 @@ std::string modeManual() {
   return text;
 }
 
+std::string remedyTable() {
+  std::string text = "| Fault | Before going on |\n|---|---|\n";
+  for (const FaultRow& row : faultTable())
+    if (row.fault != Fault::kNone) text += fmt::format("| `{}` | {} |\n", row.name, row.remedy);
+  return text;
+}
+
 std::string faultManual() {
   std::string text;
   for (const FaultRow& row : faultTable())
     if (row.fault != Fault::kNone)
-      text += fmt::format(".TP\n.B {}\n{}; {}; {}; {}\n", row.name, row.detection, row.within,
-                          reactionName(row.reaction), row.remains);
+      text += fmt::format(".TP\n.B {}\n{}; {}; {}; {}\n.br\nBefore going on: {}\n", row.name,
+                          row.detection, row.within, reactionName(row.reaction), row.remains,
+                          manualText(row.remedy));
   return text;
 }
 

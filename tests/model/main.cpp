@@ -10,16 +10,15 @@
 int main(int argc, char** argv) {
   using namespace tactus::model;
   const std::string what = argc == 2 ? argv[1] : "";
-  const std::map<std::string, std::string (*)()> texts = {{"promela", promelaModel},
-                                                          {"modes", modeTable},
-                                                          {"hazards", hazardTable},
-                                                          {"modes.8", modeManual},
-                                                          {"faults.8", faultManual}};
+  const std::map<std::string, std::string (*)()> texts = {
+      {"promela", promelaModel}, {"modes", modeTable},    {"hazards", hazardTable},
+      {"remedies", remedyTable}, {"modes.8", modeManual}, {"faults.8", faultManual}};
   std::ios::sync_with_stdio(false);
   if (what == "agree") return agrees(std::cin, std::cout) ? 0 : 1;
   const auto text = texts.find(what);
   if (text == texts.end()) {
-    std::cerr << "usage: mode_model promela | modes | hazards | modes.8 | faults.8 | agree\n";
+    std::cerr
+        << "usage: mode_model promela | modes | hazards | remedies | modes.8 | faults.8 | agree\n";
     return 2;
   }
   std::cout << text->second();

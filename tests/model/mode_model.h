@@ -15,6 +15,7 @@ namespace tactus::model {
 /// The tables as docs/safety.md and tactusd(8) have them.
 std::string modeTable();
 std::string hazardTable();
+std::string remedyTable();
 std::string modeManual();
 std::string faultManual();
 

@@ -20,6 +20,7 @@ PROGRAM = str(pathlib.Path(sys.argv.pop(1)).resolve())
 # What is generated, in which file, and between what.
 TABLE = r"(?<=\n)\|[^\n]*\n\|---(?:[^\n]*\n)(?:\|[^\n]*\n)+"
 PARTS = [("modes", "docs/safety.md", r"\n## Modes\n", TABLE),
+         ("remedies", "docs/safety.md", r"\n## Faults\n", TABLE),
          ("hazards", "docs/safety.md", r"\n## Hazards\n", TABLE),
          ("modes.8", "docs/man/tactusd.8", r"\n\.SH MODES\n", r"\.TP\n(?:.|\n)*?(?=\.SH )"),
          ("faults.8", "docs/man/tactusd.8", r"\nWhat is seen;", r"\.TP\n(?:.|\n)*?(?=\.SH )")]

@@ -50,7 +50,8 @@ struct FaultDetail {
   int module = -1;                                          ///< likewise of a tactile module
 };
 
-/// One row of the fault table, which docs/safety.md and the manual print.
+/// One row of the fault table, which docs/safety.md and the manual print; `tactus status` shows the
+/// remedy.
 struct FaultRow {
   Fault fault;
   const char* name;       ///< as in the log and in summary.json
@@ -58,6 +59,7 @@ struct FaultRow {
   const char* within;     ///< time from there to the first command of the reaction
   Reaction reaction;
   const char* remains;  ///< force of a contact in which it came, once the arm rests
+  const char* remedy;   ///< what to do before the arm can go on; `what is typed` is marked so
 };
 
 const std::array<FaultRow, 22>& faultTable() noexcept;  ///< in the order of the numbers
