@@ -89,9 +89,13 @@ std::string statusText(const Json& status) {
   std::string shown =
       fmt::format("{} ({}), process {}\n{}\n", textAt(status, "scene"), textAt(status, "variant"),
                   countAt(status, "pid"), textAt(status, "description"));
-  // Which one of an older version does not say.
-  const std::string waits_for = status.contains("waits_for") ? textAt(status, "waits_for") : "";
-  if (!waits_for.empty()) shown += "waits    for " + waits_for + "\n";
+  // What one of an older version does not say.
+  const auto sayIfThere = [&](const char* label, const char* name) {
+    const std::string text = status.contains(name) ? textAt(status, name) : "";
+    if (!text.empty()) shown += label + text + "\n";
+  };
+  sayIfThere("waits    for ", "waits_for");
+  sayIfThere("do       ", "remedy");
   if (status.contains("modules_lost")) shown += lostText(status.at("modules_lost"));
   if (status.contains("motion")) shown += motionText(status.at("motion"));
   shown += fmt::format("cycles   {}, {} missed, {} not logged\n", countAt(status, "cycles"),

@@ -29,6 +29,12 @@ Json motionJson(const RunFigures& figures) {
           {"tcp_error_max_m", figures.tcp_error_max_m}};
 }
 
+/// Of what holds the arm now: the cause of the first fault may have gone, and another may be there.
+const char* remedyOf(const RunStatus& status) {
+  const bool is_waited_for = status.way_on.waits_for == WaitsFor::kFaultGone;
+  return faultRow(is_waited_for ? status.way_on.fault : status.fault).remedy;
+}
+
 }  // namespace
 
 std::string runtimePath(const char* name) {
@@ -47,6 +53,7 @@ Json statusJson(const RunStatus& status, double monotonic_s) {
                {"fault", faultName(status.fault)},
                {"description", status.description},
                {"waits_for", wayOnText(status.way_on, status.fault)},
+               {"remedy", remedyOf(status)},
                {"cycles", status.loop.cycles},
                {"missed_cycles", status.loop.missed_cycles},
                {"dropped_records", status.loop.dropped_records},

@@ -65,8 +65,9 @@ Json gainsNow(const LogNews& news, const Json& ordered) {
 /// What a page shows of the status.
 Json shortStatus(const Json& status) {
   Json shown = Json::object();
-  for (const char* name : {"scene", "variant", "mode", "fault", "description", "waits_for",
-                           "missed_cycles", "dropped_records", "motion", "modules_lost", "log"})
+  for (const char* name :
+       {"scene", "variant", "mode", "fault", "description", "waits_for", "remedy", "missed_cycles",
+        "dropped_records", "motion", "modules_lost", "log"})
     if (status.contains(name)) shown[name] = status.at(name);
   return shown;
 }

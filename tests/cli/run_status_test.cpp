@@ -100,6 +100,31 @@ TEST_F(RunStatusFile, NamesAFaultAndEndsSo) {
   EXPECT_EQ(output_.find("force"), std::string::npos) << "it has not moved:\n" << output_;
 }
 
+TEST_F(RunStatusFile, SaysOfEveryFaultWhatToDo) {
+  const std::string description = "fault";
+  const LoopFigures loop;
+  for (const FaultRow& row : faultTable()) {
+    std::ofstream(path()) << jsonText(statusJson(
+        {scene_, Mode::kFault, row.fault, description, {}, loop, nullptr}, monotonicTime_s()));
+    EXPECT_EQ(run(), row.fault == Fault::kNone ? kExitDone : kExitFault);
+    const std::string line = "\ndo       " + std::string(row.remedy) + "\n";
+    EXPECT_EQ(output_.find(line) != std::string::npos, row.fault != Fault::kNone) << output_;
+    EXPECT_EQ(output_.find("\ndo ") != std::string::npos, row.fault != Fault::kNone) << output_;
+  }
+}
+
+/// Of an e-stop that is released the bus may be left, which has no power.
+TEST_F(RunStatusFile, SaysWhatToDoAboutTheFaultThatIsWaitedFor) {
+  Telemetry telemetry(scene_, "", *link_);
+  reportMode(Mode::kFault, Fault::kEmergencyStop);
+  link_->pulse.way_on = WayOn{WaitsFor::kFaultGone, Fault::kBusOff};
+  cycle(false, 0.0);
+  telemetry.drain();
+  EXPECT_EQ(run(), kExitFault);
+  const std::string lines = "waits    for bus_off to be gone\ndo       ";
+  EXPECT_NE(output_.find(lines + faultRow(Fault::kBusOff).remedy), std::string::npos) << output_;
+}
+
 TEST_F(RunStatusFile, AStatusThatIsOldIsNone) {
   const std::string description = "running";
   std::ofstream(path()) << jsonText(

@@ -83,7 +83,8 @@ function showMode() {
   const isMore = status.description && status.description !== mode;
   const lost = (status.modules_lost || []).map((link) => `${link} lost: goes on slowly without`);
   const waits = status.waits_for ? `waits for ${status.waits_for}` : "";
-  show("description", [isMore ? status.description : "", waits, ...lost].filter(Boolean).join("; "));
+  const remedy = status.remedy ? `do: ${status.remedy}` : "";
+  show("description", [isMore ? status.description : "", waits, remedy, ...lost].filter(Boolean).join("; "));
   show("scene", status.scene ? `${status.scene} (${status.variant})` : "");
   document.title = `${mode} - Tactus`;
 }
