@@ -18,8 +18,9 @@ Wake PeriodicSchedule::wake(std::int64_t ready_ns, std::int64_t now_ns) noexcept
   const bool is_late = skipped > 0 || ready_ns > due_ns_;
   late_in_a_row_ = is_late ? late_in_a_row_ + skipped + 1 : 0;
   const std::int64_t t_ns = due_ns_ + skipped * period_ns_;
+  const std::int64_t latency_ns = now_ns - due_ns_;  // a period and more if it missed a cycle
   due_ns_ = t_ns + period_ns_;
-  return {t_ns, now_ns - t_ns, skipped, late_in_a_row_};
+  return {t_ns, latency_ns, skipped, late_in_a_row_};
 }
 
 }  // namespace tactus

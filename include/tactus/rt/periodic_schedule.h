@@ -7,7 +7,7 @@ namespace tactus {
 /// One wake-up of the loop.
 struct Wake {
   std::int64_t t_ns = 0;           ///< when this cycle was due, CLOCK_MONOTONIC
-  std::int64_t latency_ns = 0;     ///< from then to now; at least 0, less than a period
+  std::int64_t latency_ns = 0;     ///< from when the first of those left out, or this, was due
   std::int64_t skipped = 0;        ///< cycles left out between the last one and this one
   std::int64_t late_in_a_row = 0;  ///< cycles up to this one that were skipped or late; 0: on time
 };
