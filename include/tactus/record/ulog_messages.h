@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <istream>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "tactus/record/ulog_format.h"
 
 namespace tactus {
 
@@ -24,8 +27,8 @@ class UlogMessages {
   UlogMessages(std::istream& in, std::string name);
 
   /// False at the end of the file, also where it ends within a message: then type and size of that
-  /// one are there if its header is, and else its type is 0. Throws InputError if the
-  /// file cannot be read.
+  /// one are there if its header is, and else its type is 0, as where nothing but zeros is left,
+  /// which a loss of power leaves behind. Throws InputError if the file cannot be read.
   bool next(UlogMessage& message);
 
   /// Throws InputError for a message of a type that the format does not know: there the file is
@@ -43,11 +46,18 @@ class UlogMessages {
                          std::string_view complaint) const;
 
  private:
+  void readHeader();
+  bool endsInLostZeros(const UlogMessage& message);
+  void requireZeros(std::uint64_t offset);
+  [[noreturn]] void failToRead() const;
   std::size_t read(char* bytes, std::size_t size);
 
   std::istream& in_;
   std::string name_;
   std::vector<char> buffer_;
+  std::array<char, kMessageHeaderSize> header_{};
+  std::size_t header_size_ = 0;  ///< how much of it the file had
+  bool has_header_ = false;      ///< that of the next message has been read already
   std::uint64_t offset_ = 0;
   bool cut_off_ = false;
 };
