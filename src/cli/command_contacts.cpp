@@ -49,6 +49,12 @@ std::string restText(const ContactFigures& contact) {
   return std::isnan(contact.rest_force_N) ? "-" : fmt::format("{:.2f}", contact.rest_force_N);
 }
 
+/// c, of an arm with several modules if this one ever felt most.
+std::string lawStiffnessText(const ContactFigures& contact) {
+  const double c_N_per_m = contact.stiffness_N_per_m;
+  return std::isnan(c_N_per_m) ? "-" : fmt::format("{:.0f}", c_N_per_m);
+}
+
 /// c_e with its interval.
 std::string stiffnessText(const TouchFit& touch) {
   if (!touch.is_known) return "-";
@@ -66,11 +72,11 @@ std::string headerText() {
 
 std::string contactText(const Scene& scene, const ContactFigures& contact) {
   return fmt::format(
-      "{:8.3f} {:8.3f} {:<10} {:6.0f} {:7.2f} {:7.3f} {:7.3f} {:>7} {:<15} {:9.0f} {:<20} "
+      "{:8.3f} {:8.3f} {:<10} {:6.0f} {:7.2f} {:7.3f} {:7.3f} {:>7} {:<15} {:>9} {:<20} "
       "{:6.1f} {:5.0f} {:>5} {:6.3g} {:5.3g}\n",
       contact.start_s, contact.end_s, escaped(linkOfModule(scene.module_links, contact.module)),
       1e3 * contact.position_m, contact.peak_force_N, contact.time_above_s, contact.settling_s,
-      restText(contact), swingText(contact), contact.stiffness_N_per_m,
+      restText(contact), swingText(contact), lawStiffnessText(contact),
       stiffnessText(contact.touch), 1e3 * contact.tcp_error_max_m, 100.0 * contact.null_share,
       shareText(contact.task_share), contact.gains.force.time_constant_s,
       contact.gains.force.damping);

@@ -32,6 +32,12 @@ void describeRest(const std::vector<double>& rest_N, double rest_s, ContactFigur
   if (passages >= kLeastPassages) figures.swing_hz = 0.5 * passages / rest_s;
 }
 
+/// Whether c of the record, which is that of the contact that is felt most, is this module's.
+bool feelsMost(const CycleRecord& record, int module, std::size_t modules) {
+  const double* const force_N = record.force_sensor_N;
+  return std::max_element(force_N, force_N + modules) == force_N + module;
+}
+
 }  // namespace
 
 ContactFollower::ContactFollower(const ControllerConfig& config, std::size_t expected_cycles,
@@ -45,7 +51,7 @@ void ContactFollower::Sums::add(const Cycle& cycle) noexcept {
   addPeak(cycle);
   above_s += cycle.above_s;
   tool_error_m = std::max(tool_error_m, cycle.tool_error_m);
-  stiffness_N_per_m = cycle.stiffness_N_per_m;
+  if (!std::isnan(cycle.stiffness_N_per_m)) stiffness_N_per_m = cycle.stiffness_N_per_m;
   way_m += cycle.way_m;
   task_way_m += cycle.task_way_m;
   answers += cycle.answers ? 1 : 0;
@@ -116,6 +122,7 @@ ContactFollower::Cycle ContactFollower::cycleOf(const CycleRecord& record) const
   const ForceGains& gains = record.gains.force;
   const double force_N = record.force_sensor_N[module_];
   const bool is_above = force_N > gains.activation_force_N + gains.contact_threshold_N;
+  const bool is_led = feelsMost(record, module_, config_.tactile_modules.size());
   const bool uses_task = record.u_t != 0.0 || record.u_j != 0.0;
   const double task_speed = std::abs(record.k_t * record.u_t);
   const double speed =
@@ -125,7 +132,7 @@ ContactFollower::Cycle ContactFollower::cycleOf(const CycleRecord& record) const
           .force_N = force_N,
           .position_m = record.contact_position_m[module_],
           .tool_error_m = Eigen::Map<const Vector3>(record.tool_error_m).norm(),
-          .stiffness_N_per_m = record.stiffness_N_per_m,
+          .stiffness_N_per_m = is_led ? record.stiffness_N_per_m : std::nan(""),
           .above_s = is_above ? period_s_ : 0.0,
           .answers = record.u_n != 0.0 || uses_task,
           .answers_by_null_space_alone = record.u_n != 0.0 && !uses_task,

@@ -21,7 +21,7 @@ Json contactJson(const ContactFigures& contact, const std::vector<std::string>& 
                {"rest_force_N", finiteOrNull(contact.rest_force_N)},
                {"swing_N", finiteOrNull(contact.swing_N)},
                {"swing_hz", contact.swing_hz},
-               {"stiffness_N_per_m", contact.stiffness_N_per_m},
+               {"stiffness_N_per_m", finiteOrNull(contact.stiffness_N_per_m)},
                {"contact_stiffness_N_per_m", nullptr},
                {"tcp_error_max_m", contact.tcp_error_max_m},
                {"null_space_share", contact.null_share},

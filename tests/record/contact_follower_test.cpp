@@ -76,6 +76,7 @@ TEST(ContactFollower, OfOneThatSwings) {
 TEST(ContactFollower, OfLawAndTool) {
   const ContactFigures figures = followed([](double) { return kFollowed_N; },
                                           [](CycleRecord& record) {
+                                            record.force_sensor_N[0] = 1.0;
                                             record.k_n = 0.5;
                                             record.k_t = 0.25;
                                             record.u_n = record.t_s < 4.0 ? -0.1 : 0.0;
@@ -90,6 +91,21 @@ TEST(ContactFollower, OfLawAndTool) {
   EXPECT_EQ(figures.tcp_error_max_m, 0.02);
   EXPECT_NEAR(figures.stiffness_N_per_m, 5e3, 2.0);  // in the last cycle, not after it
   EXPECT_EQ(figures.gains.force.damping, 0.5);
+}
+
+/// The log has c of the contact that is felt most.
+TEST(ContactFollower, TakesNoStiffnessOfAnotherModule) {
+  const auto stiffness_from = [](double from_s) {
+    return followed([](double) { return kFollowed_N; },
+                    [from_s](CycleRecord& record) {
+                      record.force_sensor_N[0] = record.t_s < from_s ? 1.0 : 100.0;
+                      record.stiffness_N_per_m = 1e3 * record.t_s;
+                    });
+  };
+  EXPECT_NEAR(stiffness_from(3.0).stiffness_N_per_m, 3e3, 2.0);
+  const ContactFigures figures = stiffness_from(0.0);
+  EXPECT_TRUE(std::isnan(figures.stiffness_N_per_m));
+  EXPECT_TRUE(contactJson(figures, {}).at("stiffness_N_per_m").is_null());
 }
 
 /// What lasts is told as if it ended now, and the same as once it is over.

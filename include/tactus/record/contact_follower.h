@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -29,7 +30,8 @@ class ContactFollower {
  private:
   /// Of a cycle.
   struct Cycle {
-    double t_s, period_s, force_N, position_m, tool_error_m, stiffness_N_per_m;
+    double t_s, period_s, force_N, position_m, tool_error_m;
+    double stiffness_N_per_m;  ///< NaN where another module feels more
     double above_s;
     bool answers, answers_by_null_space_alone;
     double way_m, task_way_m;  ///< that the law gives the contact point
@@ -38,7 +40,8 @@ class ContactFollower {
   /// What all cycles of a contact come to.
   struct Sums {
     double peak_N = -1.0, position_m = 0.0;
-    double above_s = 0.0, tool_error_m = 0.0, stiffness_N_per_m = 0.0;
+    double above_s = 0.0, tool_error_m = 0.0;
+    double stiffness_N_per_m = std::numeric_limits<double>::quiet_NaN();
     double way_m = 0.0, task_way_m = 0.0;
     long long answers = 0, null_answers = 0;
 
