@@ -372,6 +372,20 @@ TEST(StabilityCheck, LosesMarginWithSofterGears) {
   }
 }
 
+/// It is unstable for c_e / c of 3.12 to 3.65, and then again from 10.6 on.
+TEST(StabilityCheck, StepsOverNoIslandWhereGearsMakeTheLoopUnstable) {
+  const StabilityReport report =
+      check(test::shippedScene("commands", {{"controller.time_constant_s", "0.11"},
+                                            {"stiffness.estimate", "~"},
+                                            {"simulation.obstacles", "~"},
+                                            {"stiffness.stiffest_N_per_m", "22000"},
+                                            {"stiffness.assumed_N_per_m", "6573.8"}}));
+  const auto limit = std::ranges::find(report.loops, "approach limit", &LoopReport::name);
+  ASSERT_NE(limit, report.loops.end());
+  EXPECT_GT(limit->ratio_with_gears.value(), 3.1);
+  EXPECT_LT(limit->ratio_with_gears.value(), 3.2);
+}
+
 TEST(StabilityCheck, WarnsOfGearsTooSoftForTheStiffestContact) {
   Scene scene = test::shippedScene("scenario1_null_space");
   scene.stiffest_N_per_m = 7000.0;
