@@ -43,12 +43,21 @@ struct Selection {
                          : "expected perhaps " + inQuotes(nearest));
 }
 
+/// The rows of a file that a path means; as --set has them, those of a robot may begin with
+/// "robot.".
+std::vector<KeyRow> rowsOf(const FileFormat& format, const std::string& path) {
+  constexpr std::string_view kRobot = "robot.";
+  if (!path.starts_with(kRobot)) return findKeyRows(format.keys, path);
+  if (format.name != "robot") return {};
+  return findKeyRows(format.keys, path.substr(kRobot.size()));
+}
+
 /// The rows of a file that any of the paths means, each once, in the order of the paths.
 std::vector<KeyRow> selectRows(const FileFormat& format, const std::vector<std::string>& paths) {
   if (paths.empty()) return keyRows(format.keys);
   std::vector<KeyRow> rows;
   for (const std::string& path : paths) {
-    for (KeyRow& row : findKeyRows(format.keys, path)) {
+    for (KeyRow& row : rowsOf(format, path)) {
       if (std::ranges::count(rows, row.spec, &KeyRow::spec) == 0) rows.push_back(std::move(row));
     }
   }
@@ -57,9 +66,7 @@ std::vector<KeyRow> selectRows(const FileFormat& format, const std::vector<std::
 
 std::vector<Selection> select(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
-    const auto knows = [&](const FileFormat& format) {
-      return !findKeyRows(format.keys, path).empty();
-    };
+    const auto knows = [&](const FileFormat& format) { return !rowsOf(format, path).empty(); };
     if (std::ranges::none_of(fileFormats(), knows)) failUnknown(path);
   }
   std::vector<Selection> selections;
@@ -170,7 +177,7 @@ void addKeysCommand(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<KeysOptions>();
   command->add_option(
       "KEY", options->paths,
-      "Keys, sections or symbols of the paper: damping, simulation.obstacles, F_act");
+      "Keys, sections or symbols of the paper: damping, simulation.obstacles, robot.limits, F_act");
   command->add_flag("--json", options->json, "Print JSON");
   const CLI::IsMember formats({"scene", "robot"});
   command->add_option("--man", options->manual, "Print the manual page of a file's format")
