@@ -82,13 +82,29 @@ bool makesSection(const Scene& running, const std::string& path) {
   return false;
 }
 
+/// The setting of the robot that was laid over it; empty where only its files differ.
+std::string robotSetting(const Scene& running, const Scene& changed) {
+  for (const Override& setting : changed.overrides) {
+    const auto is_same = [&setting](const Override& old) {
+      return old.key == setting.key && old.value == setting.value;
+    };
+    if (setting.key.starts_with("robot.") && std::ranges::none_of(running.overrides, is_same))
+      return setting.key;
+  }
+  return "";
+}
+
 [[noreturn]] void refuse(const Scene& running, const Scene& changed, const std::string& key) {
+  const char* const expectation = "expected keys that `tactus keys` calls live or free";
+  const std::string of_robot = key == "robot" ? robotSetting(running, changed) : "";
+  if (!of_robot.empty())
+    failAt(beginOf("--set " + of_robot), of_robot, "needs a restart, nothing is changed",
+           expectation);
   const bool was = findGiven(*running.tree, key), is = findGiven(*changed.tree, key);
   const char* const problem = was == is ? "needs a restart, nothing is changed"
                               : is      ? "is new and needs a restart, nothing is changed"
                                         : "is gone, which needs a restart, nothing is changed";
-  failAt(locate(*changed.tree, key), key, problem,
-         "expected keys that `tactus keys` calls live or free");
+  failAt(locate(*changed.tree, key), key, problem, expectation);
 }
 
 bool isRaised(const Gains& from, const Gains& to) {

@@ -102,6 +102,14 @@ TEST(GainPlan, RefusesWhatNeedsARestart) {
   }
 }
 
+/// Not the scene's line that names robot.yaml, which nobody has touched.
+TEST(GainPlan, NamesTheRobotsKeyThatNeedsARestart) {
+  const Scene running = test::shippedScene("scenario2_estimated", {{"robot.home[1]", "0.02"}});
+  EXPECT_EQ(refusal(running, {{"controller.damping", "0.6"}, {"robot.home[0]", "0.01"}}),
+            "--set robot.home[0]:1:1: robot.home[0]: needs a restart, nothing is changed, expected "
+            "keys that `tactus keys` calls live or free");
+}
+
 /// With the key a stage would begin to exist.
 TEST(GainPlan, RefusesSectionsThatDoNotExist) {
   const Scene running = test::shippedScene("scenario2_assumed");
