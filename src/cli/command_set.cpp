@@ -14,8 +14,8 @@
 #include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/gain_save.h"
 #include "tactus/daemon/number_within.h"
-#include "tactus/scene/command_scene.h"
 #include "tactus/scene/located_error.h"
+#include "tactus/scene/scene_loader.h"
 
 /// The gains of the running daemon: set, reload, undo, diff, save.
 namespace tactus {
@@ -76,9 +76,9 @@ Json valueOf(const std::string& text) {
 
 Json setRequest(const ChangeOptions& options) {
   Json request = {{"do", "set"}, {"values", Json::object()}};
-  for (const Override& setting : parseOverrides(options.settings)) {
+  for (const std::string& text : options.settings) {
+    const Override setting = parseOverride(text);
     const auto [place, is_new] = request["values"].emplace(setting.key, valueOf(setting.value));
-    // --set lays one over the other; here an arm moves by it, and one of the two is a slip.
     if (!is_new) failAt(beginOf("set"), setting.key, "is given twice", "expected each key once");
   }
   if (options.for_s) request["for_s"] = *options.for_s;

@@ -1,12 +1,21 @@
 #include "tactus/scene/command_scene.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "tactus/scene/located_error.h"
 
 namespace tactus {
 
 std::vector<Override> parseOverrides(const std::vector<std::string>& settings) {
   std::vector<Override> overrides;
-  for (const std::string& setting : settings) overrides.push_back(parseOverride(setting));
+  for (const std::string& setting : settings) {
+    Override parsed = parseOverride(setting);
+    if (std::ranges::count(overrides, parsed.key, &Override::key) > 0)
+      failAt(beginOf("--set " + parsed.key), parsed.key, "is given twice",
+             "expected each key once");
+    overrides.push_back(std::move(parsed));
+  }
   return overrides;
 }
 

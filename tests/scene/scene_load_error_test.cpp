@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "support/scene_files.h"
+#include "tactus/scene/command_scene.h"
 
 namespace tactus {
 namespace {
@@ -519,6 +520,19 @@ TEST(Setting, IsSplitAtTheFirstEqualsSign) {
   EXPECT_EQ(setting.value, "c=d");
   EXPECT_THROW(parseOverride("a.b"), InputError);
   EXPECT_THROW(parseOverride("=1"), InputError);
+}
+
+TEST(Setting, IsGivenOnce) {
+  const std::vector<std::string> settings = {"a.b=1", "a=2", "a.b.c=3", "a.bc=4"};
+  EXPECT_EQ(parseOverrides(settings).size(), settings.size());
+  for (const char* const again : {"a.b=2", "a.b=1"}) {
+    try {
+      parseOverrides({"a.b=1", "a.c=1", again});
+      ADD_FAILURE() << again;
+    } catch (const InputError& error) {
+      EXPECT_STREQ(error.what(), "--set a.b:1:1: a.b: is given twice, expected each key once");
+    }
+  }
 }
 
 }  // namespace
