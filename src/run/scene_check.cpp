@@ -9,6 +9,7 @@
 #include "tactus/record/log_size.h"
 #include "tactus/run/clearance_check.h"
 #include "tactus/run/contact_report.h"
+#include "tactus/run/hardware_check.h"
 #include "tactus/scene/bus_load_text.h"
 #include "tactus/scene/key_words.h"
 #include "tactus/scene/located_error.h"
@@ -132,6 +133,7 @@ Findings examine(const Scene& scene) {
   const auto add = [&](const std::vector<std::string>& more) {
     findings.warnings.insert(findings.warnings.end(), more.begin(), more.end());
   };
+  add(checkMachine(scene));
   add(checkPath(scene));
   const StabilityReport stability = findings.stability.value_or(StabilityReport{});
   findings.contact = checkContacts(scene, stability.stiffest_N_per_m);

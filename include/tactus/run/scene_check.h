@@ -24,7 +24,7 @@ struct Findings {
   std::vector<CoverReport> covers;
   std::optional<StabilityReport> stability;
   ExpectedContact contact;
-  std::vector<std::string> warnings;  ///< of arm, path, stability, contact
+  std::vector<std::string> warnings;  ///< of arm, machine, path, stability, contact
 };
 
 /// Throws InputError of a scene whose force control is unstable, or whose log has no room.

@@ -1,0 +1,76 @@
+#include "tactus/run/hardware_check.h"
+
+#include <filesystem>
+
+#include "support/hardware_files.h"
+#include "support/shipped_scene.h"
+#include "support/virtual_robot_cell.h"
+#include "tactus/run/scene_check.h"
+
+namespace tactus {
+namespace {
+
+using Said = std::vector<std::string>;
+
+int countOf(const Said& warnings, const std::string& part) {
+  return static_cast<int>(std::ranges::count_if(warnings, [&](const std::string& warning) {
+    return warning.find(part) != std::string::npos;
+  }));
+}
+
+std::vector<std::string> shippedScenes() {
+  std::vector<std::string> paths;
+  const std::filesystem::path folder = TACTUS_SOURCE_DIR "/config/scenes";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".yaml") paths.push_back(entry.path().string());
+  return paths;
+}
+
+TEST(HardwareCheck, HasNothingAgainstTheMachinesThatComeAlong) {
+  for (const std::string& path : shippedScenes())
+    EXPECT_EQ(checkMachine(loadScene(path, {})), Said{}) << path;
+}
+
+/// What the check has nothing against starts: boot, tare, motion.
+TEST(HardwareCheck, ScenesThatComeAlongStartOnTheBuses) {
+  int scenes = 0;
+  for (const std::string& path : shippedScenes()) {
+    const Scene scene = loadScene(path, {});
+    if (!scene.hardware) continue;
+    test::VirtualRobotCell cell(scene);
+    EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000))
+        << path << ": " << faultName(cell.cycle.report().fault);
+    ++scenes;
+  }
+  EXPECT_GT(scenes, 20);
+}
+
+/// The worst case, by the robot's own gravity.
+TEST(HardwareCheck, WarnsOfATareThatTheCoverAloneExceeds) {
+  const auto warningsWith = [](const std::string& mass_kg, const std::string& max_offset_N) {
+    const Said warnings = checkMachine(
+        test::hardwareFiles().load({{"robot.gravity_m_per_s2", "[0, 3, -4]"},
+                                    {"robot.tactile_module.cover.mass_kg", mass_kg},
+                                    {"robot.tactile_module.tare.max_offset_N", max_offset_N}}));
+    return countOf(warnings, "the cover of cover weighs 2 N, and its tare.max_offset_N is " +
+                                 max_offset_N + " N");
+  };
+  EXPECT_EQ(warningsWith("0.4", "2"), 1);
+  EXPECT_EQ(warningsWith("0.4", "1.5"), 1);
+  EXPECT_EQ(warningsWith("0.4", "2.01"), 0);
+  EXPECT_EQ(warningsWith("0.3", "1.6"), 0);
+  EXPECT_EQ(countOf(checkMachine(test::hardwareFiles().load()), "tare_refused"), 0) << "no cover";
+}
+
+TEST(HardwareCheck, IsAPartOfWhatCheckSays) {
+  const Scene scene = test::shippedScene("real/real_scenario1",
+                                         {{"robot.tactile_module.tare.max_offset_N", "2.9"}});
+  ASSERT_EQ(countOf(checkMachine(scene), "tare_refused"), 1);
+  EXPECT_EQ(countOf(examine(scene).warnings, "tare_refused"), 1);
+  Scene simulated = scene;
+  simulated.hardware.reset();
+  EXPECT_EQ(checkMachine(simulated), Said{});
+}
+
+}  // namespace
+}  // namespace tactus
