@@ -39,7 +39,7 @@ std::string peakText(const Scene& scene, const PeakReport& peak) {
   text += fmt::format(" ({:.3g} N by a delay of {:.3g} ms", peak.delay_peak_N, 1e3 * peak.delay_s);
   if (peak.blow_peak_N)
     text += fmt::format(", {:.3g} N by a mass of {:.3g} kg", *peak.blow_peak_N, *peak.mass_kg);
-  return text + fmt::format("); sensor up to {:g} N; up to {:g} N: {:.2g} m/s", peak.max_force_N,
+  return text + fmt::format("); sensor up to {:.4g} N; up to {:.4g} N: {:.2g} m/s", peak.sensor_N,
                             peak.target_N, peak.target_speed_m_per_s);
 }
 
@@ -62,13 +62,15 @@ Json touchJson(const Scene& scene, const TouchReport& report) {
 }
 
 Json peakJson(const Scene& scene, const PeakReport& peak) {
+  const TactileModuleConfig& module = scene.controller.tactile_modules[peak.fastest.module];
   Json json = {{"tactile_module", scene.module_links[peak.fastest.module]},
                {"stiffness_N_per_m", peak.stiffness_N_per_m},
                {"speed_m_per_s", peak.fastest.speed_m_per_s},
                {"delay_s", peak.delay_s},
                {"delay_peak_N", peak.delay_peak_N},
                {"peak_force_N", peak.peak_N()},
-               {"max_force_N", peak.max_force_N},
+               {"max_force_N", module.max_force_N},
+               {"sensor_N", peak.sensor_N},
                {"target_force_N", peak.target_N},
                {"target_speed_m_per_s", peak.target_speed_m_per_s}};
   if (!peak.blow_peak_N) return json;

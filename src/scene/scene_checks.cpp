@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/analysis/channel_range.h"
 #include "tactus/math/filter.h"
 #include "tactus/scene/gain_keys.h"
 #include "tactus/scene/key_words.h"
@@ -31,19 +32,44 @@ void checkPosture(const CheckedScene& c) {
          "a section beside a posture, which would press joints against their limits");
 }
 
-/// At rest the sensor shows F_th, or F_act + F_th: what it cannot show is a fault.
-void checkSensorRange(const CheckedScene& c) {
+/// What the sensor shows at rest: F_th, or F_act + F_th.
+struct ShownAtRest {
+  double force_N;
+  std::string keys;
+};
+
+ShownAtRest shownAtRest(const CheckedScene& c) {
   const ForceGains& gains = c.scene.gains.force;
-  const bool has_second = hasActivationForce(c.scene.controller->variant);
-  const double rest_N = gains.contact_threshold_N + (has_second ? gains.activation_force_N : 0.0);
+  if (!hasActivationForce(c.scene.controller->variant))
+    return {gains.contact_threshold_N, "contact_threshold_N"};
+  return {gains.contact_threshold_N + gains.activation_force_N,
+          "activation_force_N + contact_threshold_N"};
+}
+
+/// What it cannot show is a fault.
+void checkSensorRange(const CheckedScene& c) {
+  const ShownAtRest rest = shownAtRest(c);
   for (std::size_t i = 0; i < c.robot.config.tactile_modules.size(); ++i) {
-    const double max_force_N = c.robot.config.tactile_modules[i].config.max_force_N;
-    if (max_force_N > rest_N) continue;
-    const std::string key = moduleKey(c.robot.root, i) + ".max_force_N";
-    failAt(locate(c.robot.root, key), key,
-           fmt::format("{:g} N is no more than where the arm rests", max_force_N),
-           fmt::format("expected more than {:g} N, the scene's {}contact_threshold_N", rest_N,
-                       has_second ? "activation_force_N + " : ""));
+    const TactileModuleSection& module = c.robot.config.tactile_modules[i];
+    const auto fail = [&](const std::string& name, const std::string& problem,
+                          const std::string& expectation) {
+      const std::string key = moduleKey(c.robot.root, i) + "." + name;
+      failAt(locate(c.robot.root, key), key, problem, "expected " + expectation);
+    };
+    if (module.config.max_force_N <= rest.force_N) {
+      fail("max_force_N",
+           fmt::format("{:g} N is no more than where the arm rests", module.config.max_force_N),
+           fmt::format("more than {:g} N, the scene's {}", rest.force_N, rest.keys));
+    }
+    const double rail_N = railForce_N(module.channels, module.config.length_m);
+    if (rail_N <= rest.force_N) {
+      const double counts_per_N = module.channels.counts_per_N;
+      fail("counts_per_N",
+           fmt::format("with {:g} and this calibration a channel is at its end at {:.3g} N",
+                       counts_per_N, rail_N),
+           fmt::format("less than {:.3g}, so that more than {:g} N are shown, the scene's {}",
+                       counts_per_N * rail_N / rest.force_N, rest.force_N, rest.keys));
+    }
   }
 }
 

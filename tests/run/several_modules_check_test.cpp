@@ -51,7 +51,7 @@ TEST(SeveralModulesCheck, HasThePeakOfTheModuleThatBearsLeast) {
   const ExpectedContact expected = checkContacts(scene, 7000.0);
   ASSERT_TRUE(expected.peak);
   EXPECT_EQ(expected.peak->fastest.module, 0);
-  EXPECT_EQ(expected.peak->max_force_N, 6.0);
+  EXPECT_EQ(expected.peak->sensor_N, 6.0);
   EXPECT_TRUE(std::ranges::any_of(expected.warnings, [](const std::string& warning) {
     return warning.find("the stiffest contact of link3 may come to") == 0;
   }));

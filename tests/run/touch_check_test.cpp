@@ -265,6 +265,19 @@ TEST(TouchCheck, WarnsOfAPeakThatTheSensorCannotShow) {
       "the sensor's max_force_N is 3"));
 }
 
+/// 148 N with as many counts as it has, by hand in channel_range_test.cpp.
+TEST(TouchCheck, TakesTheFirstChannelsEndForThatOfTheSensor) {
+  const auto peakWith = [](const std::string& counts_per_N) {
+    return expectedOf("scenario1_null_space",
+                      {{"robot.tactile_module.counts_per_N", counts_per_N}});
+  };
+  EXPECT_EQ(peakWith("1e5").peak->sensor_N, 100.0) << "its max_force_N";
+  const ExpectedContact finer = peakWith("5e6");
+  EXPECT_NEAR(finer.peak->sensor_N, 2.961, 0.001);
+  EXPECT_EQ(finer.peak->target_N, finer.peak->sensor_N) << "a law without F_act";
+  EXPECT_TRUE(hasWarning(finer.warnings, "N, a channel of the sensor is at its end at 2.96 N: "));
+}
+
 /// It comes in over the end of the cover, 19 mm deep: no speed makes that softer.
 TEST(TouchCheck, WarnsOfATouchThatTheSensorCannotShow) {
   const ExpectedContact expected =

@@ -25,17 +25,17 @@ struct TouchReport {
 };
 
 /// What the stiffest contact would come to at the fastest speed of a cover on its path: of several
-/// modules, of the one that it brings nearest to its max_force_N.
+/// modules, of the one that it brings nearest to what its sensor can show.
 struct PeakReport {
   FastestCover fastest;
   double stiffness_N_per_m;  ///< c_e, obstacle and arm in series
   double delay_s, delay_peak_N;
   std::optional<double> mass_kg, blow_peak_N;  ///< only where the robot has dynamics
-  double max_force_N;                          ///< of the sensor
-  double target_N, target_speed_m_per_s;       ///< F_act + F_th, or max_force_N without F_act
+  double sensor_N;                             ///< that the sensor can show: see sensor_range.h
+  double target_N, target_speed_m_per_s;       ///< F_act + F_th, or sensor_N without F_act
 
   double peak_N() const;
-  double shareOfRange() const { return peak_N() / max_force_N; }
+  double shareOfRange() const { return peak_N() / sensor_N; }
 };
 
 /// How fast an obstacle may come or go: at v_o the approach limit lets the force rest off F_act by
