@@ -23,11 +23,26 @@ void checkTares(const Scene& scene, Warnings& warnings) {
   }
 }
 
+/// Where a start has to be asked for tactusd refuses it without the line: see checkArm().
+void checkEnable(const Scene& scene, Warnings& warnings) {
+  if (hasEnableLine(scene) || startsMeasured(scene)) return;
+  warnings.emplace_back("no gpio.enable: tactusd moves the arm as soon as it is started");
+}
+
+void checkStops(const Scene& scene, Warnings& warnings) {
+  if (scene.controller.limits.max_acceleration.maxCoeff() < kNoLimit) return;
+  warnings.emplace_back(
+      "no limits.acceleration: tactusd stops the arm by a step of its speed, and so do the drives "
+      "as far as they can");
+}
+
 }  // namespace
 
 std::vector<std::string> checkMachine(const Scene& scene) {
   Warnings warnings;
   if (!scene.hardware) return warnings;
+  checkEnable(scene, warnings);
+  checkStops(scene, warnings);
   checkTares(scene, warnings);
   return warnings;
 }

@@ -26,9 +26,33 @@ std::vector<std::string> shippedScenes() {
   return paths;
 }
 
-TEST(HardwareCheck, HasNothingAgainstTheMachinesThatComeAlong) {
-  for (const std::string& path : shippedScenes())
-    EXPECT_EQ(checkMachine(loadScene(path, {})), Said{}) << path;
+const std::string kNoEnable = "no gpio.enable: tactusd moves the arm as soon as it is started";
+
+/// They have no enable line, which is true, and nothing else.
+TEST(HardwareCheck, HasNothingButNoEnableLineAgainstTheMachinesThatComeAlong) {
+  for (const std::string& path : shippedScenes()) {
+    const Scene scene = loadScene(path, {});
+    EXPECT_EQ(checkMachine(scene), scene.hardware ? Said{kNoEnable} : Said{}) << path;
+  }
+}
+
+TEST(HardwareCheck, WarnsOfAnArmThatMovesUnasked) {
+  Scene scene = test::hardwareFiles().load();
+  ASSERT_TRUE(scene.hardware->gpio) << "other lines";
+  EXPECT_EQ(countOf(checkMachine(scene), kNoEnable), 1);
+  scene.hardware->gpio->enable.emplace();
+  EXPECT_EQ(countOf(checkMachine(scene), "gpio.enable"), 0);
+  scene.hardware->gpio.reset();
+  EXPECT_EQ(countOf(checkMachine(scene), kNoEnable), 1);
+  const Scene refused = test::shippedScene("commands", {{"task.commands.start_measured", "true"}});
+  EXPECT_EQ(countOf(checkMachine(refused), kNoEnable), 0) << "it is not started at all";
+}
+
+TEST(HardwareCheck, WarnsOfStopsThatAreSteps) {
+  test::SceneFiles files = test::hardwareFiles();
+  EXPECT_EQ(countOf(checkMachine(files.load()), "no limits.acceleration"), 1);
+  files.robot += "limits: {acceleration: [10, 20, 30]}\n";
+  EXPECT_EQ(countOf(checkMachine(files.load()), "no limits.acceleration"), 0);
 }
 
 /// What the check has nothing against starts: boot, tare, motion.
