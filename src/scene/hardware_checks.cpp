@@ -27,6 +27,18 @@ void checkHeartbeat(const YamlNode& root, double period_s, const CanSection& can
          fmt::format("expected at least the scene's period_s = {}", period_s));
 }
 
+/// A drive's status is some cycles old: no drive can be seen off sooner.
+void checkStopDeadline(const YamlNode& root, double period_s, const CanSection& can) {
+  constexpr double kLeastCycles = 10.0;
+  constexpr double kRounding_s = 1e-9;
+  const char* const key = "can.stop_deadline_s";
+  const double deadline_s = can.canopen.stop_deadline_s;
+  if (deadline_s >= kLeastCycles * period_s - kRounding_s) return;
+  failAt(locate(root, key), key, fmt::format("{} s is shorter than ten cycles", deadline_s),
+         fmt::format("expected at least {:g} s, and longer than the longest quick stop",
+                     kLeastCycles * period_s));
+}
+
 /// A measured position answers a setpoint two cycles later: with more, the loop overshoots.
 /// K (q_d - q) is a loop of its own, whose delay is the drive's lag and the two cycles in which the
 /// feedback of one comes back as a setpoint: up to a quarter of 1 / delay it does not swing.
@@ -114,6 +126,7 @@ void checkHardware(const YamlNode& scene, const LoadedRobot& robot, double perio
   const RobotConfig& config = robot.config;
   checkCycle(scene, period_s);
   checkHeartbeat(robot.root, period_s, *config.can);
+  checkStopDeadline(robot.root, period_s, *config.can);
   checkTrackingGains(robot.root, period_s, config.drives);
   checkSheets(robot, period_s, hardware);
   checkBusLoads(robot.root, period_s, config, hardware);

@@ -86,6 +86,35 @@ TEST(HardwareCheck, WarnsOfATareThatTheCoverAloneExceeds) {
   EXPECT_EQ(countOf(checkMachine(test::hardwareFiles().load()), "tare_refused"), 0) << "no cover";
 }
 
+/// Each as it is meant, at the end of what may be meant, and in another unit.
+TEST(HardwareCheck, WarnsOfLimitsInTheWrongUnit) {
+  const std::string joint = "robot.drives.joints";
+  const auto saysOf = [](const std::string& key, const std::string& value) {
+    for (const std::string& warning : checkMachine(test::hardwareFiles().load({{key, value}}))) {
+      const std::size_t at = warning.find("they are in m, rad and s: ");
+      if (at != std::string::npos) return warning.substr(at + 26);
+    }
+    return std::string();
+  };
+  EXPECT_EQ(saysOf("robot.drives.start_tolerance", "0.2"), "");
+  EXPECT_EQ(saysOf("robot.drives.start_tolerance", "2"), "drives.start_tolerance is 2");
+  EXPECT_EQ(saysOf(joint + "[1].max_following_error_m", "0.2"), "");
+  EXPECT_EQ(saysOf(joint + "[1].max_following_error_m", "0.3"),
+            "max_following_error_m of lift is 0.3");
+  EXPECT_EQ(saysOf(joint + "[0].max_following_error_rad", "0.5"), "");
+  EXPECT_EQ(saysOf(joint + "[0].max_following_error_rad", "3"),
+            "max_following_error_rad of roll is 3");
+  EXPECT_EQ(saysOf("robot.can.heartbeat_timeout_s", "1"), "");
+  EXPECT_EQ(saysOf("robot.can.heartbeat_timeout_s", "60"), "can.heartbeat_timeout_s is 60");
+  EXPECT_EQ(saysOf("robot.tactile_module.max_sample_age_s", "0.1"), "");
+  EXPECT_EQ(saysOf("robot.tactile_module.max_sample_age_s", "0.2"),
+            "max_sample_age_s of cover is 0.2");
+  test::SceneFiles slow = test::hardwareFiles();
+  slow.robot = test::replaced(slow.robot, "sample_period_s: 0.005",
+                              "sample_period_s: 0.02\n  max_sample_age_s: 0.2");
+  EXPECT_EQ(countOf(checkMachine(slow.load()), "max_sample_age_s"), 0) << "ten samples";
+}
+
 TEST(HardwareCheck, IsAPartOfWhatCheckSays) {
   const Scene scene = test::shippedScene("real/real_scenario1",
                                          {{"robot.tactile_module.tare.max_offset_N", "2.9"}});

@@ -312,6 +312,20 @@ TEST(RobotWithCan, HasNoMoreFramesACycleThanAreRead) {
   EXPECT_EQ(test::loadError(files.sources(), {{"period_s", "0.01"}}), "");
 }
 
+/// A deadline in another unit would close brakes while the arm moves.
+TEST(RobotWithCan, HasTenCyclesForAStop) {
+  const test::SceneFiles files = test::hardwareFiles();
+  const auto errorWith = [&](const std::string& deadline_s) {
+    return test::loadError(files.sources(), {{"robot.can.stop_deadline_s", deadline_s}});
+  };
+  EXPECT_EQ(errorWith("0.01"), "");
+  const std::string error = errorWith("0.0005");
+  EXPECT_NE(error.find("can.stop_deadline_s: 0.0005 s is shorter than ten cycles, expected at "
+                       "least 0.01 s"),
+            std::string::npos)
+      << error;
+}
+
 TEST(RobotWithCan, SendsHeartbeatsAtMostOnceACycle) {
   SceneFiles files = test::hardwareFiles();
   files.robot =
