@@ -200,6 +200,12 @@ PlantConfig judgedPlant(const Scene& scene) {
   return plant;
 }
 
+/// An assumption stands for it only where nothing else is said.
+double judgedBeforeGears(const Scene& scene, const StabilityReport& report) {
+  const double said_N_per_m = std::max(scene.stiffest_N_per_m, stiffestBeforeGears(scene));
+  return said_N_per_m > 0.0 ? said_N_per_m : report.stiffest_N_per_m;
+}
+
 }  // namespace
 
 std::string ofModule(const Scene& scene, int module) {
@@ -275,7 +281,7 @@ double stiffestBeforeGears(const Scene& scene) {
 
 void addGearMargins(const Scene& scene, StabilityReport& report) {
   if (!scene.arm || !scene.arm->has_gears || report.loops.empty()) return;
-  const double stiffest_N_per_m = std::max(scene.stiffest_N_per_m, stiffestBeforeGears(scene));
+  const double stiffest_N_per_m = judgedBeforeGears(scene, report);
   const double law_N_per_m =
       stiffnessOfLaw(scene.controller, std::max(report.stiffest_N_per_m, stiffest_N_per_m));
   const PlantConfig plant = judgedPlant(scene);

@@ -397,6 +397,10 @@ TEST(StabilityCheck, WarnsOfGearsTooSoftForTheStiffestContact) {
   EXPECT_FALSE(warns(scene));
   scene.controller.gains.force.time_constant_s = 0.06;
   EXPECT_TRUE(warns(scene));
+  scene.stiffest_N_per_m = 0.0;
+  EXPECT_FALSE(warns(scene)) << "the obstacle is soft";
+  scene.plant.obstacles.clear();
+  EXPECT_TRUE(warns(scene)) << "nothing else is said: what is assumed may be met";
 }
 
 }  // namespace
