@@ -74,6 +74,15 @@ void warnOfHardTouches(const Scene& scene, const std::vector<TouchReport>& touch
   }
 }
 
+/// Where a tool is told to go there is no path to follow.
+void warnOfRest(const Scene& scene, const PathContacts& contacts,
+                std::vector<std::string>& warnings) {
+  if (contacts.is_complete || scene.plant.obstacles.empty() || scene.controller.task.commands)
+    return;
+  warnings.push_back(fmt::format("only the first {:g} s of the run were searched for touches",
+                                 kMaxFollowedCycles * scene.period_s));
+}
+
 }  // namespace
 
 std::vector<std::string> touchWarnings(const Scene& scene, const PathContacts& contacts,
@@ -93,6 +102,7 @@ std::vector<std::string> touchWarnings(const Scene& scene, const PathContacts& c
                       1e3 * touch->depth_m, scene.module_links[touch->module]));
     }
   }
+  warnOfRest(scene, contacts, warnings);
   warnOfFriction(scene, warnings);
   for (const CapsuleTouch& touch : contacts.unsensed)
     if (!isFeltBefore(scene, contacts, touch)) warnings.push_back(unsensedWarning(scene, touch));

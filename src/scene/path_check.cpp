@@ -38,7 +38,7 @@ std::string slowestJoint(const Scene& scene, const JointVector& velocity) {
                      scene.controller.limits.max_velocity[joint]);
 }
 
-/// Where the tool first lags behind its path.
+/// Where the tool first lags behind its path, or how much of it was not followed.
 std::string laggingPath(const Scene& scene) {
   const ControllerConfig config = undisturbed(scene.controller);
   const double end_s = Trajectory(config.task.trajectory, Pose{}).end_s();
@@ -57,7 +57,10 @@ std::string laggingPath(const Scene& scene) {
                          t_s > end_s ? "end of the path not kept" : "path not followed", t_s,
                          1e3 * kMaxLag, slowestJoint(scene, output.velocity));
   }
-  return "";
+  const double followed_s = kMaxFollowedCycles * scene.period_s;
+  if (end_s <= followed_s) return "";
+  return fmt::format("only the first {:g} s of the path were followed, which ends at {:g} s",
+                     followed_s, end_s);
 }
 
 std::string shortRun(const Scene& scene) {

@@ -265,6 +265,15 @@ TEST(TouchCheck, WarnsOfAPeakThatTheSensorCannotShow) {
       "the sensor's max_force_N is 3"));
 }
 
+TEST(TouchCheck, TellsHowMuchOfALongRunItSearched) {
+  const auto warnings = [](const std::string& duration_s) {
+    return expectedOf("scenario1_null_space", {{"simulation.duration_s", duration_s}}).warnings;
+  };
+  EXPECT_EQ(warnings("300"), WarningList{});
+  EXPECT_EQ(warnings("300.5"),
+            WarningList{"only the first 300 s of the run were searched for touches"});
+}
+
 /// 148 N with as many counts as it has, by hand in channel_range_test.cpp.
 TEST(TouchCheck, TakesTheFirstChannelsEndForThatOfTheSensor) {
   const auto peakWith = [](const std::string& counts_per_N) {

@@ -124,6 +124,21 @@ TEST(PathCheck, WarnsOfARunThatEndsBeforeItsPath) {
             Warnings{"the simulation ends at 2 s, its path at " + pathEnd() + " s"});
 }
 
+TEST(PathCheck, TellsHowMuchOfALongPathItFollowed) {
+  const std::string line = "task.trajectory.line.";
+  const auto warningsAt = [&](const std::string& speed_m_per_s) {
+    return warningsOf({{line + "displacement_m", "[-0.03, 0, 0]"},
+                       {line + "speed_m_per_s", speed_m_per_s},
+                       {"simulation.duration_s", "2000"}});
+  };
+  EXPECT_EQ(warningsAt("0.0002"), Warnings{});
+  const Warnings warnings = warningsAt("0.00003");
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].find("only the first 300 s of the path were followed, which ends at 100"),
+            0u)
+      << warnings[0];
+}
+
 TEST(PathCheck, WarnsOfObstaclesThatNothingFeels) {
   const std::string free = TACTUS_SOURCE_DIR "/config/scenes/free_motion.yaml";
   const std::vector<Override> obstacle = {
