@@ -9,6 +9,7 @@
 #include "tactus/run/sensor_range.h"
 #include "tactus/run/touch_warnings.h"
 #include "tactus/scene/dynamics_loader.h"
+#include "tactus/scene/judged_plant.h"
 #include "tactus/scene/stability_check.h"
 
 namespace tactus {
@@ -23,9 +24,9 @@ double answeredForce_N(const ControllerConfig& config) {
 }
 
 /// A touch of this spring by the scene's arm, whose loop of one space has its delays.
-TouchedSpring touchedSpring(const Scene& scene, int module, const ObstacleConfig& obstacle,
-                            double robot_stiffness_N_per_m) {
-  return {variantLoops(scene.controller, scene.plant, scene.period_s, module).front().loop,
+TouchedSpring touchedSpring(const Scene& scene, const PlantConfig& plant, int module,
+                            const ObstacleConfig& obstacle, double robot_stiffness_N_per_m) {
+  return {variantLoops(scene.controller, plant, scene.period_s, module).front().loop,
           answeredForce_N(scene.controller), ContactSpring(obstacle, robot_stiffness_N_per_m)};
 }
 
@@ -48,8 +49,9 @@ std::vector<TouchReport> touchesOf(const Scene& scene, const PathContacts& conta
   for (std::size_t i = 0; i < contacts.touches.size(); ++i) {
     const std::optional<PathTouch>& touch = contacts.touches[i];
     if (!touch || touch->t_s == 0.0) continue;
-    const TouchedSpring touched = touchedSpring(scene, touch->module, scene.plant.obstacles[i],
-                                                scene.plant.robot_stiffness_N_per_m);
+    const TouchedSpring touched =
+        touchedSpring(scene, scene.plant, touch->module, scene.plant.obstacles[i],
+                      scene.plant.robot_stiffness_N_per_m);
     // One that appears in the arm pushes at once, however slow that is, or if it rests.
     const bool comes = touch->speed_m_per_s > 0.0;
     const double approach_N = comes ? touchPeak_N(touched, touch->speed_m_per_s) : 0.0;
@@ -80,12 +82,14 @@ double massAt(const Scene& scene, const FastestCover& fastest) {
                           fastest.p_Base, fastest.direction);
 }
 
+/// Of no obstacle of the simulation, so of the delays that the daemon's arm has, as the margins.
 PeakReport peakOf(const Scene& scene, const FastestCover& fastest, double stiffest_N_per_m) {
   const ForceGains& gains = scene.controller.gains.force;
   const double v = fastest.speed_m_per_s;
   ObstacleConfig stiffest;
   stiffest.stiffness_N_per_m = stiffest_N_per_m;
-  const TouchedSpring touched = touchedSpring(scene, fastest.module, stiffest, kNoLimit);
+  const TouchedSpring touched =
+      touchedSpring(scene, judgedPlant(scene), fastest.module, stiffest, kNoLimit);
   PeakReport report{.fastest = fastest,
                     .stiffness_N_per_m = stiffest_N_per_m,
                     .delay_s = touchDelay_s(touched, v),

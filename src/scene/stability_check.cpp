@@ -1,13 +1,13 @@
 #include "tactus/scene/stability_check.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "tactus/analysis/variant_loops.h"
+#include "tactus/scene/judged_plant.h"
 #include "tactus/scene/number_text.h"
 #include "tactus/scene/yaml_tree.h"
 #include "tactus/sim/obstacle.h"
@@ -113,29 +113,6 @@ const LoopReport& nearestOf(const StabilityReport& report) {
                                    [](const LoopReport& loop) { return loop.phaseMargin_deg(); });
 }
 
-/// What the simulation has and the loops have not.
-std::string leftOut(const PlantConfig& plant) {
-  std::vector<std::string> keys;
-  if (plant.drives.loop) keys.emplace_back("drives.bandwidth_hz");
-  if (plant.drives.dead_time_s > 0.0) keys.emplace_back("drives.dead_time_s");
-  if (plant.drives.max_acceleration.size() > 0) keys.emplace_back("drives.max_acceleration");
-  const auto nameIfAny = [&](const char* key, auto isImperfect) {
-    if (std::ranges::any_of(plant.modules, isImperfect)) keys.emplace_back(key);
-  };
-  using Module = SimulatedModuleConfig;
-  nameIfAny("tactile_module.channel_gains", [](const Module& module) {
-    return std::ranges::any_of(module.channel_gains, [](double gain) { return gain != 1.0; });
-  });
-  nameIfAny("tactile_module.direction_error_rad",
-            [](const Module& module) { return module.direction_error_rad != 0.0; });
-  nameIfAny("tactile_module.jitter_s", [](const Module& module) { return module.jitter_s > 0.0; });
-  nameIfAny("tactile_module.lost_share",
-            [](const Module& module) { return module.lost_share > 0.0; });
-  if (keys.empty()) return "";
-  return fmt::format("the margins do not know simulation.{}: its contacts may be less stable",
-                     fmt::join(keys, ", "));
-}
-
 std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& report,
                                     double largest_ratio) {
   std::vector<std::string> warnings;
@@ -183,21 +160,6 @@ void noteGears(const std::vector<VariantLoop>& loops, int module, StabilityRepor
     noted.ratio_with_gears = ratio;
     noted.module_with_gears = module;
   }
-}
-
-/// What tactusd runs on is the robot of robot.yaml: a scene that simulates quicker drives or
-/// filters says nothing of it, slower ones count.
-PlantConfig judgedPlant(const Scene& scene) {
-  PlantConfig plant = scene.plant;
-  if (!scene.hardware) return plant;
-  plant.drive_lag_s = std::max(plant.drive_lag_s, scene.controller.drive_lag_s);
-  const std::size_t modules =
-      std::min(plant.modules.size(), scene.controller.tactile_modules.size());
-  for (std::size_t i = 0; i < modules; ++i) {
-    double& cutoff_hz = plant.modules[i].filter_cutoff_hz;
-    cutoff_hz = std::min(cutoff_hz, scene.controller.tactile_modules[i].filter_cutoff_hz);
-  }
-  return plant;
 }
 
 /// An assumption stands for it only where nothing else is said.

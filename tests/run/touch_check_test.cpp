@@ -265,6 +265,20 @@ TEST(TouchCheck, WarnsOfAPeakThatTheSensorCannotShow) {
       "the sensor's max_force_N is 3"));
 }
 
+/// A scene that simulates quicker drives or filters says nothing of the arm that tactusd moves.
+TEST(TouchCheck, ExpectsThePeakOfTheDaemonsArmAndTheTouchesOfTheSimulated) {
+  const std::string name = "scenario1_null_space";
+  const ExpectedContact plain = expectedOf(name);
+  for (const Override& quicker : {Override{"simulation.drive_lag_s", "0"},
+                                  Override{"simulation.tactile_module.filter_cutoff_hz", "40"}}) {
+    const ExpectedContact quick = expectedOf(name, {quicker});
+    EXPECT_EQ(quick.peak->delay_s, plain.peak->delay_s) << quicker.key;
+    EXPECT_LT(quick.touches.at(0).peak_N, plain.touches.at(0).peak_N) << quicker.key;
+  }
+  const ExpectedContact slow = expectedOf(name, {{"simulation.drive_lag_s", "0.02"}});
+  EXPECT_GT(slow.peak->delay_s, plain.peak->delay_s + 0.014);
+}
+
 TEST(TouchCheck, TellsHowMuchOfALongRunItSearched) {
   const auto warnings = [](const std::string& duration_s) {
     return expectedOf("scenario1_null_space", {{"simulation.duration_s", duration_s}}).warnings;
