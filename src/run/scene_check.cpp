@@ -70,12 +70,13 @@ void addHardware(const Scene& scene, Json& json) {
 Json stabilityJson(const Scene& scene, const StabilityReport& stability) {
   Json loops = Json::array();
   for (const LoopReport& loop : stability.loops) {
-    loops.push_back({{"name", loop.name},
-                     {"largest_stiffness_ratio", loop.margins.largest_stiffness_ratio},
-                     {"gain_margin", loop.margins.gain_margin},
-                     {"phase_margin_deg", loop.phaseMargin_deg()},
-                     {"largest_stiffness_ratio_with_gears",
-                      loop.ratio_with_gears ? Json(*loop.ratio_with_gears) : Json()}});
+    Json json = {{"name", loop.name},
+                 {"largest_stiffness_ratio", loop.margins.largest_stiffness_ratio},
+                 {"gain_margin", loop.margins.gain_margin},
+                 {"phase_margin_deg", loop.phaseMargin_deg()}};
+    // An infinite one is null in JSON, as any other number without an end.
+    if (loop.ratio_with_gears) json["largest_stiffness_ratio_with_gears"] = *loop.ratio_with_gears;
+    loops.push_back(std::move(json));
   }
   return {{"stiffest_N_per_m", stability.stiffest_N_per_m},
           {"stiffness_N_per_m", stability.stiffness_N_per_m},
