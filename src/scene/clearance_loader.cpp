@@ -69,6 +69,9 @@ void checkExcluded(const ClearanceLoading& l) {
       l.fail(fmt::format("exclude[{}].{}", i, key), inQuotes(link) + " has no collision_capsules",
              nearest.empty() ? "a link that has some" : "perhaps " + inQuotes(nearest));
     }
+    if (pair.link == pair.other)
+      l.fail(fmt::format("exclude[{}].other", i),
+             inQuotes(pair.link) + " with itself, of which no pair is made", "another link");
   }
 }
 

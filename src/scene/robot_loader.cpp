@@ -16,6 +16,11 @@ namespace {
 /// Of two modules one may be lost.
 void checkModuleLost(const YamlNode& root, const RobotConfig& config) {
   const char* const key = "module_lost";
+  const char* const share_key = "module_lost_speed_share";
+  if (findGiven(root, share_key) && !findGiven(root, key)) {
+    failAt(locate(root, share_key), share_key, "there is no module_lost, so the arm stops",
+           "expected module_lost: go_on_slowly beside it");
+  }
   const std::size_t modules = config.tactile_modules.size();
   if (config.module_lost == ModuleLost::kStop || modules > 1) return;
   failAt(locate(root, key), key, fmt::format("the robot has {} tactile module", modules),

@@ -181,6 +181,23 @@ struct ValueReader {
   void operator()(const WordsTarget& words) const { words.set(parseChoices(r)); }
 };
 
+/// What a section without keys means, where there may be one.
+std::string sectionExpectation(const KeySpec& spec) {
+  const auto isRequired = [](const KeySpec& key) { return key.presence == Presence::kRequired; };
+  if (std::ranges::any_of(spec.keys, isRequired)) return "a section of keys";
+  if (spec.presence == Presence::kOptional)
+    return "a section of keys ({} for its defaults, null for none)";
+  return "a section of keys ({} for none)";
+}
+
+void requireSection(const Reading& r) {
+  if (r.node.kind == Kind::kMap) return;
+  const bool is_list_instead = r.node.kind == Kind::kList && !r.spec.same_as.empty();
+  failAt(r.node.at, r.path, describe(r.node),
+         "expected " + sectionExpectation(r.spec) +
+             (is_list_instead ? "; perhaps " + r.spec.same_as + " is meant" : ""));
+}
+
 void readSectionList(const Reading& r) {
   requireList(r);
   for (std::size_t i = 0; i < r.node.items.size(); ++i) {
@@ -196,6 +213,7 @@ void readPresent(const Reading& r) {
   }
   if (r.spec.type == ValueType::kSectionList) return readSectionList(r);
   if (r.spec.type == ValueType::kSection) {
+    requireSection(r);
     return readSection(r.node, r.spec.keys, r.path, r.spec.enter(r.owner), r.file);
   }
   std::visit(ValueReader{r}, r.spec.target(r.owner));
@@ -233,8 +251,7 @@ void readAbsent(const KeySpec& spec, const SourcePosition& at, const std::string
 void readSection(const YamlNode& node, const std::vector<KeySpec>& keys, const std::string& path,
                  void* owner, File& file) {
   if (node.kind != Kind::kMap) {
-    failAt(node.at, path.empty() ? "-" : path, describe(node),
-           "expected a section of keys ({} for none)");
+    failAt(node.at, path.empty() ? "-" : path, describe(node), "expected a section of keys");
   }
   const std::string prefix = path.empty() ? "" : path + ".";
   rejectUnknownKeys(node, keys, prefix, file.other);

@@ -158,6 +158,9 @@ TEST(ClearanceLoad, EndsAsOneLine) {
   expectError("  exclude: [{link: link1, other: toil}]\n",
               "clearance.exclude[0].other: 'toil' has no collision_capsules, expected perhaps "
               "'tool'");
+  expectError("  exclude: [{link: tool, other: tool}]\n",
+              "clearance.exclude[0].other: 'tool' with itself, of which no pair is made, expected "
+              "another link");
   expectError("  self_collision: false\n", "clearance: there is nothing to keep clear of");
 }
 

@@ -165,6 +165,34 @@ TEST(TactileModules, MayBeLostOnlyOfSeveral) {
   word.robot += "module_lost: go_on\n";
   test::expectError(errorOf(word),
                     {"", "a word", "robot.yaml:27:14: module_lost: ", "go_on", "stop"});
+  SceneFiles share = twoModules();
+  share.robot += "module_lost_speed_share: 0.5\n";
+  test::expectError(errorOf(share),
+                    {"", "alone it was ignored", "robot.yaml:27:26: module_lost_speed_share: ",
+                     "there is no module_lost", "module_lost: go_on_slowly beside it"});
+  share.robot += "module_lost: stop\n";
+  EXPECT_FALSE(share.load().controller.module_loss) << "for a while, say";
+}
+
+/// Of modules, which are several.
+TEST(TactileModules, UnderTheKeyOfTheOnlyOneAreReferredToTheList) {
+  SceneFiles files = twoModules();
+  files.robot = test::replaced(files.robot, "tactile_modules:", "tactile_module:");
+  test::expectError(errorOf(files), {"", "", "robot.yaml:8:3: tactile_module: ", "a list of 2",
+                                     "a section of keys; perhaps tactile_modules is meant"});
+}
+
+/// {} is a module without a link, and a section with defaults of its own.
+TEST(TactileModules, TellWhatASectionWithoutKeysMeans) {
+  const auto says = [](const std::string& key, const std::string& value) {
+    return test::loadError(SceneFiles{}.sources(), {{key, value}});
+  };
+  EXPECT_TRUE(says("robot.tactile_module", "5").ends_with("expected a section of keys"));
+  EXPECT_TRUE(says("redundancy.joint_limit_avoidance", "5")
+                  .ends_with("expected a section of keys ({} for its defaults, null for none)"));
+  EXPECT_TRUE(
+      says("simulation.tactile_module", "5").ends_with("expected a section of keys ({} for none)"))
+      << says("simulation.tactile_module", "5");
 }
 
 TEST(TactileModules, WithOneIdOnABusAreRefused) {
