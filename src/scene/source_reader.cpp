@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -65,10 +67,10 @@ void requireRegularFile(const std::string& path) {
 std::string readFromDisk(const std::string& path) {
   requireRegularFile(path);
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw FileProblem("cannot be opened");
+  if (!stream) throw FileProblem(std::string("cannot be opened: ") + std::strerror(errno));
   std::string text(kMaxFileBytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad()) throw FileProblem("cannot be read");
+  if (stream.bad()) throw FileProblem(std::string("cannot be read: ") + std::strerror(errno));
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > kMaxFileBytes) throw FileProblem(kSizeProblem);
   return text;

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -42,7 +43,29 @@ class FilesOnDisk : public testing::Test {
   fs::path directory_;
 };
 
+std::string errorOfFile(const std::string& file) {
+  try {
+    loadScene(file, {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 constexpr const char* kExpectation = ", expected a readable file of at most 1 MiB";
+
+/// Whoever runs the tests may read all files, but may have no more descriptors than this.
+TEST_F(FilesOnDisk, SayWhyTheyCannotBeOpened) {
+  write("scene.yaml", "robot: robot.yaml\n");
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit none{0, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const std::string error = errorOfFile(path("scene.yaml"));
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(error,
+            path("scene.yaml") + ":1:1: -: cannot be opened: Too many open files" + kExpectation);
+}
 
 TEST_F(FilesOnDisk, LoadAsFromMemory) {
   const test::SceneFiles files;
