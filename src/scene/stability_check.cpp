@@ -108,20 +108,24 @@ std::string timeConstantExpectation(const std::vector<VariantLoop>& loops, doubl
 /// So that what is less than the least does not show as it.
 double roundedDown(double deg) { return std::floor(10.0 * deg) / 10.0; }
 
-const LoopReport& nearestOf(const StabilityReport& report) {
-  return *std::ranges::min_element(report.loops, {},
-                                   [](const LoopReport& loop) { return loop.phaseMargin_deg(); });
+/// Keeps the smallest phase margin of all modules, and whose it is.
+void noteNearest(const std::vector<LoopReport>& loops, int module, StabilityReport& report) {
+  for (const LoopReport& loop : loops) {
+    if (report.nearest && report.nearest->phaseMargin_deg() <= loop.phaseMargin_deg()) continue;
+    report.nearest = loop;
+    report.module_of_nearest = module;
+  }
 }
 
 std::vector<std::string> warningsOf(const Scene& scene, const StabilityReport& report,
                                     double largest_ratio) {
   std::vector<std::string> warnings;
-  const LoopReport& nearest = nearestOf(report);
+  const LoopReport& nearest = *report.nearest;
   if (nearest.phaseMargin_deg() < kMinPhaseMargin_deg) {
     warnings.push_back(fmt::format(
         "phase margin of {:.1f} degrees ({}{}): overshoots and rings, better {:g} or more",
-        roundedDown(nearest.phaseMargin_deg()), nearest.name, ofModule(scene, report.module),
-        kMinPhaseMargin_deg));
+        roundedDown(nearest.phaseMargin_deg()), nearest.name,
+        ofModule(scene, report.module_of_nearest), kMinPhaseMargin_deg));
   }
   const double assumed_N_per_m = scene.controller.gains.force.assumed_stiffness_N_per_m;
   const double needed_N_per_m = report.stiffest_N_per_m / largest_ratio;
@@ -187,10 +191,12 @@ std::optional<StabilityReport> checkStability(const Scene& scene) {
     std::vector<VariantLoop> of_module = variantLoops(scene.controller, plant, scene.period_s, i);
     if (stepsOfCommonPeriod(of_module.front().loop) == 0) {
       report.loops.clear();
+      report.nearest.reset();
       report.warnings = {"margins not computed: cycle and samples hardly ever coincide"};
       return report;
     }
     std::vector<LoopReport> margins = marginsOf(of_module, report.ratio());
+    noteNearest(margins, i, report);
     const double ratio = leastStable(margins).margins.largest_stiffness_ratio;
     if (i > 0 && ratio >= largest_ratio) continue;
     largest_ratio = ratio;
@@ -206,13 +212,10 @@ std::optional<StabilityReport> checkStability(const Scene& scene) {
 }
 
 double phaseMargin_deg(const Scene& scene) {
-  double least_deg = std::numeric_limits<double>::infinity();
   try {
     const std::optional<StabilityReport> report = checkStability(scene);
-    if (!report) return least_deg;
-    for (const LoopReport& loop : report->loops)
-      least_deg = std::min(least_deg, loop.phaseMargin_deg());
-    return least_deg;
+    if (!report || !report->nearest) return std::numeric_limits<double>::infinity();
+    return report->nearest->phaseMargin_deg();
   } catch (const InputError&) {
     return 0.0;
   }
@@ -220,16 +223,16 @@ double phaseMargin_deg(const Scene& scene) {
 
 void requirePhaseMargin(const Scene& scene, double least_deg) {
   const std::optional<StabilityReport> report = checkStability(scene);
-  if (!report || report->loops.empty()) return;
-  const LoopReport& nearest = nearestOf(*report);
+  if (!report || !report->nearest) return;
+  const LoopReport& nearest = *report->nearest;
   if (nearest.phaseMargin_deg() >= least_deg) return;
   const std::vector<VariantLoop> loops =
-      variantLoops(scene.controller, judgedPlant(scene), scene.period_s, report->module);
+      variantLoops(scene.controller, judgedPlant(scene), scene.period_s, report->module_of_nearest);
   fail(scene, "controller.time_constant_s",
        fmt::format("{:.4g} s leaves a phase margin of {:.1f} degrees ({}{})",
                    scene.controller.gains.force.time_constant_s,
                    roundedDown(nearest.phaseMargin_deg()), nearest.name,
-                   ofModule(scene, report->module)),
+                   ofModule(scene, report->module_of_nearest)),
        timeConstantExpectation(loops, report->ratio()));
 }
 

@@ -75,6 +75,42 @@ TEST(SeveralModulesCheck, HasTheMarginsOfTheLeastStableModule) {
   }
 }
 
+double smallestPhase_deg(const StabilityReport& report) {
+  return std::ranges::min(report.loops, {}, &LoopReport::phaseMargin_deg).phaseMargin_deg();
+}
+
+/// A filter takes from the ratio what a late sample takes from the phase.
+TEST(SeveralModulesCheck, HasTheSmallestPhaseMarginOfAll) {
+  int others = 0;
+  for (const char* const cutoff_hz : {"10", "14"}) {
+    for (const char* const period_s : {"0.004", "0.03", "0.04"}) {
+      const Scene scene = skinWithLaw({{"robot.tactile_modules[0].filter_cutoff_hz", cutoff_hz},
+                                       {"robot.tactile_modules[2].filter_cutoff_hz", "60"},
+                                       {"robot.tactile_modules[2].max_sample_age_s", "0.1"},
+                                       {"robot.tactile_modules[2].sample_period_s", period_s},
+                                       {"controller.time_constant_s", "0.3"}});
+      const StabilityReport report = checkStability(scene).value();
+      double least_deg = 180.0;
+      for (int i = 0; i < 3; ++i) {
+        Scene alone = scene;
+        alone.controller.tactile_modules = {scene.controller.tactile_modules[i]};
+        alone.plant.modules = {scene.plant.modules[i]};
+        alone.hardware->tactile_modules = {scene.hardware->tactile_modules[i]};
+        alone.module_links = {scene.module_links[i]};
+        const LoopReport of_one = checkStability(alone).value().loops.back();  // of one space
+        least_deg = std::min(least_deg, of_one.phaseMargin_deg());
+      }
+      EXPECT_EQ(phaseMargin_deg(scene), least_deg) << cutoff_hz << " Hz, " << period_s << " s";
+      if (report.module_of_nearest == report.module) continue;
+      ++others;
+      EXPECT_GT(smallestPhase_deg(report), least_deg);
+      EXPECT_NO_THROW(requirePhaseMargin(scene, least_deg));
+      EXPECT_THROW(requirePhaseMargin(scene, least_deg + 1e-6), InputError);
+    }
+  }
+  EXPECT_GT(others, 0) << "this test is blind";
+}
+
 TEST(SeveralModulesCheck, HasTheSmallestRatioWithGearsOfAll) {
   const Scene scene =
       test::shippedScene("whole_arm/crops9_skin_in_turn",

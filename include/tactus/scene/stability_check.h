@@ -29,6 +29,9 @@ struct StabilityReport {
   double stiffness_N_per_m = 0.0;  ///< c: assumed, or where the estimate of c_e ends
   std::vector<LoopReport> loops;   ///< empty where the margins can't be computed; then a warning
   int module = 0;                  ///< whose they are: of several the least stable one
+  /// Of all modules' loops the one with the smallest phase margin; absent where loops is empty.
+  std::optional<LoopReport> nearest;
+  int module_of_nearest = 0;
   /// The links' first mode behind motors held fast, where gears are known.
   std::optional<double> gear_mode_hz;
   std::vector<std::string> warnings;
@@ -43,8 +46,8 @@ std::string ofModule(const Scene& scene, int module);
 /// that contact. Not a part of loading: simulations and replays of unstable gains are of use.
 std::optional<StabilityReport> checkStability(const Scene& scene);
 
-/// The smallest of all its loops; infinite where there is none, or none can be computed; 0 where
-/// one is unstable.
+/// The smallest of all its loops, of all modules; infinite where there is none, or none can be
+/// computed; 0 where one is unstable.
 double phaseMargin_deg(const Scene& scene);
 
 /// Throws InputError where checkStability() does, and where that is less; it says which T would do.
