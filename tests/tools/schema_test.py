@@ -223,7 +223,8 @@ class Case(unittest.TestCase):
             joints = moteus[-1]["drives"]["joints"]
             joints.insert(0, joints.pop(joint))
             joints[0] = {"joint": joints[0]["joint"], "interface": "can0", "kind": "moteus",
-                         "node_id": joints[0]["node_id"], f"turns_per_{unit}": 0.5}  # fmt: skip
+                         "node_id": joints[0]["node_id"], "home": "rotor",
+                         f"turns_per_{unit}": 0.5}  # fmt: skip
         extending = scene | {"extends": str(CONFIG / "scenes/free_motion.yaml")}
         self.trees = {"scene": [scene, stops, rests, told, heavy, extending, *shaped],
                       "robot": [robot, revolute_first, listed, *moteus]}
