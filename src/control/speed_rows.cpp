@@ -67,7 +67,6 @@ void RowProblem::respond(const RowSpace& space, RowMatrix& K, RowVector& delta) 
   RowVector own(rows_.size);  // K_ii
   RowVector presence(rows_.size);
   RowVector opposition(rows_.size);
-  bool is_opposed = false;
   for (int i = 0; i < rows_.size; ++i) {
     const double* const all = &in_all_(0, i);
     const double* const task = &in_task_(0, i);
@@ -85,7 +84,6 @@ void RowProblem::respond(const RowSpace& space, RowMatrix& K, RowVector& delta) 
       K(i, j) = K_ij[0];
       K(i, j + 1) = K_ij[1];
       if (!isAny(K_ij < 0.0)) continue;
-      is_opposed = true;
       const Pair against = K_ij < 0.0 ? K_ij : Pair{0.0, 0.0};
       const Pair o_ij =
           Pair{p, p} * pairAt(&presence[j]) * (against * against / (own_i * pairAt(&own[j])));
@@ -96,27 +94,23 @@ void RowProblem::respond(const RowSpace& space, RowMatrix& K, RowVector& delta) 
     presence[i] = p;
   }
   delta.resize(rows_.size);
-  const double share = is_opposed ? yieldingShare(space, own, opposition) : 0.0;
+  double most = 0.0;  // of delta, as a share of K_ii
   for (int i = 0; i < rows_.size; ++i) {
     delta[i] = space.proximal * own[i];
-    if (is_opposed)
-      delta[i] +=
-          share * kYielding_N_s_m / rows_.row[i].damping_N_s_per_m * std::min(1.0, opposition[i]);
+    const double yielding =
+        kYielding_N_s_m / rows_.row[i].damping_N_s_per_m * std::min(1.0, opposition[i]);
+    most = std::max(most, yielding / own[i]);
+    delta[i] += yielding;
     K(i, i) = own[i] + delta[i];
   }
-  zeroRest(delta);
-}
-
-/// Of delta_0, for all rows alike, so that they yield in proportion to their forces.
-double RowProblem::yieldingShare(const RowSpace& space, const RowVector& own,
-                                 const RowVector& opposition) const noexcept {
-  double share = 1.0;
-  for (int i = 0; i < rows_.size; ++i) {
-    const double most = space.max_yielding * own[i] * rows_.row[i].damping_N_s_per_m;
-    const double yielding = kYielding_N_s_m * std::min(1.0, opposition[i]);
-    if (share * yielding > most) share = most / yielding;
+  if (most > space.max_yielding) {  // all rows less alike: they yield in proportion to their forces
+    const double share = space.max_yielding / most;
+    for (int i = 0; i < rows_.size; ++i) {
+      delta[i] = share * delta[i] + (1.0 - share) * space.proximal * own[i];
+      K(i, i) = own[i] + delta[i];
+    }
   }
-  return share;
+  zeroRest(delta);
 }
 
 /// K: with delta. negligible: change of what lacks.

@@ -17,6 +17,7 @@ using Warnings = std::vector<std::string>;
 constexpr double kLongestLink_m = 20.0;  ///< longer ones are a URDF in mm, or in cm
 constexpr double kShortestArm_m = 0.02;  ///< a URDF in km, or one that was scaled twice
 constexpr double kWidestLimit_rad = 8.0 * std::numbers::pi;  ///< four turns; wrists have two
+constexpr double kMostUnequal = 100.0;                       ///< of weights
 constexpr double kMostOff = 0.1;        ///< of a cover's mass and of its filter
 constexpr double kLightCover_kg = 0.1;  ///< with which no law swings
 constexpr double kMostOffLink = 0.75;   ///< of a cover; one leg of a bent link stays below 0.71
@@ -40,6 +41,17 @@ void checkSizes(const Scene& scene, Warnings& warnings) {
         fmt::format("the whole arm is {:.3g} mm long, which no robot's is: a URDF has to be in m",
                     1e3 * lengths.all_m));
   }
+}
+
+/// Thresholds of damping and of regularised gains are lengths in the metric of W.
+void checkWeights(const Scene& scene, Warnings& warnings) {
+  const JointVector& weights = scene.controller.weights;
+  const double ratio = weights.maxCoeff() / weights.minCoeff();
+  if (ratio <= kMostUnequal * (1.0 + 1e-9)) return;
+  warnings.push_back(fmt::format(
+      "redundancy.weights: the largest is {:.3g} times the smallest: beyond {:g} the tool may lag "
+      "as near a singular pose, and contacts may rest above F_act + F_th",
+      ratio, kMostUnequal));
 }
 
 /// Infinite limits are those of joints without an end: no unit was taken for another there.
@@ -209,6 +221,7 @@ std::vector<CoverReport> coversAtStart(const Scene& scene) {
 std::vector<std::string> checkArm(const Scene& scene) {
   Warnings warnings;
   checkSizes(scene, warnings);
+  checkWeights(scene, warnings);
   checkJointLimits(scene, warnings);
   checkCovers(scene, warnings);
   checkCoverLoads(scene, warnings);

@@ -162,9 +162,9 @@ TEST_F(BusChecks, RestartAfterBusOffIsWarnedOf) {
 }
 
 TEST_F(BusChecks, ALongQueueIsWarnedOfAsByTheDaemon) {
-  machine.write(kNet + "tx_queue_len", "16\n");
+  machine.write(kNet + "tx_queue_len", "20\n");
   EXPECT_EQ(levelOf(check(), "can_queue"), Level::kOk);
-  machine.write(kNet + "tx_queue_len", "17\n");
+  machine.write(kNet + "tx_queue_len", "21\n");
   EXPECT_EQ(levelOf(check(), "can_queue"), Level::kWarning);
 }
 

@@ -116,14 +116,15 @@ TEST(PlantBus, ExtendedAndRemoteFramesLoseAgainstDataFramesOfTheSameId) {
   EXPECT_EQ(seen[2].delivery.sender, 1);
 }
 
-TEST(PlantBus, ASeventeenthFrameIsRefusedAndCounted) {
+TEST(PlantBus, AFrameMoreThanAQueueHoldsIsRefusedAndCounted) {
   PlantBus bus(kMegabit_per_s, 2);
-  for (int i = 0; i < 16; ++i) EXPECT_TRUE(bus.send(0, canFrame(0x201, {i}), 0));
+  constexpr int kMost = FrameQueue::kCapacity;
+  for (int i = 0; i < kMost; ++i) EXPECT_TRUE(bus.send(0, canFrame(0x201, {i}), 0));
   EXPECT_FALSE(bus.send(0, canFrame(0x000, {99}), 0));
   EXPECT_EQ(bus.refused(), 1u);
   const auto seen = runUntil(bus, 10'000'000);
-  ASSERT_EQ(seen.size(), 16u);
-  for (int i = 0; i < 16; ++i) EXPECT_EQ(seen[i].delivery.item.frame.data[0], i);
+  ASSERT_EQ(seen.size(), std::size_t{kMost});
+  for (int i = 0; i < kMost; ++i) EXPECT_EQ(seen[i].delivery.item.frame.data[0], i);
 }
 
 /// A bus with random traffic, and everything that is known of it from outside.
@@ -199,7 +200,8 @@ TEST(PlantBus, WithoutPowerFramesWaitAndTheControllerComplains) {
   PlantBus bus(kMegabit_per_s, 2);
   bus.setPowered(false, 0);
   EXPECT_EQ(bus.nextEvent_ns(), kNever_ns) << "nothing to send, nothing to miss";
-  for (int i = 0; i < 20; ++i) bus.send(0, canFrame(0x201, {i}), 1000);
+  constexpr int kMost = FrameQueue::kCapacity;
+  for (int i = 0; i < kMost + 4; ++i) bus.send(0, canFrame(0x201, {i}), 1000);
   EXPECT_EQ(bus.refused(), 4u);
   const auto seen = runUntil(bus, 100'000'000);
   ASSERT_GE(seen.size(), 2u);
@@ -216,7 +218,7 @@ TEST(PlantBus, WithoutPowerFramesWaitAndTheControllerComplains) {
   }
   bus.setPowered(true, 100'000'000);
   const auto late = runUntil(bus, 200'000'000);
-  ASSERT_EQ(late.size(), 16u);
+  ASSERT_EQ(late.size(), std::size_t{kMost});
   EXPECT_EQ(late[0].end_ns, 100'000'000 + 65'000);
   EXPECT_EQ(late[0].delivery.item.sent_ns, 1000) << "its age shows";
 }

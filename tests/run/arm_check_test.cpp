@@ -75,6 +75,15 @@ TEST(ArmCheck, WarnsOfCoversThatAreSimulatedOtherwiseThanTheyAreTakenOut) {
   EXPECT_EQ(ofCovers({{"simulation.arm", "rigid_gears"}}), Warnings{});
 }
 
+TEST(ArmCheck, WarnsOfVeryUnequalWeights) {
+  const auto warningsOf = [](const std::string& most) {
+    return checkArm(test::shippedScene(
+        "scenario2_tactus", {{"redundancy.weights", "[" + most + ", 1, 1, 1, 1, 1, 1, 1, 1]"}}));
+  };
+  EXPECT_TRUE(has(warningsOf("1000"), "the largest is 1e+03 times the smallest"));
+  EXPECT_FALSE(has(warningsOf("100"), "times the smallest"));
+}
+
 /// One that weighs nothing is taken out of no reading, whatever filters it.
 TEST(ArmCheck, KnowsThatAFilterAloneDoesNoHarm) {
   const Warnings warnings = checkArm(test::shippedScene(

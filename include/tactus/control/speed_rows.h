@@ -85,8 +85,6 @@ class RowProblem {
  private:
   void multiply() noexcept;
   void respond(const RowSpace& space, RowMatrix& K, RowVector& delta) const noexcept;
-  double yieldingShare(const RowSpace& space, const RowVector& own,
-                       const RowVector& opposition) const noexcept;
   template <typename Problem>
   RowMultipliers repeat(const RowMatrix& K, const RowVector& delta, const RowVector& lacking,
                         double negligible) noexcept;
