@@ -33,9 +33,8 @@ struct FaultRows {
        "`tactus replay` computes anew, and report it"},
       {kTactileSaturated, "tactile_saturated", "a channel at its rail, or the module says so",
        "a sample and 2 cycles", kRetreat, kLastFelt,
-       "take away what pushes; where nothing does, `tactus calibrate show` has the channels: one "
-       "at "
-       "its end has a broken cell or wire"},
+       "take away what pushes; where nothing does, `tactus calibrate show` has the channels: "
+       "one at its end has a broken cell or wire"},
       {kTactileCableBreak, "tactile_cable_break", "the module reports a broken cable",
        "a sample and 2 cycles", kRetreat, kLastFelt,
        "mend the module's cable or plug, until its status byte says no more of it"},

@@ -81,7 +81,7 @@ void warnOfQueues(const HardwareConfig& hardware) {
     const auto drives = std::ranges::count(hardware.drives, static_cast<int>(i), &DriveConfig::bus);
     const int length = transmitQueueLength(interface);
     const int wanted = transmitQueueFor(static_cast<int>(drives));
-    if (length <= kMaxTransmitQueue && (drives <= 8 || length >= wanted)) continue;
+    if (length <= kMaxTransmitQueue && (wanted < kMaxTransmitQueue || length >= wanted)) continue;
     fmt::print(stderr,
                "tactusd: {}: transmit queue of {} frames; better: ip link set {} txqueuelen {}\n",
                interface, length, interface, wanted);

@@ -212,7 +212,7 @@ double MoteusSlave::read(std::uint32_t number) const noexcept {
     case 0x002:
       return config_.sign * config_.counts_per_unit * velocity_;
     case 0x00C:
-      return home_;
+      return static_cast<double>(MoteusHome::kOutput);
     case 0x00F:
       return fault_;
     case 0x102:

@@ -168,13 +168,6 @@ void checkDrives(const Scene& scene, Warnings& warnings) {
       fmt::join(joints, " ")));
 }
 
-void checkStart(const Scene& scene, Warnings& warnings) {
-  if (!startsMeasured(scene) || !scene.hardware || hasEnableLine(scene)) return;
-  warnings.emplace_back(
-      "tactusd refuses task.commands.start_measured: without a line gpio.enable in the robot's "
-      "file a restart would move the arm from anywhere");
-}
-
 /// Two costs end somewhere between them.
 void checkPosture(const Scene& scene, Warnings& warnings) {
   const ControllerConfig& config = scene.controller;
@@ -228,7 +221,6 @@ std::vector<std::string> checkArm(const Scene& scene) {
   checkCoversBehindGears(scene, warnings);
   checkEfforts(scene, warnings);
   checkDrives(scene, warnings);
-  checkStart(scene, warnings);
   checkPosture(scene, warnings);
   return warnings;
 }

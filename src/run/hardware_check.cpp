@@ -34,10 +34,13 @@ void checkTares(const Scene& scene, Warnings& warnings) {
   }
 }
 
-/// Where a start has to be asked for tactusd refuses it without the line: see checkArm().
 void checkEnable(const Scene& scene, Warnings& warnings) {
-  if (hasEnableLine(scene) || startsMeasured(scene)) return;
-  warnings.emplace_back("no gpio.enable: tactusd moves the arm as soon as it is started");
+  if (hasEnableLine(scene)) return;
+  warnings.emplace_back(
+      startsMeasured(scene)
+          ? "tactusd refuses task.commands.start_measured: without a line gpio.enable in the "
+            "robot's file a restart would move the arm from anywhere"
+          : "no gpio.enable: tactusd moves the arm as soon as it is started");
 }
 
 void checkStops(const Scene& scene, Warnings& warnings) {

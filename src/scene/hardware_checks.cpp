@@ -39,7 +39,6 @@ void checkStopDeadline(const YamlNode& root, double period_s, const CanSection& 
                      kLeastCycles * period_s));
 }
 
-/// A measured position answers a setpoint two cycles later: with more, the loop overshoots.
 /// K (q_d - q) is a loop of its own, whose delay is the drive's lag and the two cycles in which the
 /// feedback of one comes back as a setpoint: up to a quarter of 1 / delay it does not swing.
 void checkTrackingGains(const YamlNode& root, double period_s, const DrivesSection& drives) {

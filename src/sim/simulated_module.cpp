@@ -1,19 +1,13 @@
 #include "tactus/sim/simulated_module.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "tactus/sim/channel_shares.h"
 
 namespace tactus {
 namespace {
 constexpr double kMaxCounts = 8388607.0;  // signed 24 bits
-
-/// C^T (C C^T)^-1, for a calibration of full rank: the loader accepts no other.
-template <int kRows>
-Eigen::Matrix<double, 8, kRows> pseudoinverse(const Eigen::Matrix<double, kRows, 8>& C) {
-  const Eigen::Matrix<double, kRows, kRows> gram = C * C.transpose();
-  return C.transpose() * gram.inverse();
-}
 
 ButterworthLowPass filterOf(const SimulatedModuleConfig& config) {
   const bool is_in_module = config.filter_place == FilterPlace::kModule;
@@ -27,21 +21,14 @@ SimulatedModule::SimulatedModule(const SimulatedModuleConfig& config,
     : config_(config),
       filters_{filterOf(config), filterOf(config), filterOf(config), filterOf(config),
                filterOf(config)},
-      channels_from_wrench_(pseudoinverse(config.channels.calibration)),
-      channels_from_moment_x_(Channels::Zero()),
+      channels_from_wrench_(channelShares(config.channels).leftCols<4>()),
+      channels_from_moment_x_(channelShares(config.channels).col(4)),
       at_rest_(at_rest),
       sin_error_(std::sin(config.direction_error_rad)),
       cos_error_(std::cos(config.direction_error_rad)),
       random_(config.seed),
       steps_a_sample_(
           static_cast<int>(std::lround(config.channels.sample_period_s * config.filter_rate_hz))) {
-  if (config.channels.moment_x) {
-    Eigen::Matrix<double, 5, 8> C;
-    C << config.channels.calibration, *config.channels.moment_x;
-    const Eigen::Matrix<double, 8, 5> inverse = pseudoinverse(C);
-    channels_from_wrench_ = inverse.leftCols<4>();
-    channels_from_moment_x_ = inverse.col(4);
-  }
   if (!at_rest_ || !config.tared) return;
   config_.noise_N = 0.0;  // a tare is the mean of many samples
   tare_ = measure(*at_rest_);

@@ -236,17 +236,5 @@ TEST(ArmCheck, TellsOfAPostureThatIsNotReached) {
   EXPECT_TRUE(has(checkArm(scene), "may press joints against their limits"));
 }
 
-TEST(ArmCheck, TellsOfAStartThatTheDaemonRefuses) {
-  Scene scene = test::shippedScene("commands", {{"task.commands.start_measured", "true"}});
-  ASSERT_FALSE(scene.hardware->gpio);
-  EXPECT_TRUE(has(checkArm(scene), "tactusd refuses task.commands.start_measured"));
-  scene.hardware->gpio.emplace();
-  EXPECT_TRUE(has(checkArm(scene), "gpio.enable"));
-  scene.hardware->gpio->enable.emplace();
-  EXPECT_FALSE(has(checkArm(scene), "start_measured"));
-  scene.hardware.reset();
-  EXPECT_FALSE(has(checkArm(scene), "start_measured")) << "it is simulated alone";
-}
-
 }  // namespace
 }  // namespace tactus

@@ -48,6 +48,18 @@ TEST(HardwareCheck, WarnsOfAnArmThatMovesUnasked) {
   EXPECT_EQ(countOf(checkMachine(refused), kNoEnable), 0) << "it is not started at all";
 }
 
+TEST(HardwareCheck, TellsOfAStartThatTheDaemonRefuses) {
+  Scene scene = test::shippedScene("commands", {{"task.commands.start_measured", "true"}});
+  ASSERT_FALSE(scene.hardware->gpio);
+  EXPECT_EQ(countOf(checkMachine(scene), "tactusd refuses task.commands.start_measured"), 1);
+  scene.hardware->gpio.emplace();
+  EXPECT_EQ(countOf(checkMachine(scene), "gpio.enable"), 1);
+  scene.hardware->gpio->enable.emplace();
+  EXPECT_EQ(countOf(checkMachine(scene), "start_measured"), 0);
+  scene.hardware.reset();
+  EXPECT_EQ(countOf(checkMachine(scene), "start_measured"), 0) << "it is simulated alone";
+}
+
 TEST(HardwareCheck, WarnsOfStopsThatAreSteps) {
   test::SceneFiles files = test::hardwareFiles();
   EXPECT_EQ(countOf(checkMachine(files.load()), "no limits.acceleration"), 1);

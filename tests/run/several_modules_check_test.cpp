@@ -21,6 +21,14 @@ Scene skinWithLaw(const std::vector<Override>& more = {}) {
   return scene;
 }
 
+Scene withOneModule(Scene scene, int module) {
+  scene.controller.tactile_modules = {scene.controller.tactile_modules[module]};
+  scene.plant.modules = {scene.plant.modules[module]};
+  scene.hardware->tactile_modules = {scene.hardware->tactile_modules[module]};
+  scene.module_links = {scene.module_links[module]};
+  return scene;
+}
+
 TEST(SeveralModulesCheck, TellsBothEndsOfEachCover) {
   const std::vector<CoverReport> covers = coversAtStart(skinWithLaw());
   ASSERT_EQ(covers.size(), 3u);
@@ -64,11 +72,7 @@ TEST(SeveralModulesCheck, HasTheMarginsOfTheLeastStableModule) {
     const Scene scene = skinWithLaw({{key, "13"}});
     const StabilityReport report = checkStability(scene).value();
     EXPECT_EQ(report.module, slowest);
-    Scene alone = scene;  // by itself it has the same
-    alone.controller.tactile_modules = {scene.controller.tactile_modules[slowest]};
-    alone.plant.modules = {scene.plant.modules[slowest]};
-    alone.hardware->tactile_modules = {scene.hardware->tactile_modules[slowest]};
-    alone.module_links = {scene.module_links[slowest]};
+    const Scene alone = withOneModule(scene, slowest);  // by itself it has the same
     const StabilityReport of_one = checkStability(alone).value();
     EXPECT_EQ(report.loops[0].margins.largest_stiffness_ratio,
               of_one.loops.back().margins.largest_stiffness_ratio);
@@ -92,11 +96,7 @@ TEST(SeveralModulesCheck, HasTheSmallestPhaseMarginOfAll) {
       const StabilityReport report = checkStability(scene).value();
       double least_deg = 180.0;
       for (int i = 0; i < 3; ++i) {
-        Scene alone = scene;
-        alone.controller.tactile_modules = {scene.controller.tactile_modules[i]};
-        alone.plant.modules = {scene.plant.modules[i]};
-        alone.hardware->tactile_modules = {scene.hardware->tactile_modules[i]};
-        alone.module_links = {scene.module_links[i]};
+        const Scene alone = withOneModule(scene, i);
         const LoopReport of_one = checkStability(alone).value().loops.back();  // of one space
         least_deg = std::min(least_deg, of_one.phaseMargin_deg());
       }
@@ -123,11 +123,7 @@ TEST(SeveralModulesCheck, HasTheSmallestRatioWithGearsOfAll) {
   double smallest = 1e9;
   int whose = -1;
   for (int i = 0; i < 3; ++i) {
-    Scene alone = with_law;
-    alone.controller.tactile_modules = {with_law.controller.tactile_modules[i]};
-    alone.plant.modules = {with_law.plant.modules[i]};
-    alone.hardware->tactile_modules = {with_law.hardware->tactile_modules[i]};
-    alone.module_links = {with_law.module_links[i]};
+    const Scene alone = withOneModule(with_law, i);
     StabilityReport of_one = checkStability(alone).value();
     addGearMargins(alone, of_one);
     ASSERT_TRUE(of_one.loops.back().ratio_with_gears);

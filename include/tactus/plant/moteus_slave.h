@@ -33,7 +33,6 @@ class MoteusSlave {
 
   void move(double dt_s) noexcept;
   void setPosition(double q) noexcept;
-  void setHome(MoteusHome home) noexcept { home_ = static_cast<double>(home); }
 
   FrameBatch& outbox() noexcept { return outbox_; }
   PowerState powerState() const noexcept;
@@ -53,7 +52,6 @@ class MoteusSlave {
   bool is_powered_ = false;
   int mode_ = 0;
   int fault_ = 0;
-  double home_ = static_cast<double>(MoteusHome::kOutput);
   double position_turns_ = 0.0;
   double velocity_ = 0.0;  ///< m/s or rad/s
   double commanded_turns_per_s_ = 0.0;
