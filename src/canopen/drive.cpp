@@ -248,7 +248,8 @@ std::uint16_t Drive::controlWord(DriveGoal goal) const noexcept {
   if (is_resetting && state_ == DriveState::kFault) return control_word::kFaultReset;
   if (!state_) return control_word::kQuickStop;
   // Nobody has told it to stop: it stays there by itself, and only this leads on.
-  const bool is_to_leave = goal == DriveGoal::kEnabled && !has_fault && quick_stopped_.isStill();
+  const bool is_nobodys = goal == DriveGoal::kEnabled || goal == DriveGoal::kConfigure;
+  const bool is_to_leave = is_nobodys && !has_fault && quick_stopped_.isStill();
   if (is_to_leave) return control_word::kDisableVoltage;
   return controlWordTowards(powerGoal(goal, has_fault), *state_);
 }

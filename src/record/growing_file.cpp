@@ -16,6 +16,8 @@ namespace {
 
 /// The log's writer leaves its cycles with the kernel every 100 ms.
 constexpr std::chrono::milliseconds kPause{20};
+/// For a writer that has closed this file and renames the next one.
+constexpr int kLeftAfter_looks = 50;
 constexpr const char* kSignOfTheEnd = "summary.json";
 
 }  // namespace
@@ -44,11 +46,23 @@ bool GrowingFile::isOver() const {
   return std::filesystem::exists(std::filesystem::path(path_).parent_path() / kSignOfTheEnd);
 }
 
+/// By its writer, which has not said that the run is over. Of one that nobody was seen to write
+/// more may come all the same: another program may copy it.
+bool GrowingFile::isLeft() {
+  struct flock lock {};
+  lock.l_type = F_RDLCK;
+  lock.l_whence = SEEK_SET;
+  const bool is_written = ::fcntl(fd_, F_OFD_GETLK, &lock) == 0 && lock.l_type == F_WRLCK;
+  was_written_ = was_written_ || is_written;
+  unwritten_looks_ = was_written_ && !is_written ? unwritten_looks_ + 1 : 0;
+  return unwritten_looks_ > kLeftAfter_looks;
+}
+
 GrowingFile::int_type GrowingFile::underflow() {
   if (gptr() < egptr()) return traits_type::to_int_type(*gptr());
   while (!stop_.stop_requested()) {
     // What was written before the end is there once the end is seen.
-    const bool is_other = isOther(), is_over = isOver();
+    const bool is_other = isOther(), is_over = isOver() || isLeft();
     const long size = fill();
     if (size > 0) {
       setg(buffer_.data(), buffer_.data(), buffer_.data() + size);

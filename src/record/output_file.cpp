@@ -144,6 +144,14 @@ void OutputFile::rename(const std::string& from, const std::string& to) {
   path_ = escaped(to);
 }
 
+/// A lock of the open file, as it is only looked at: to look disturbs nobody who takes it.
+void OutputFile::showThatItGrows() noexcept {
+  struct flock whole {};
+  whole.l_type = F_WRLCK;
+  whole.l_whence = SEEK_SET;
+  ::fcntl(descriptor_, F_OFD_SETLK, &whole);
+}
+
 void OutputFile::close() {
   if (descriptor_ < 0) return;
   flush();

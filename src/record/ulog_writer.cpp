@@ -209,6 +209,7 @@ UlogWriter::UlogWriter(const std::string& path, const LogDescription& descriptio
       runs_(packedRuns(description.shape, kDataHeaderSize)),
       data_size_(logBytesACycle(description.shape)),
       has_commands_(description.has_commands) {
+  file_.showThatItGrows();
   file_.append(logDefinitions(description));
 }
 

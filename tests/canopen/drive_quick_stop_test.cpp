@@ -17,10 +17,7 @@ TEST(DriveQuickStop, OneThatStaysInQuickStopIsLedThroughSwitchOnDisabledWhenItIs
   DriveRig rig;
   rig.slave.stays_in_quick_stop = true;
   rig.enable();
-  rig.cycles(300, DriveGoal::kQuickStop);
-  rig.cycle(DriveGoal::kConfigure, 0.0, true);
-  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
-  for (const DriveGoal goal : {DriveGoal::kConfigure, DriveGoal::kDisabled, DriveGoal::kQuickStop})
+  for (const DriveGoal goal : {DriveGoal::kQuickStop, DriveGoal::kDisabled, DriveGoal::kQuickStop})
     for (int i = 0; i < 300; ++i) EXPECT_NE(commandOf(rig.cycle(goal)).control_word, 0) << i;
   ASSERT_EQ(rig.report().state, DriveState::kQuickStopActive);
   rig.position = rig.report().position;
@@ -31,6 +28,21 @@ TEST(DriveQuickStop, OneThatStaysInQuickStopIsLedThroughSwitchOnDisabledWhenItIs
   }
   EXPECT_EQ(words, (std::vector{0x00, 0x06, 0x07, 0x0F}));
   EXPECT_EQ(rig.report().state, DriveState::kOperationEnabled);
+  EXPECT_EQ(rig.report().fault, Fault::kNone) << faultName(rig.report().fault);
+}
+
+/// One that rests there when it is set up, as a master before has left it, is off as all others
+/// are.
+TEST(DriveQuickStop, OneThatIsFoundInQuickStopIsLedOutOfItByTheSetUp) {
+  DriveRig rig;
+  rig.slave.stays_in_quick_stop = true;
+  rig.enable();
+  rig.cycles(300, DriveGoal::kQuickStop);
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
+  ASSERT_EQ(rig.report().state, DriveState::kQuickStopActive);
+  rig.cycles(300, DriveGoal::kConfigure);
+  EXPECT_EQ(rig.report().state, DriveState::kSwitchOnDisabled);
   EXPECT_EQ(rig.report().fault, Fault::kNone) << faultName(rig.report().fault);
 }
 

@@ -23,6 +23,18 @@ TEST(JournalSink, SaysEachChangeOfModeInALineAndToTheManager) {
             "STATUS=holding: tactile_invalid, at 3.214 s, 102.5 N, at most 100 N");
 }
 
+TEST(JournalSink, SaysOnceWhatToDoAboutAFault) {
+  JournalSink sink;
+  ModeReport report;
+  report.fault = Fault::kBusDown;
+  ::testing::internal::CaptureStderr();
+  sink.onMode(report, "stopping: bus_down");
+  sink.onMode(report, "holding: bus_down");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            std::string("tactusd: stopping: bus_down\ntactusd: what to do: ") +
+                faultRow(Fault::kBusDown).remedy + "\ntactusd: holding: bus_down\n");
+}
+
 TEST(JournalSink, TellsAManagerThatHungOnceItReadsAgain) {
   test::NotifySocket manager;
   manager.fill();

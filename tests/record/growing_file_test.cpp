@@ -4,11 +4,15 @@
 
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <istream>
 #include <iterator>
+#include <memory>
 #include <string>
+#include <thread>
 
 #include "support/run_folder.h"
+#include "tactus/record/output_file.h"
 
 namespace tactus {
 namespace {
@@ -45,6 +49,28 @@ TEST(GrowingFile, GoesOnInTheLastFileOfARunThatIsOver) {
   GrowingFile newest(path);
   EXPECT_EQ(textOf(newest), "newest");
   EXPECT_FALSE(newest.goesOn());
+}
+
+/// What it wrote last is read all the same.
+TEST(GrowingFile, EndsWithAWriterThatIsGone) {
+  const test::RunFolder folder;
+  const std::string path = folder.path() + "/run.ulg";
+  auto writer = std::make_unique<OutputFile>(path);
+  writer->showThatItGrows();
+  writer->append("first");
+  writer->flush();
+  GrowingFile file(path);
+  std::istream in(&file);
+  std::string text(5, ' ');
+  in.read(text.data(), 5);
+  EXPECT_EQ(text, "first");
+  std::future<std::string> rest = std::async(
+      std::launch::async, [&in] { return std::string(std::istreambuf_iterator<char>(in), {}); });
+  while (!file.isLive()) std::this_thread::yield();
+  writer->append("last");
+  writer.reset();  // as the kernel does for one that was killed
+  EXPECT_EQ(rest.get(), "last");
+  EXPECT_FALSE(file.goesOn());
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace tactus {
 
 /// A line on standard error, which is the journal's, and a word to the service manager for each
-/// change of mode or fault.
+/// change of mode or fault; of a new fault the remedy, too.
 class JournalSink final : public RecordSink {
  public:
   void flush() override { service_.tellAgain(); }
@@ -16,6 +16,7 @@ class JournalSink final : public RecordSink {
 
  private:
   ServiceNotify service_;
+  Fault fault_ = Fault::kNone;  ///< of the last report
 };
 
 }  // namespace tactus

@@ -9,8 +9,9 @@
 namespace tactus {
 
 /// A log that somebody else writes: where others are at its end, this waits for more. It ends where
-/// the run has ended, told by the summary beside it, where the log goes on in another file, and at
-/// the end of what is there once nobody waits for more.
+/// the run has ended, told by the summary beside it, where its writer has closed it or was killed,
+/// where the log goes on in another file, and at the end of what is there once nobody waits for
+/// more.
 class GrowingFile final : public std::streambuf {
  public:
   /// Throws InputError as openLog().
@@ -31,12 +32,15 @@ class GrowingFile final : public std::streambuf {
   long fill();
   bool isOther() const;
   bool isOver() const;
+  bool isLeft();
 
   std::string path_;
   std::stop_token stop_;
   int fd_ = -1;
   std::atomic<bool> is_live_ = false;
   bool goes_on_ = false;
+  bool was_written_ = false;  ///< somebody was seen to write it
+  int unwritten_looks_ = 0;   ///< in a row
   std::array<char, 1 << 16> buffer_;
 };
 

@@ -43,6 +43,10 @@ class OutputFile {
   void rename(const std::string& from, const std::string& to);
   void close();
 
+  /// Until it is closed, or this process ends in whatever way, a GrowingFile sees that more may
+  /// come. Where the file system knows no locks it does not, and waits.
+  void showThatItGrows() noexcept;
+
   /// What was appended so far, bytes.
   std::uint64_t size() const noexcept { return flushed_ + used_; }
 
