@@ -122,7 +122,6 @@ double GainChange::wayBack_s(GainTrouble trouble) const noexcept {
 
 void GainChange::goBack(GainTrouble trouble, double figure, double limit) noexcept {
   ramp(kept_, wayBack_s(trouble));
-  for_s_ = kNoLimit;  // their time is over for whatever is ordered on the way
   report_.state = GainState::kGoingBack;
   report_.trouble = trouble;
   report_.figure = figure;

@@ -5,13 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "support/shipped_scene.h"
+#include "support/scene_by_law.h"
 #include "support/virtual_robot_cell.h"
 
 /// An arm that rests in contact, is held by the enable line, and goes on: at rest as before.
 namespace tactus {
 namespace {
 
+using test::kLaws;
+using test::sceneByLaw;
 using test::VirtualRobotCell;
 
 constexpr int kRestingFrom = 13000;  ///< cycles, after the path's end
@@ -19,21 +21,6 @@ constexpr int kRestingFrom = 13000;  ///< cycles, after the path's end
 constexpr double kJump = 0.1;    ///< rad/s, within 0.1 s; out of balance laws jump by 0.3 and more
 constexpr double kLater = 0.3;   ///< rad/s, in the seconds in which what begins anew comes back
 constexpr double kMore_N = 1.0;  ///< in all of that
-
-/// With "/a" at the acceleration level.
-const char* const kLaws[] = {"null_space", "joint_space", "task_space",  "null_task",
-                             "null_joint", "null_limit",  "null_task/a", "null_limit/a"};
-
-Scene restingScene(const std::string& file, const std::string& law, bool has_posture = false) {
-  const std::size_t slash = law.find('/');
-  std::vector<Override> overrides = {{"controller.variant", law.substr(0, slash)}};
-  if (slash != std::string::npos) overrides.push_back({"controller.level", "acceleration"});
-  if (has_posture) overrides.push_back({"redundancy.posture", "{}"});
-  Scene scene = test::shippedScene(file, overrides);
-  scene.hardware->gpio.emplace();
-  scene.hardware->gpio->enable.emplace();
-  return scene;
-}
 
 /// Fastest joint in so many cycles, and the largest force.
 double fastest(VirtualRobotCell& cell, int cycles, double* force_N = nullptr) {
@@ -89,14 +76,14 @@ VirtualRobotCell restingCell(const Scene& scene) {
 
 TEST(GoingOnInContact, NoLawJumps) {
   for (const char* const law : kLaws) {
-    VirtualRobotCell cell = restingCell(restingScene("scenario1_multi_space", law));
+    VirtualRobotCell cell = restingCell(sceneByLaw("scenario1_multi_space", law));
     hold(cell).expectNoJump(law);
   }
 }
 
 TEST(GoingOnInContact, NoLawJumpsWithAPosture) {
   for (const char* const law : kLaws) {
-    VirtualRobotCell cell = restingCell(restingScene("scenario1_multi_space", law, true));
+    VirtualRobotCell cell = restingCell(sceneByLaw("scenario1_multi_space", law, true));
     hold(cell).expectNoJump(law);
   }
 }
@@ -104,7 +91,7 @@ TEST(GoingOnInContact, NoLawJumpsWithAPosture) {
 /// Of a change of gains the arm sees all of the ramp.
 TEST(GoingOnInContact, GainsThatAreSetInAHoldAreNoJump) {
   for (const char* const law : kLaws) {
-    const Scene scene = restingScene("scenario1_multi_space", law);
+    const Scene scene = sceneByLaw("scenario1_multi_space", law);
     const VirtualRobotCell resting = restingCell(scene);
     for (const double gain : {0.2, 3.0}) {
       VirtualRobotCell cell = resting;
@@ -122,7 +109,7 @@ TEST(GoingOnInContact, GainsThatAreSetInAHoldAreNoJump) {
 TEST(GoingOnInContact, ATaskThatIsGoneIsNoJump) {
   for (const char* const law :
        {"joint_space", "null_task", "null_joint", "null_limit", "null_task/a", "null_limit/a"}) {
-    VirtualRobotCell cell(restingScene("commands", law));
+    VirtualRobotCell cell(sceneByLaw("commands", law));
     ASSERT_TRUE(cell.runUntil(Mode::kRunning, 5000));
     ToolSight sight;
     cell.cycle.fill(sight);

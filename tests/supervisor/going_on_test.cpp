@@ -5,7 +5,7 @@
 #include <string>
 
 #include "support/hand.h"
-#include "support/shipped_scene.h"
+#include "support/scene_by_law.h"
 #include "support/virtual_robot_cell.h"
 
 /// What an arm that was held goes on with: nothing that it felt meanwhile may move it.
@@ -13,27 +13,15 @@ namespace tactus {
 namespace {
 
 using test::Hand;
+using test::kLaws;
+using test::sceneByLaw;
 using test::VirtualRobotCell;
 
 constexpr double kMaxSurplus = 0.25;  ///< m/s or rad/s above a hold without trouble
 
-/// With "/a" at the acceleration level.
-const char* const kVariants[] = {"null_space", "joint_space", "task_space",  "null_task",
-                                 "null_joint", "null_limit",  "null_task/a", "null_limit/a"};
-
-Scene sceneOf(const std::string& variant) {
-  const std::size_t slash = variant.find('/');
-  std::vector<Override> overrides = {{"controller.variant", variant.substr(0, slash)}};
-  if (slash != std::string::npos) overrides.push_back({"controller.level", "acceleration"});
-  Scene scene = test::shippedScene("scenario1_multi_space", overrides);
-  scene.hardware->gpio.emplace();
-  scene.hardware->gpio->enable.emplace();
-  return scene;
-}
-
 /// A cell that has been running for as many cycles.
 VirtualRobotCell runningCell(const std::string& variant, int cycles) {
-  VirtualRobotCell cell(sceneOf(variant));
+  VirtualRobotCell cell(sceneByLaw("scenario1_multi_space", variant));
   EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000));
   for (int i = 0; i < cycles; ++i) cell.step();
   return cell;
@@ -90,7 +78,7 @@ double peakAfter(const VirtualRobotCell& running, const Holding& holding, bool h
 }
 
 TEST(GoingOn, AHandDuringAHoldMovesNothingLater) {
-  for (const char* variant : kVariants) {
+  for (const char* law : kLaws) {
     for (const int at : {2000, 7000}) {  // in free motion, and in contact
       const VirtualRobotCell running = runningCell(variant, at);
       for (const Holding& holding : kHoldings) {
@@ -122,7 +110,7 @@ TEST(GoingOn, AnArmThatAPauseHasStoppedMakesUpForNoneOfIt) {
 }
 
 TEST(GoingOn, ASilentModuleInContactMovesNothingLater) {
-  for (const char* variant : kVariants) {
+  for (const char* law : kLaws) {
     const VirtualRobotCell running = runningCell(variant, 7000);
     double peaks[2];
     for (const bool is_silent : {false, true}) {
@@ -144,7 +132,7 @@ TEST(GoingOn, ASilentModuleInContactMovesNothingLater) {
 
 /// A module under a cover of weight. While drives boot nobody knows where joints are.
 Scene sceneWithCover(int tare_samples) {
-  Scene scene = sceneOf("null_limit");
+  Scene scene = sceneByLaw("scenario1_multi_space", "null_limit");
   for (TactileModuleConfig& module : scene.controller.tactile_modules)
     module.cover = CoverConfig{0.4, Vector3(0.19, 0.0, 0.0)};
   scene.controller.gravity_Base = Vector3(0.0, 0.0, -9.81);
