@@ -73,32 +73,32 @@ ControlRequests::ControlRequests(const Scene& scene, LoopLink& link)
   before_.reserve(kKeptForUndo);  // so that keep() never ends halfway
 }
 
-std::string ControlRequests::answer(std::string_view request, const IsAsked& is_asked) {
+std::string ControlRequests::answer(std::string_view request, const Asker& asker) {
   try {
     const Json parsed = Json::parse(request, nullptr, false);
     if (!parsed.is_object()) refuseRequest("no JSON object", "one a message");
-    return compact(dispatch(parsed, is_asked));
+    return compact(dispatch(parsed, asker));
   } catch (const std::exception& error) {
     return compact({{"done", false}, {"error", error.what()}});
   }
 }
 
-Json ControlRequests::dispatch(const Json& request, const IsAsked& is_asked) {
+Json ControlRequests::dispatch(const Json& request, const Asker& asker) {
   notice();  // what is planned is laid over what runs now
   const std::string what = wishOf(request);
   if (what == "set") return set(request);
   if (what == "reload") return reload(request);
   if (what == "undo") return undo(request);
   if (what == "show") return show(request);
-  return tell(what, request, is_asked);
+  return tell(what, request, asker);
 }
 
-Json ControlRequests::tell(const std::string& what, const Json& request, const IsAsked& is_asked) {
+Json ControlRequests::tell(const std::string& what, const Json& request, const Asker& asker) {
   Json task;
   if (what == "move" || what == "stream") {
-    task = tool_.move(request, is_asked);
+    task = tool_.move(request, asker);
   } else if (what == "follow") {
-    task = tool_.follow(request, is_asked);
+    task = tool_.follow(request, asker);
   } else if (what == "hold") {
     task = tool_.hold(request);
   } else {
@@ -145,13 +145,19 @@ Json ControlRequests::reload(const Json& request) {
   return json;
 }
 
-/// Without those of the start whose gains are others by now: what is saved takes their place.
+/// Without those of the start whose gains are others by now: what is saved takes their place. Of a
+/// whole section that was set the gain is set behind it.
 std::vector<Override> ControlRequests::settingsThatHold() {
   std::vector<Override> settings = settings_;
   const Gains &started = started_.controller.gains, &now = newest().controller.gains;
   for (const GainKey& key : gainKeys()) {
-    if (gainAt(started, key.offset) == gainAt(now, key.offset)) continue;
+    const double gain = gainAt(now, key.offset);
+    if (gainAt(started, key.offset) == gain) continue;
     std::erase_if(settings, [&](const Override& setting) { return setting.key == key.path; });
+    const bool is_in_section = std::ranges::any_of(settings_, [&](const Override& setting) {
+      return key.path.starts_with(setting.key + ".");
+    });
+    if (is_in_section) settings.push_back({key.path, Json(gain).dump()});
   }
   return settings;
 }

@@ -29,15 +29,19 @@ bool hasRuntimeFolder() {
   return folder && *folder;
 }
 
+bool isReady(const PacketSocket& socket) noexcept {
+  pollfd ready{socket.fd(), POLLIN, 0};
+  return ::poll(&ready, 1, 0) > 0;
+}
+
 /// Who has asked was told that nobody answers, or was interrupted.
 bool hasLeft(const PacketSocket& socket) noexcept {
   pollfd end{socket.fd(), 0, 0};
   return ::poll(&end, 1, 0) > 0 && (end.revents & POLLHUP) != 0;
 }
 
-bool isHold(std::span<const char> room, long size) {
-  const auto length = std::min(static_cast<std::size_t>(size), room.size());
-  const Json request = Json::parse(room.begin(), room.begin() + length, nullptr, false);
+bool isHold(const std::string& message) {
+  const Json request = Json::parse(message, nullptr, false);
   return request.is_object() && wishOf(request) == "hold";
 }
 
@@ -46,7 +50,7 @@ bool isHold(std::span<const char> room, long size) {
 std::string controlPath() { return runtimePath(kControlName); }
 
 ControlSocket::ControlSocket(const Scene& scene, LoopLink& link)
-    : requests_(scene, link), listening_(PacketSocket::ofManager()) {
+    : link_(link), requests_(scene, link), listening_(PacketSocket::ofManager()) {
   if (!listening_.isOpen() && hasRuntimeFolder()) {
     made_path_ = controlPath();
     listening_ = PacketSocket::listenAt(made_path_, kMaxClients);
@@ -83,23 +87,44 @@ void ControlSocket::serve(const std::stop_token& stop) noexcept {
 void ControlSocket::look() {
   const std::string news = requests_.look();
   if (!news.empty()) say("{}", news);
+  receive();
+  answerOne();
+}
+
+/// A request of each client that waits for none.
+void ControlSocket::receive() {
   const double now_s = monotonicTime_s();
   std::vector<pollfd> polled(1, {listening_.fd(), POLLIN, 0});
   for (const Client& client : clients_) {
-    const bool may_speak = client.may_speak_s <= now_s;
+    const bool may_speak = client.may_speak_s <= now_s && client.request.empty();
     polled.push_back({client.socket.fd(), static_cast<short>(may_speak ? POLLIN : 0), 0});
   }
+  if (await(polled) <= 0) return;
+  auto client = clients_.begin();
+  for (std::size_t i = 1; i < polled.size(); ++i) {
+    const bool is_new = polled[i].revents != 0 && client->request.empty();
+    const bool stays = !is_new || hear(*client);
+    client = stays ? std::next(client) : clients_.erase(client);
+  }
+  for (int i = 0; i < kMaxClients && isReady(listening_); ++i) accept();
+}
+
+/// As poll(). What is there at once came since the last look, which may be long ago.
+int ControlSocket::await(std::vector<pollfd>& polled) {
+  const auto cycle = [this] { return link_.pulse.cycles.load(std::memory_order_relaxed); };
+  const std::int64_t before = std::exchange(looked_at_cycle_, cycle());
+  const auto count = ::poll(polled.data(), polled.size(), 0);
+  came_after_cycle_ = before;
+  const bool has_to_answer =
+      std::ranges::any_of(clients_, [](const Client& client) { return !client.request.empty(); });
+  if (count != 0 || has_to_answer) return count;
+  const double now_s = monotonicTime_s();
   const bool is_all_ears = std::ranges::all_of(
       clients_, [now_s](const Client& client) { return client.may_speak_s <= now_s; });
   const int ready =
       ::poll(polled.data(), polled.size(), is_all_ears ? kLook_ms : 1000 / kMessagesPerS);
-  if (ready <= 0) return;
-  auto client = clients_.begin();
-  for (std::size_t i = 1; i < polled.size(); ++i) {
-    const bool stays = polled[i].revents == 0 || hear(*client);
-    client = stays ? std::next(client) : clients_.erase(client);
-  }
-  if (polled[0].revents != 0) accept();
+  came_after_cycle_ = looked_at_cycle_ = cycle();
+  return ready;
 }
 
 void ControlSocket::accept() {
@@ -118,17 +143,38 @@ bool ControlSocket::hear(Client& client) {
   std::array<char, kMaxControlMessage> room;
   const long size = client.socket.receive(room);
   if (size <= 0) return size < 0;
-  // What nobody waits for any more would move the arm unasked. To stop it is never wrong.
-  if (hasLeft(client.socket) && !isHold(room, size)) return true;
-  const bool is_whole = static_cast<std::size_t>(size) <= room.size();
-  const auto is_asked = [&client] { return !hasLeft(client.socket); };
-  return client.socket.send(answer(room, size, is_asked)) && is_whole;
+  if (static_cast<std::size_t>(size) > room.size()) {
+    client.socket.send(R"({"done":false,"error":"request: longer than 32768 bytes"})");
+    return false;
+  }
+  client.request.assign(room.data(), static_cast<std::size_t>(size));
+  client.is_hold = isHold(client.request);
+  client.asker = {.waits = [&client] { return !hasLeft(client.socket); },
+                  .came_after_cycle = came_after_cycle_};
+  return true;
 }
 
-std::string ControlSocket::answer(std::span<char> room, long size, const IsAsked& is_asked) {
-  const auto length = static_cast<std::size_t>(size);
-  if (length > room.size()) return R"({"done":false,"error":"request: longer than 32768 bytes"})";
-  return requests_.answer({room.data(), length}, is_asked);
+/// A hold, or else who was answered the longest ago. What had come before the hold would move the
+/// arm behind it.
+void ControlSocket::answerOne() {
+  auto client = std::ranges::find_if(
+      clients_, [](const Client& it) { return it.is_hold && !it.request.empty(); });
+  if (client != clients_.end()) {
+    for (Client& other : clients_) other.asker.is_overtaken = true;
+  } else {
+    client = std::ranges::find_if(clients_, [](const Client& it) { return !it.request.empty(); });
+  }
+  if (client == clients_.end()) return;
+  clients_.splice(clients_.end(), clients_, client);
+  if (!answer(*client)) clients_.erase(client);
+}
+
+/// False: it is to be closed.
+bool ControlSocket::answer(Client& client) {
+  const std::string request = std::exchange(client.request, "");
+  // What nobody waits for any more would move the arm unasked. To stop it is never wrong.
+  if (hasLeft(client.socket) && !client.is_hold) return true;
+  return client.socket.send(requests_.answer(request, client.asker));
 }
 
 }  // namespace tactus

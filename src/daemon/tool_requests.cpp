@@ -43,8 +43,12 @@ const char* stateName(ToolState state) noexcept {
 }
 
 /// To look how far a way can be gone takes time, in which who asked may have thought better of it.
-void requireAsker(const IsAsked& is_asked) {
-  if (is_asked && !is_asked()) throw InputError("who asked has left");
+void requireAsker(const Asker& asker) {
+  if (asker.waits && !asker.waits()) throw InputError("who asked has left");
+}
+
+void requireNotOvertaken(const Asker& asker) {
+  if (asker.is_overtaken) throw InputError("a hold has come meanwhile");
 }
 
 Json vectorJson(const Vector3& v) { return Json::array({v.x(), v.y(), v.z()}); }
@@ -70,21 +74,23 @@ void ToolRequests::requireArm() {
     throw InputError("the arm does not run, expected mode running; `tactus status` says why");
 }
 
-/// By the loop's clock.
-bool ToolRequests::isStreamAlive() const {
-  const std::int64_t cycles = link_.pulse.cycles.load(std::memory_order_relaxed) - streamed_cycle_;
+/// By the loop's clock. A target that waited here, behind what takes long, makes no pause.
+bool ToolRequests::isStreamAlive(const Asker& asker) const {
+  const std::int64_t now = link_.pulse.cycles.load(std::memory_order_relaxed);
+  const std::int64_t cycles = asker.came_after_cycle.value_or(now) - streamed_cycle_;
   return static_cast<double>(cycles) * scene_.period_s <=
          scene_.controller.task.commands->stream_timeout_s;
 }
 
 /// Of a stream each target counts as heard, also one that is refused. A stop of the arm ends it
-/// like a hold: nobody has seen it come on, and the tool would leave at once.
-void ToolRequests::hearStream() {
+/// like a hold, and one that began while the arm stood still has not begun: nobody has seen it come
+/// on, and the tool would leave at once.
+void ToolRequests::hearStream(const Asker& asker) {
   requireCommands();
   refresh();
-  const bool is_alive = isStreamAlive();
   const bool has_outlived_stop = is_streaming_ && sight_.run != stream_run_;
-  is_stream_held_ = is_alive && (is_stream_held_ || has_outlived_stop);
+  is_stream_held_ = !sight_.is_running || asker.is_overtaken ||
+                    (isStreamAlive(asker) && (is_stream_held_ || has_outlived_stop));
   streamed_cycle_ = link_.pulse.cycles.load(std::memory_order_relaxed);
 }
 
@@ -120,12 +126,13 @@ Reach ToolRequests::reach(const std::string& what, const JointVector& q,
   return reach;
 }
 
-Json ToolRequests::move(const Json& request, const IsAsked& is_asked) {
+Json ToolRequests::move(const Json& request, const Asker& asker) {
   refuseUnknown(request, {"do", "to_m", "rotate_rad", "relative", "to_posture", "speed_m_per_s",
                           "speed_rad_per_s"});
   const bool is_stream = wishOf(request) == "stream";
-  if (is_stream) hearStream();
+  if (is_stream) hearStream(asker);
   requireArm();
+  requireNotOvertaken(asker);
   if (is_stream && flagOf(request, "to_posture"))
     refuseRequest("to_posture is given, but the way of a stream is not checked", "move");
   const ToolTarget goal =
@@ -135,7 +142,7 @@ Json ToolRequests::move(const Json& request, const IsAsked& is_asked) {
     requireNoHold();
   else
     duration_s = reach("move", jointsOf(sight_), goal).duration_s;
-  requireAsker(is_asked);
+  requireAsker(asker);
   return order(goal.order, duration_s);
 }
 
@@ -152,9 +159,10 @@ ToolTarget ToolRequests::asked(const std::string& what, const Json& waypoint, co
   }
 }
 
-Json ToolRequests::follow(const Json& request, const IsAsked& is_asked) {
+Json ToolRequests::follow(const Json& request, const Asker& asker) {
   refuseUnknown(request, {"do", "waypoints"});
   requireArm();
+  requireNotOvertaken(asker);
   const auto found = request.find("waypoints");
   if (found == request.end() || !found->is_array() || found->empty())
     refuseRequest("no waypoints", "a list of them");
@@ -172,7 +180,7 @@ Json ToolRequests::follow(const Json& request, const IsAsked& is_asked) {
     from = next.X_BaseTool;
   }
   if (!link_.tool_orders.hasRoom(orders.size())) throw InputError(kNoRoom);
-  requireAsker(is_asked);
+  requireAsker(asker);
   ++number_;
   is_streaming_ = false;
   for (ToolOrder& order : orders) {
@@ -187,12 +195,10 @@ Json ToolRequests::follow(const Json& request, const IsAsked& is_asked) {
 Json ToolRequests::hold(const Json& request) {
   refuseUnknown(request, {"do"});
   requireArm();
-  const bool is_stream_held = is_stream_held_ || (is_streaming_ && isStreamAlive());
   ToolOrder hold;
   hold.limits = scene_.controller.task.commands->limits;
-  Json json = order(hold, 0.0);
-  is_stream_held_ = is_stream_held;
-  return json;
+  is_stream_held_ = true;  // of one that goes on; another begins after a pause
+  return order(hold, 0.0);
 }
 
 /// All of a stream has one number.

@@ -39,6 +39,12 @@ PacketSocket open(const std::string& path, int flags) {
   return socket;
 }
 
+/// Not of a socket whose process is gone. One whose backlog is full is not.
+bool isListenedAt(const std::string& path, const sockaddr_un& address) {
+  const PacketSocket probe = open(path, SOCK_NONBLOCK);
+  return ::connect(probe.fd(), generic(address), sizeof(address)) == 0 || errno == EAGAIN;
+}
+
 }  // namespace
 
 PacketSocket::PacketSocket(PacketSocket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
@@ -64,6 +70,7 @@ PacketSocket PacketSocket::connectTo(const std::string& path, double patience_s)
 
 PacketSocket PacketSocket::listenAt(const std::string& path, int backlog) {
   const sockaddr_un address = addressOf(path);
+  if (isListenedAt(path, address)) fail(path, EADDRINUSE);
   PacketSocket socket = open(path, SOCK_NONBLOCK);
   ::unlink(path.c_str());
   if (::bind(socket.fd_, generic(address), sizeof(address)) != 0 ||

@@ -7,9 +7,11 @@
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "support/run_folder.h"
@@ -101,6 +103,42 @@ TEST_F(ControlSocketTest, TakesOfWhoHasLeftNothingButAHold) {
   client.ask(Json::parse(stream));
   ASSERT_TRUE(link_->tool_orders.pop(order));
   EXPECT_EQ(order.kind, ToolOrder::Kind::kStream);
+}
+
+/// Whoever connected first, and although the move came first.
+TEST_F(ControlSocketTest, AnswersAHoldBeforeWhatWaits) {
+  const ManagedSocket managed(controlPath());
+  const auto send = [](const std::string& request) {
+    const int fd = connect(controlPath());
+    EXPECT_EQ(::send(fd, request.data(), request.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(request.size()));
+    return fd;
+  };
+  const int stream = send(R"({"do": "stream", "to_m": [0, 0.001, 0], "relative": true})");
+  const int hold = send(R"({"do": "hold"})");
+  ToolSight sight;
+  sight.is_running = true;
+  link_->tool_sights.put(sight);
+  const ControlSocket socket(scene_, *link_);
+  const auto answer = [](int fd) {
+    std::string room(4096, ' ');
+    room.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::recv(fd, room.data(), 4096, 0))));
+    ::close(fd);
+    return Json::parse(room);
+  };
+  EXPECT_EQ(answer(hold).at("done"), true);
+  EXPECT_EQ(answer(stream).value("error", ""), "a hold has come meanwhile");
+  ToolOrder order;
+  EXPECT_TRUE(link_->tool_holds.take(order));
+  EXPECT_FALSE(link_->tool_orders.pop(order));
+}
+
+TEST_F(ControlSocketTest, LeavesAPathToTheDaemonThatAnswersThere) {
+  const ControlSocket socket(scene_, *link_);
+  const auto other = std::make_unique<LoopLink>();
+  EXPECT_THROW(ControlSocket(scene_, *other), std::system_error);
+  const ControlClient client(controlPath());
+  EXPECT_EQ(client.ask({{"do", "show"}}).at("done"), true);
 }
 
 /// What the journal is told of gains must not cost the answer to a hold.

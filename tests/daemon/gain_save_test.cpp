@@ -194,5 +194,22 @@ TEST_F(SetAtTheStart, HidesNoGainsThatWentBackMeanwhile) {
   EXPECT_EQ(ordered(), 0.9);
 }
 
+/// A daemon that was started with a section of --set, whose other keys hold on.
+class SectionSetAtTheStart : public SavedGainsTest {
+ protected:
+  SectionSetAtTheStart()
+      : SavedGainsTest({{"controller", "{damping: 0.9, time_constant_s: 0.06}"}}) {}
+};
+
+TEST_F(SectionSetAtTheStart, GivesWayToWhatIsSaved) {
+  requests_.answer(kSet);
+  EXPECT_TRUE(save([] {}).is_new);
+  EXPECT_NE(file_.text().find("damping: 0.8"), std::string::npos) << file_.text();
+  const Json reload = Json::parse(requests_.answer(R"({"do": "reload"})"));
+  EXPECT_TRUE(reload.at("changes").empty()) << reload;
+  EXPECT_EQ(reload.at("ordered").at("controller.damping"), 0.8);
+  EXPECT_EQ(reload.at("ordered").at("controller.time_constant_s"), 0.06);
+}
+
 }  // namespace
 }  // namespace tactus

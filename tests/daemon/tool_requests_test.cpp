@@ -339,14 +339,16 @@ TEST_F(ToolRequestsTest, TellsTheToolNothingForWhoHasLeft) {
   stream["do"] = "stream";
   for (const Json& request : {move, stream, Json{{"do", "follow"}, {"waypoints", {there}}}}) {
     for (const bool is_asked : {false, true}) {
-      const std::string answer = requests.answer(request.dump(), [=] { return is_asked; });
+      const std::string answer =
+          requests.answer(request.dump(), {.waits = [=] { return is_asked; }});
       EXPECT_EQ(Json::parse(answer).at("done"), is_asked) << answer;
       ToolOrder order;
       EXPECT_EQ(link.tool_orders.pop(order), is_asked) << request;
     }
   }
   const Json hold = {{"do", "hold"}};
-  EXPECT_EQ(Json::parse(requests.answer(hold.dump(), [] { return false; })).at("done"), true);
+  EXPECT_EQ(Json::parse(requests.answer(hold.dump(), {.waits = [] { return false; }})).at("done"),
+            true);
 }
 
 TEST_F(ToolRequestsTest, RefusesWhileTheArmDoesNotRun) {
@@ -453,6 +455,49 @@ TEST_F(ToolRequestsTest, AStopHoldsUntilAStreamHasPaused) {
     for (ToolOrder order; link.tool_orders.pop(order);) continue;
     pause(1.1);
   }
+}
+
+/// Who streams before the arm runs has not seen it come on, either.
+TEST_F(ToolRequestsTest, AStreamThatBeganWhileTheArmStoodStillHasToPause) {
+  const Json target = {{"do", "stream"}, {"to_m", {0.95, 0.3, 0.25}}};
+  see(false);
+  EXPECT_NE(refusal(target).find("does not run"), std::string::npos);
+  see(true);
+  link.pulse.cycles += 10;
+  EXPECT_NE(refusal(target).find("a hold or a stop has ended this stream"), std::string::npos);
+  link.pulse.cycles +=
+      std::lround(1.1 * scene.controller.task.commands->stream_timeout_s / scene.period_s);
+  EXPECT_EQ(ask(target).at("done"), true);
+}
+
+/// What its targets wait for here is no pause of who streams.
+TEST_F(ToolRequestsTest, AHoldHoldsAStreamWhoseTargetsWaited) {
+  const std::string target = R"({"do": "stream", "to_m": [0.95, 0.3, 0.25]})";
+  const auto answer = [&](const Asker& asker) {
+    return Json::parse(requests.answer(target, asker)).at("done").get<bool>();
+  };
+  EXPECT_TRUE(answer({}));
+  const std::int64_t came = link.pulse.cycles;
+  link.pulse.cycles += 1000;  // something took long
+  EXPECT_EQ(ask({{"do", "hold"}}).at("done"), true);
+  EXPECT_FALSE(answer({.came_after_cycle = came}));
+  EXPECT_FALSE(answer({.came_after_cycle = link.pulse.cycles})) << "it has been heard just now";
+  link.pulse.cycles += 1000;
+  EXPECT_TRUE(answer({.came_after_cycle = link.pulse.cycles}));
+}
+
+/// What came before a hold, and is looked at behind it, moves nothing.
+TEST_F(ToolRequestsTest, AHoldOvertakes) {
+  const Asker overtaken{.is_overtaken = true};
+  for (const char* request : {R"({"do": "move", "to_m": [0.95, 0.3, 0.25]})",
+                              R"({"do": "stream", "to_m": [0.95, 0.3, 0.25]})",
+                              R"({"do": "follow", "waypoints": [{"to_m": [0.95, 0.3, 0.25]}]})"}) {
+    const Json answer = Json::parse(requests.answer(request, overtaken));
+    EXPECT_EQ(answer.value("error", ""), "a hold has come meanwhile");
+    ToolOrder order;
+    EXPECT_FALSE(link.tool_orders.pop(order)) << request;
+  }
+  EXPECT_EQ(Json::parse(requests.answer(R"({"do": "show"})", overtaken)).at("done"), true);
 }
 
 TEST(ToolRequestsOfAPath, AreRefused) {

@@ -25,8 +25,8 @@ class ControlRequests {
   /// scene: of the start.
   ControlRequests(const Scene& scene, LoopLink& link);
 
-  /// is_asked: who asks still waits; the tool is told nothing for somebody who has left.
-  std::string answer(std::string_view request, const IsAsked& is_asked = nullptr);
+  /// The tool is told nothing for an asker who has left, or has been overtaken by a hold.
+  std::string answer(std::string_view request, const Asker& asker = {});
 
   /// Looks what the loop has made of the last order. Returns a line for the journal, empty if
   /// nothing is new.
@@ -46,11 +46,11 @@ class ControlRequests {
     bool is_for_a_time;
   };
 
-  Json dispatch(const Json& request, const IsAsked& is_asked);
+  Json dispatch(const Json& request, const Asker& asker);
   Json set(const Json& request);
   Json reload(const Json& request);
   Json undo(const Json& request);
-  Json tell(const std::string& what, const Json& request, const IsAsked& is_asked);
+  Json tell(const std::string& what, const Json& request, const Asker& asker);
   Json showGains();
   Json show(const Json& request);
   std::string lookAtGains();
