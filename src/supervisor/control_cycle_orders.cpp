@@ -34,10 +34,12 @@ double ControlCycle::nextPathTime_s() const noexcept {
 void ControlCycle::fill(ToolSight& sight) const noexcept {
   sight.report = tool_orders_->report();
   sight.is_running = isRunning();
-  std::copy_n(state_.q_desired.data(), state_.q_desired.size(), sight.q);
+  // Before it has ever run the arm is not where its scene begins, but where it was put.
+  const JointVector& q = is_started_ ? state_.q_desired : output_.q_desired;
+  std::copy_n(q.data(), q.size(), sight.q);
   sight.run = runs_;
-  Pose X_BaseTool = toolPose();
-  if (toolProgress() >= kFreeProgress) {
+  Pose X_BaseTool = is_started_ ? toolPose() : tipPose(controller_.config().chain, q);
+  if (is_started_ && toolProgress() >= kFreeProgress) {
     const ToolReference reference = state_.tool_motion->evaluate(nextPathTime_s());
     X_BaseTool = {reference.R_BaseTool, reference.p_BaseTool};
   }

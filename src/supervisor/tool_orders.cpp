@@ -58,7 +58,9 @@ void ToolOrders::forget() noexcept {
 void ToolOrders::update(const ToolWatch& seen, ToolMotion& motion) noexcept {
   // Orders of before a stop may come late.
   if (!seen.is_running || (count_ > 0 && waiting_[first_].run != seen.run)) forget();
-  if (seen.is_running) watch(seen, motion);
+  paused_s_ = std::max(0.0, paused_s_ - seen.passed_s);
+  silent_s_ += seen.passed_s;
+  if (seen.is_running && !isReplaced()) watch(seen, motion);
   const bool is_free = !isUnderWay(report_.state) && paused_s_ <= 0.0;
   if (count_ > 0 && (waiting_[first_].kind != ToolOrder::Kind::kGoNext || is_free)) {
     const ToolOrder order = waiting_[first_];
@@ -99,9 +101,15 @@ void ToolOrders::begin(const ToolOrder& order, const ToolWatch& seen, ToolMotion
   report_.state = order.kind == ToolOrder::Kind::kHold ? ToolState::kHolding : ToolState::kMoving;
 }
 
+/// By another order in this cycle, which giving up the one that is under way would throw away.
+bool ToolOrders::isReplaced() const noexcept {
+  using Kind = ToolOrder::Kind;
+  if (count_ == 0) return false;
+  const Kind next = waiting_[first_].kind;
+  return next != Kind::kGoNext && !(next == Kind::kStream && current_.kind == Kind::kStream);
+}
+
 void ToolOrders::watch(const ToolWatch& seen, ToolMotion& motion) noexcept {
-  paused_s_ = std::max(0.0, paused_s_ - seen.passed_s);
-  silent_s_ += seen.passed_s;
   if (!isUnderWay(report_.state)) return;
   if (current_.kind == ToolOrder::Kind::kStream && silent_s_ > config_.stream_timeout_s) {
     if (seen.progress < kFreeProgress) return rest(seen, ToolState::kLate, motion);

@@ -277,6 +277,24 @@ TEST(CommandedCycle, SaysWhetherItRuns) {
   EXPECT_FALSE(sight.is_running);
 }
 
+/// Who brings an arm back to where its scene begins sees where it is.
+TEST(CommandedCycle, SaysWhereAnArmIsThatHasNotRunYet) {
+  Scene scene = toldScene({{"simulation.obstacles", "[]"}});
+  VirtualRobotCell cell(scene);
+  JointVector q = scene.controller.q_start;
+  q[3] += 0.4;
+  ControllerConfig elsewhere = scene.controller;
+  elsewhere.q_start = q;
+  cell.plant = Plant(elsewhere, scene.plant, *scene.hardware, scene.period_s, scene.troubles);
+  for (int i = 0; i < 4000; ++i) cell.step();
+  EXPECT_EQ(cell.cycle.report().fault, Fault::kNotAtStart);
+  ToolSight sight;
+  cell.cycle.fill(sight);
+  EXPECT_NEAR(sight.q[3], q[3], 1e-3);
+  const Pose there = tipPose(scene.controller.chain, q);
+  EXPECT_LT((Eigen::Map<const Vector3>(sight.p_BaseTool_m) - there.p_AB).norm(), 1e-3);
+}
+
 /// And turns it, where its orientation is of the task.
 TEST(CommandedCycle, TurnsTheTool) {
   const Scene scene = toldScene({{"simulation.obstacles", "[]"},

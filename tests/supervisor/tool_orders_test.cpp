@@ -49,6 +49,21 @@ TEST(ToolOrders, GoFromWaypointToWaypointWithTheirPauses) {
   EXPECT_EQ(rig.orders.report().waiting, 0);
 }
 
+/// Also in the very cycle in which the one before is given up, whenever that is.
+TEST(ToolOrders, ANewOneIsNotGivenUpWithTheOneBefore) {
+  for (int cycle = 1900; cycle < 2200; ++cycle) {
+    OrdersRig rig;
+    rig.orders.order(orderTo({0.5, 0.0, 0.0}, 1));
+    rig.run(0.5);
+    rig.is_held_off = true;
+    for (int i = 0; i < cycle; ++i) rig.step();
+    rig.orders.order(orderTo({0.0, 0.2, 0.0}, 2));
+    rig.step();
+    EXPECT_EQ(rig.orders.report().number, 2u) << cycle;
+    EXPECT_EQ(rig.state(), ToolState::kMoving) << cycle;
+  }
+}
+
 TEST(ToolOrders, ANewOneTakesThePlaceOfAll) {
   OrdersRig rig;
   rig.orders.order(orderTo({0.3, 0.0, 0.0}, 1));

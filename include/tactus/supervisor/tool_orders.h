@@ -89,6 +89,7 @@ class ToolOrders {
  private:
   void forget() noexcept;
   bool isGivenUp(const ToolOrder& order) const noexcept;
+  bool isReplaced() const noexcept;
   void begin(const ToolOrder& order, const ToolWatch& seen, ToolMotion& motion) noexcept;
   void watch(const ToolWatch& seen, ToolMotion& motion) noexcept;
   void rest(const ToolWatch& seen, ToolState state, ToolMotion& motion) noexcept;
