@@ -67,10 +67,18 @@ void Controller::leadAnew(const Gains& gains, bool is_leaning,
   if (is_leaning) state.way_out_added -= state.way_out_before;
 }
 
+/// By a cost in its null space.
+bool Controller::isLed(const Gains& gains, ControllerState& state) const noexcept {
+  if (posture_ || (config_.clearance && config_.clearance->avoid)) return true;
+  return joint_limit_avoidance_ && !costAt(state.q_desired, gains, state).gradient.isZero(0.0);
+}
+
 void Controller::begin(ControllerState& state) const noexcept {
   const JointVector beside = state.q_desired - config_.q_start;
-  // A scene may begin far from its posture, and where it begins.
-  if (posture_ || beside.cwiseAbs().maxCoeff() > kBeside) state.return_share = 0.0;
+  // A scene may begin far from its posture, near to a joint limit or a body, and where it begins.
+  const bool is_led = posture_ || !state.way_out_added.isZero(0.0) ||
+                      (config_.clearance && config_.clearance->avoid);
+  if (is_led || beside.cwiseAbs().maxCoeff() > kBeside) state.return_share = 0.0;
 }
 
 void Controller::hold(const Gains& gains, ControllerState& state) const noexcept {
@@ -86,12 +94,12 @@ void Controller::goOn(const Gains& gains, ControllerState& state) const noexcept
     place(JointVector(state.q_desired), gains, state);
     return;
   }
-  // A law that holds a push off goes on in the balance that it had. But a posture leads an arm that
-  // is free, or was, on by a jump, and without its pull (joint_space_transition.h) joint space is
-  // out of balance.
+  // A law that holds a push off goes on in the balance that it had. But costs lead an arm that is
+  // free, or was, on by a jump, and without its pull (joint_space_transition.h) joint space is out
+  // of balance.
   const bool keeps_balance = state.has_leaned && leans(gains, state);
   const bool comes_back_gently =
-      variantOf(config_) == Variant::kJointSpace || (posture_ && !keeps_balance);
+      variantOf(config_) == Variant::kJointSpace || (!keeps_balance && isLed(gains, state));
   if (!comes_back_gently || state.return_share == 0.0) return;
   state.return_share = 0.0;
   if (joint_limit_avoidance_) leadAnew(gains, false, state);

@@ -307,6 +307,26 @@ TEST(ReturnSpeed, LeavesWhatIsMetDeeperInTheZoneAlone) {
   }
 }
 
+/// Where a scene begins there, or the arm, which has rested free in a hold, goes on.
+TEST(ReturnSpeed, RisesGentlyOutOfTheZoneThatAnArmBeginsOrGoesOnIn) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const ArmInAZone it(seed);
+    const Controller controller(it.arm.config);
+    ControllerState plain = controller.initialState();
+    const double at_once = run(controller, plain, 1).norm();
+    ControllerState state = controller.initialState();
+    controller.begin(state);
+    EXPECT_LT(run(controller, state, 1).norm(), 0.01 * at_once);
+    run(controller, state, 5000);
+    EXPECT_GT((state.q_desired - it.in_zone).norm(), 0.1) << "it does leave the zone";
+    ControllerState held = controller.initialState();
+    const double before = run(controller, held, 20).norm();
+    controller.hold(controller.initialGains(), held);
+    controller.goOn(controller.initialGains(), held);
+    EXPECT_LT(run(controller, held, 1).norm(), 0.01 * before);
+  }
+}
+
 /// An encoder's rounding is no jump; more makes the arm return gently, in whichever joint it is.
 TEST(ReturnSpeed, GrowsFromZeroWhereAnArmBeginsBesideItsStart) {
   ControllerConfig config = test::railController(Variant::kNone);

@@ -168,6 +168,7 @@ class Controller {
                                     ControllerState& state) const noexcept;
   ScaledVector wayOut(const Gains& gains, ControllerState& state) const noexcept;
   bool leans(const Gains& gains, const ControllerState& state) const noexcept;
+  bool isLed(const Gains& gains, ControllerState& state) const noexcept;
   void leadAnew(const Gains& gains, bool is_leaning, ControllerState& state) const noexcept;
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
   Fault read(int module, const RobotInput& input, double period_s,
