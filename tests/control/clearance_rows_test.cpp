@@ -270,6 +270,22 @@ TEST(ClearanceCost, GoesWithWhatIsLacking) {
   EXPECT_TRUE(cost(0.095).isZero(0.0));
 }
 
+/// What is left out of the near ones, as it is farther away, may come among them without a jump.
+TEST(ClearanceCost, ReachesNoFartherThanWhatIsLeftOut) {
+  RailBeforeAWall rail;
+  const Clearance clearance(rail.config);
+  rail.look(clearance, rail.at(0.06));
+  NearBodies& near = rail.kinematics.near;
+  const auto cost = [&](double beyond_m) {
+    near.beyond_m = beyond_m;
+    return clearanceCost({0.09, 3.0}, clearance.distances(), rail.kinematics.pose, near,
+                         rail.inv_sqrt)[0];
+  };
+  EXPECT_NEAR(cost(0.08), 3.0 / (0.3 * 0.3) * 0.02 * 0.5, 1e-12);
+  EXPECT_EQ(cost(0.06), 0.0);
+  EXPECT_EQ(cost(0.1), cost(0.09));
+}
+
 /// d(distance)/dt <= min(gamma left, sqrt(a left)) of a row that stands for a scaled length.
 TEST(JointLimitRowsByHand, AreThoseOfTheEquation) {
   RailBeforeAWall rail;
