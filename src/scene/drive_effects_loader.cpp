@@ -63,6 +63,11 @@ void checkRotors(const DriveChecks& checks, const ArmDynamicsConfig& dynamics) {
 
 void loadDriveEffects(const YamlNode& scene, const SimulationSection& simulation,
                       const LoadedRobot& robot, double period_s, PlantConfig& plant) {
+  if (simulation.arm != SimulatedArm::kQuasiStatic && simulation.drive_lag_s.value_or(0.0) > 0.0) {
+    const std::string key = "simulation.drive_lag_s";
+    failAt(locate(scene, key), key, "an arm with mass has servos of its own",
+           "expected servo_bandwidth_hz in `dynamics` of its robot.yaml, or arm: quasi_static");
+  }
   if (!simulation.drives) return;
   const SimulatedDrivesSection& section = *simulation.drives;
   const DriveChecks checks{scene, robot};

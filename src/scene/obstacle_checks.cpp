@@ -69,15 +69,25 @@ void checkFoam(const WrittenObstacle& obstacle) {
   }
 }
 
+/// In fewer cycles a turn it would be another swing, or none.
+void checkSwing(const WrittenObstacle& obstacle, double period_s) {
+  const double most_hz = 0.1 / period_s;
+  if (obstacle.config.swing.frequency_hz > most_hz)
+    obstacle.fail("swing.frequency_hz", "has less than ten cycles a turn",
+                  fmt::format("at most {:g} Hz", most_hz));
+}
+
 }  // namespace
 
-void checkObstacles(const YamlNode& root, const std::vector<ObstacleConfig>& obstacles) {
+void checkObstacles(const YamlNode& root, const std::vector<ObstacleConfig>& obstacles,
+                    double period_s) {
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const WrittenObstacle obstacle{root, obstacles[i], fmt::format("simulation.obstacles[{}]", i)};
     checkShape(obstacle);
     checkDirections(obstacle);
     checkTimes(obstacle);
     checkFoam(obstacle);
+    checkSwing(obstacle, period_s);
   }
 }
 

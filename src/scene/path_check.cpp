@@ -38,6 +38,17 @@ std::string slowestJoint(const Scene& scene, const JointVector& velocity) {
                      scene.controller.limits.max_velocity[joint]);
 }
 
+/// A reference waits for a tool's place, not for its turn: half a turn ahead the way there is the
+/// other one.
+std::string wayRound(const TaskConfig& task, const TaskGains& gains) {
+  const bool turns = std::ranges::any_of(task.trajectory.waypoints, [](const Waypoint& waypoint) {
+    return waypoint.rotation_vector_rad.norm() > 0.0;
+  });
+  if (!turns || gains.max_return_speed_rad_per_s < kNoLimit) return "";
+  return "; a tool that falls behind by half a turn would turn back the other way, slower with "
+         "task.max_return_speed_rad_per_s";
+}
+
 /// Where the tool first lags behind its path, or how much of it was not followed.
 std::string laggingPath(const Scene& scene) {
   const ControllerConfig config = undisturbed(scene.controller);
@@ -53,14 +64,34 @@ std::string laggingPath(const Scene& scene) {
     controller.update(RobotInput{}, config.gains, t_s, scene.period_s, state, output);
     const double lag = output.error.norm();
     if (lag > kMaxLag)
-      return fmt::format("{}: at {:.3f} s the tool lags by {:g} mm or mrad; {}",
+      return fmt::format("{}: at {:.3f} s the tool lags by {:g} mm or mrad; {}{}",
                          t_s > end_s ? "end of the path not kept" : "path not followed", t_s,
-                         1e3 * kMaxLag, slowestJoint(scene, output.velocity));
+                         1e3 * kMaxLag, slowestJoint(scene, output.velocity),
+                         wayRound(config.task, config.gains.task));
   }
   const double followed_s = kMaxFollowedCycles * scene.period_s;
   if (end_s <= followed_s) return "";
   return fmt::format("only the first {:g} s of the path were followed, which ends at {:g} s",
                      followed_s, end_s);
+}
+
+/// The rest of the turn that the task leaves free enters what the rotation vector says of it.
+std::string partOfRotation(const ControllerConfig& config) {
+  std::vector<int> free;
+  for (int component = 3; component < 6; ++component)
+    if (std::find(config.task.components.begin(), config.task.components.begin() + config.task.size,
+                  component) == config.task.components.begin() + config.task.size)
+      free.push_back(component);
+  if (free.empty() || free.size() == 3) return "";
+  ChainPose pose;
+  config.chain.computePose(config.q_start, pose);
+  TaskJacobian J;
+  const auto size = static_cast<int>(free.size());
+  computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()), free.data(), size,
+                     J);
+  if (J.topRows(size).norm() < 1e-9) return "";  // as of a planar arm
+  return "task.components have a part of rx, ry and rz: the tool keeps it while it turns about the "
+         "rest by some tenths of a radian, and jumps at half a turn; better all three, or none";
 }
 
 std::string shortRun(const Scene& scene) {
@@ -94,8 +125,8 @@ std::string uncompensatedCover(const Scene& scene) {
 std::vector<std::string> checkPath(const Scene& scene) {
   std::vector<std::string> warnings;
   for (const std::string& warning :
-       {singularStart(scene.controller), laggingPath(scene), shortRun(scene),
-        unfeltObstacles(scene), uncompensatedCover(scene)}) {
+       {singularStart(scene.controller), laggingPath(scene), partOfRotation(scene.controller),
+        shortRun(scene), unfeltObstacles(scene), uncompensatedCover(scene)}) {
     if (!warning.empty()) warnings.push_back(warning);
   }
   return warnings;

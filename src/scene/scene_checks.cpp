@@ -27,7 +27,11 @@ void checkJointSpace(const CheckedScene& c) {
 /// Without a cost at its limits the null space, led to the posture, would press a joint against
 /// one, and what the limit keeps it from doing would drag the tool along.
 void checkPosture(const CheckedScene& c) {
-  if (!c.scene.posture || c.scene.has_joint_limit_avoidance) return;
+  if (!c.scene.posture) return;
+  if (c.scene.task.size == static_cast<int>(c.q_start.size()))
+    c.fail("redundancy.posture", "the task takes all joints, so that nothing leads to it",
+           "fewer task.components, or no such section");
+  if (c.scene.has_joint_limit_avoidance) return;
   c.fail("redundancy.joint_limit_avoidance", "is missing",
          "a section beside a posture, which would press joints against their limits");
 }
@@ -232,7 +236,7 @@ void checkScene(const YamlNode& root, const SceneConfig& scene, const LoadedRobo
   checkDuration(checked);
   checkPeriod(checked);
   checkSimulatedModule(checked);
-  checkObstacles(root, scene.simulation.obstacles);
+  checkObstacles(root, scene.simulation.obstacles, scene.period_s);
 }
 
 void checkGains(const YamlNode& root, const ControllerConfig& controller, double period_s) {

@@ -58,8 +58,8 @@ void checkWaypoint(const CheckedScene& c, const Waypoint& waypoint, const std::s
   checkReach(c, waypoint, path);
   const double angle = waypoint.rotation_vector_rad.norm();
   if (angle > std::numbers::pi) {
-    c.fail(path + ".rotation_vector_rad", fmt::format("turns by {:.4g} rad", angle),
-           "at most half a turn");
+    c.fail(path + ".rotation_vector_rad", fmt::format("turns by {:.9g} rad", angle),
+           "at most half a turn, 3.14159265 rad");
   }
   if (angle > 0.0 && !c.scene.task.hasRotation()) {
     c.fail(path + ".rotation_vector_rad", "the task does not control the orientation",

@@ -372,6 +372,15 @@ TEST(BrokenSceneFile, CommandsToAnOrientationAlone) {
                      "no position, whose lag a task by commands waits for", "x, y or z"});
 }
 
+TEST(BrokenSceneFile, APostureWhereTheTaskTakesAllJoints) {
+  test::expectError(
+      test::loadError(SceneFiles{}.sources(), {{"task.components", "[x, y, z]"},
+                                               {"redundancy.joint_limit_avoidance", "{}"},
+                                               {"redundancy.posture", "{}"}}),
+      {"", "", "--set redundancy.posture:1:1: redundancy.posture: ", "the task takes all joints",
+       "fewer task.components"});
+}
+
 TEST(BrokenSceneFile, TactileSampleStaleWithinACycle) {
   SceneFiles files;
   files.robot = test::replaced(files.robot, "sample_period_s: 0.005",
@@ -459,6 +468,10 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenOverride{"controller.dampin", "null",
                        "--set controller.dampin:1:1: controller.dampin: ", "unknown key",
                        "'damping'"},
+        BrokenOverride{"simulation.obstacles[0].swing", "{x_m: 0.01, frequency_hz: 101}",
+                       "--set simulation.obstacles[0].swing:1:27: "
+                       "simulation.obstacles[0].swing.frequency_hz: ",
+                       "has less than ten cycles a turn", "at most 100 Hz"},
         BrokenOverride{"start", "[9, 0.2, 0]",
                        "--set start:1:2: start[0]: ", "9 is outside the limits", "-1 to 0.5"},
         BrokenOverride{"simulation.obstacles.x_m", "1",
