@@ -171,13 +171,13 @@ Fault runDaemon(const Scene& scene, const DaemonOptions& options) {
   PeriodicThread thread(config, [&](const Wake& wake) noexcept { return loop->cycle(wake); });
   refusals.insert(refusals.end(), thread.refusals().begin(), thread.refusals().end());
   judgeRefusals(refusals, real_time.required);
-  // A run that is refused leaves no files.
+  // While stop signals are blocked, so that its thread never gets one.
+  const ControlSocket control(scene, link);
+  // A run that is refused leaves no files, and those of the run before.
   std::optional<RunFolder> folder;
   if (!options.folder.empty()) folder.emplace(options.folder, options.name);
   Telemetry telemetry(scene, folder ? folder->path().string() : "", link);
 
-  // While stop signals are blocked, so that their threads never get one.
-  const ControlSocket control(scene, link);
   const std::int64_t process_start_ns = processTime_ns();
   thread.start();
   const StopRequests stop_requests(link.stop_requested);
