@@ -80,13 +80,13 @@ double peakAfter(const VirtualRobotCell& running, const Holding& holding, bool h
 TEST(GoingOn, AHandDuringAHoldMovesNothingLater) {
   for (const char* law : kLaws) {
     for (const int at : {2000, 7000}) {  // in free motion, and in contact
-      const VirtualRobotCell running = runningCell(variant, at);
+      const VirtualRobotCell running = runningCell(law, at);
       for (const Holding& holding : kHoldings) {
         const double undisturbed = peakAfter(running, holding, false);
         const double peak = peakAfter(running, holding, true);
-        std::printf("%-11s at %d, %-16s peak %.3f, undisturbed %.3f\n", variant, at, holding.name,
-                    peak, undisturbed);
-        EXPECT_LE(peak, undisturbed + kMaxSurplus) << variant << " " << holding.name;
+        std::printf("%-11s at %d, %-16s peak %.3f, undisturbed %.3f\n", law, at, holding.name, peak,
+                    undisturbed);
+        EXPECT_LE(peak, undisturbed + kMaxSurplus) << law << " " << holding.name;
       }
     }
   }
@@ -111,7 +111,7 @@ TEST(GoingOn, AnArmThatAPauseHasStoppedMakesUpForNoneOfIt) {
 
 TEST(GoingOn, ASilentModuleInContactMovesNothingLater) {
   for (const char* law : kLaws) {
-    const VirtualRobotCell running = runningCell(variant, 7000);
+    const VirtualRobotCell running = runningCell(law, 7000);
     double peaks[2];
     for (const bool is_silent : {false, true}) {
       VirtualRobotCell cell = running;
@@ -125,8 +125,8 @@ TEST(GoingOn, ASilentModuleInContactMovesNothingLater) {
       ASSERT_EQ(cell.cycle.report().mode, Mode::kHolding);
       peaks[is_silent] = peakOnGoingOn(cell);
     }
-    std::printf("%-11s peak %.3f, undisturbed %.3f\n", variant, peaks[1], peaks[0]);
-    EXPECT_LE(peaks[1], peaks[0] + kMaxSurplus) << variant;
+    std::printf("%-11s peak %.3f, undisturbed %.3f\n", law, peaks[1], peaks[0]);
+    EXPECT_LE(peaks[1], peaks[0] + kMaxSurplus) << law;
   }
 }
 
