@@ -215,6 +215,7 @@ class Case(unittest.TestCase):
         listed["tactile_modules"] = [listed.pop("tactile_module")]
         heavy = copy.deepcopy(scene)
         heavy["simulation"]["arm"] = "flexible_gears"
+        del heavy["simulation"]["drive_lag_s"]
         torques = ("max_torque", "coulomb_friction", "viscous_friction", "backlash")
         heavy["simulation"]["drives"] = {key: [0.01] * 9 for key in torques}
         moteus = []
