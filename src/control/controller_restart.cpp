@@ -9,6 +9,8 @@ namespace {
 
 /// m or rad; less is an encoder's rounding, and no jump.
 constexpr double kBeside = 1e-4;
+/// m/s or rad/s, of a cost's way in scaled joints; less is no jump either.
+constexpr double kLed = 1e-3;
 
 Variant variantOf(const ControllerConfig& config) {
   return config.force_control ? config.force_control->variant : Variant::kNone;
@@ -70,13 +72,14 @@ void Controller::leadAnew(const Gains& gains, bool is_leaning,
 /// By a cost in its null space.
 bool Controller::isLed(const Gains& gains, ControllerState& state) const noexcept {
   if (posture_ || (config_.clearance && config_.clearance->avoid)) return true;
-  return joint_limit_avoidance_ && !costAt(state.q_desired, gains, state).gradient.isZero(0.0);
+  return joint_limit_avoidance_ &&
+         costAt(state.q_desired, gains, state).gradient.cwiseAbs().maxCoeff() > kLed;
 }
 
 void Controller::begin(ControllerState& state) const noexcept {
   const JointVector beside = state.q_desired - config_.q_start;
   // A scene may begin far from its posture, near to a joint limit or a body, and where it begins.
-  const bool is_led = posture_ || !state.way_out_added.isZero(0.0) ||
+  const bool is_led = posture_ || state.way_out_added.cwiseAbs().maxCoeff() > kLed ||
                       (config_.clearance && config_.clearance->avoid);
   if (is_led || beside.cwiseAbs().maxCoeff() > kBeside) state.return_share = 0.0;
 }
