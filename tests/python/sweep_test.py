@@ -23,7 +23,7 @@ from scipy import stats
 from sweep_common import RUNS, SCENE, Sweeps, rows_of, runs_in, table_of
 from tactus._sweep import run
 
-from tactus_sweep import judge, pool, progress, scenes, study
+from tactus_sweep import judge, pool, progress, scenes, study, study_page
 
 
 class Results(Sweeps):
@@ -461,6 +461,26 @@ class Judgement(unittest.TestCase):
             row = {**known, **changed}
             judge.judge(judged, [row])
             self.assertEqual(row["is_within"], is_within, changed)
+
+    def test_a_run_without_contacts_has_an_objective_of_contacts(self):
+        judged = types.SimpleNamespace(objective={"peak_force_N": 1.0, "settling_s": 2.0}, limits={})
+        touched = {"outcome": "completed", "peak_force_N": 4.0, "contacts": 1, "settling_s": 0.5}
+        for changed, objective in (({}, 5.0), ({"contacts": 0, "settling_s": None}, 4.0),
+                                   ({"settling_s": None}, math.inf), ({"peak_force_N": None}, math.inf),
+                                   ({"outcome": "drive_fault"}, math.inf)):
+            row = {**touched, **changed}
+            judge.judge(judged, [row])
+            self.assertEqual(row["objective"], objective, changed)
+
+    def test_of_an_unknown_objective_are_not_the_worst_runs(self):
+        plan = types.SimpleNamespace(place=lambda _: (0,), settings=lambda _: [])
+        judged = types.SimpleNamespace(path=pathlib.Path("s.yaml"), scenes=[(None, "a.yaml", pathlib.Path("a.yaml"))])
+        rows = [{"run": run, "outcome": "completed", "peak_force_N": 1.0, "tcp_error_max_m": 0.01,
+                 "objective": objective} for run, objective in enumerate((1.0, math.inf, 3.0))]
+        page = "".join(study_page.worst_section(judged, plan, rows))
+        self.assertEqual(re.findall(r'<th scope="row">(\d+)</th>', page), ["2", "0", "1"])
+        self.assertIn("Objective unknown for 1 runs", page)
+        self.assertNotIn("unknown", "".join(study_page.worst_section(judged, plan, rows[:1])))
 
     def test_of_progress(self):
         self.assertEqual(progress.progress_text(50, 100, 10, 20.0), "50 of 100 runs, 50 %, 100 s left".replace(

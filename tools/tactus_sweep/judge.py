@@ -37,7 +37,7 @@ def completed(row):
 def judge(study, rows):
     """Adds objective and is_within to each row: of a run that was not completed inf and False."""
     for row in rows:
-        values = [row.get(name) for name in study.objective]
+        values = [figure(row, name) for name in study.objective]
         is_known = completed(row) and None not in values
         row["objective"] = (sum(weight * value for weight, value in zip(study.objective.values(), values))
                             if is_known else math.inf)
@@ -45,11 +45,17 @@ def judge(study, rows):
             is_kept(row, name, limit) for name, limit in study.limits.items())
 
 
+def figure(row, name):
+    """None where nobody knows it. What contacts have at most is 0 where there were none."""
+    if row.get(name) is None and name in OF_CONTACTS and row.get("contacts") == 0:
+        return 0.0
+    return row.get(name)
+
+
 def is_kept(row, name, limit):
-    """What nobody knows keeps no limit; what contacts have at most does where there were none."""
-    if row.get(name) is None:
-        return name in OF_CONTACTS and row.get("contacts") == 0
-    return row[name] <= limit
+    """What nobody knows keeps no limit."""
+    value = figure(row, name)
+    return value is not None and value <= limit
 
 
 def has_choice(plan):

@@ -86,12 +86,15 @@ def best_table(study, plan, found):
 
 def worst_section(study, plan, rows):
     """Runs that were completed; the others have a section of their own."""
-    worst = sorted(filter(completed, rows), key=lambda row: (-row["objective"], row["run"]))[:SHOWN]
+    done = list(filter(completed, rows))
+    unknown = sum(math.isinf(row["objective"]) for row in done)
+    worst = sorted(done, key=lambda row: (math.isinf(row["objective"]), -row["objective"], row["run"]))[:SHOWN]
     if not worst:
         return []
     cells = [[str(row["run"]), scene_name(study, plan, row), number(row[FORCE]), number(scaled(row[ERROR])),
               number(row["objective"]), rerun_line(study, plan, row)] for row in worst]
     return [f"<h2>The worst {len(worst)} runs</h2>",
+            *([f"<p>Objective unknown for {unknown} runs: they lack a figure of it.</p>"] if unknown else []),
             table(["Run", "Scene", "Peak force, N", "TCP error, mm", "Objective", "Again"], cells, "worst")]
 
 
