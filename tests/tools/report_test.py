@@ -450,6 +450,28 @@ class OneScene(Report):
         self.assertIn("estimated, peak 8.00 N", figure)
         self.assertNotIn("peak 9.50 N", figure)
         self.assertIn("a_variation, peak 9.50 N", self.page())
+        write_run(self.scratch / "others", "scenario2_estimated")  # so that its name has the folder's before it
+        self.assertEqual(self.report(self.runs, self.scratch / "others").returncode, 0)
+        self.assertIn("estimated, peak 8.00 N", self.page().split("Figure 5. ")[0])
+
+    def test_leave_the_papers_figures_to_the_run_without_set(self):
+        """Whichever folder comes first; a scene that was run with --set alone is marked."""
+        folders = [self.scratch / name for name in ("varied", "plain")]
+        for scene in ("scenario3_estimated", "scenario3_assumed", "scenario3_acceleration"):
+            simulate(scene, folders[0])
+        write_run(folders[1], "scenario3_estimated")
+        write_run(folders[1], "free_motion")
+        output = self.scratch / "page.html"
+        for order in (folders, folders[::-1]):
+            result = self.report(*order, "-o", output)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn(" 0.00 N, 8.00 N, with --set ", result.stdout)  # assumed and estimated
+            text = output.read_text(encoding="utf-8")
+            self.assertIn("estimated, peak 8.00 N", text.split("Figure 7. ")[0])
+            self.assertIn('"missing">With --set: scenario3_assumed: simulation.duration_s=0.1</p>', text)
+            self.assertIn(">scenario3_acceleration, with --set<", text)
+            self.assertNotIn("scenario3_estimated, with --set", text)
+            self.assertIn(" varied/scenario3_estimated with --set simulation.duration_s=0.1.", text)  # overlaid
 
     def test_is_drawn_from_all_its_logs(self):
         """As tactusd writes them by log.max_bytes, run.2.ulg the oldest."""

@@ -61,6 +61,8 @@ def compare_row(row, runs):
         if None not in values:
             ours = row["format"].format(*values)
             difference = differences(values, row.get("reference_values", []))
+            if any(runs[scene].overrides for scene, _ in keys):
+                ours += ", with --set"
     return Row(row["quantity"], row["paper"], row["reference"], ours, difference)
 
 

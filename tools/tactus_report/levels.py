@@ -19,7 +19,8 @@ def shown(by_scene):
 
 
 def rows(by_scene):
-    return [[scene, *figures(by_scene[scene]), *margins(by_scene[scene])] for scene in shown(by_scene)]
+    return [[scene + (", with --set" if by_scene[scene].overrides else ""), *figures(by_scene[scene]),
+             *margins(by_scene[scene])] for scene in shown(by_scene)]
 
 
 def figures(run):

@@ -128,6 +128,9 @@ def render(spec, runs):
     missing = [scene for scene, *_ in spec.curves if scene not in runs]
     name = f"figure-{spec.number}"
     drawing = line_figure(name, curves, spec.y_label, spec.unit, spec.log_axis, spec.label_peak)
-    note = f'<p class="missing">Missing: {html.escape(", ".join(missing))}</p>' if missing else ""
-    return as_figure(name, drawing + note, f"Figure {spec.number}. {spec.title}.",
+    changed = [f"{scene}: {runs[scene].set_text}" for scene, *_ in spec.curves
+               if scene in runs and runs[scene].overrides]
+    notes = "".join(f'<p class="missing">{word}: {html.escape(", ".join(found))}</p>'
+                    for word, found in (("Missing", missing), ("With --set", changed)) if found)
+    return as_figure(name, drawing + notes, f"Figure {spec.number}. {spec.title}.",
                      spec.what_to_see)

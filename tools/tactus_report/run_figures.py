@@ -22,4 +22,5 @@ def figure(name, runs, values_of, unit, label, title):
               for number, run in enumerate(runs)]
     drawing = line_figure(name, curves, f"{label} in {unit}", unit, label_peak=True)
     outcomes = ", ".join(f"{run.name}: {run.summary['outcome']}" for run in runs)
-    return as_figure(name, drawing, f"{title}.", f"Outcome of {outcomes}.")
+    changed = "".join(f" {run.name} with --set {run.set_text}." for run in runs if run.overrides)
+    return as_figure(name, drawing, f"{title}.", f"Outcome of {outcomes}.{changed}")

@@ -42,6 +42,11 @@ class Run:
     q: np.ndarray = None  # as measured, one row a cycle
     arm: tuple = None  # chain, covers, obstacles
 
+    @property
+    def set_text(self):
+        """What --set changed of its scene."""
+        return ", ".join(f"{key}={value}" for key, value in self.overrides.items())
+
 
 def load_runs(folders):
     """All runs in the folders, in their order. Raises InputError."""
@@ -73,11 +78,10 @@ def run_names(paths):
 
 
 def by_scene(runs):
-    """One run a scene: the one with the scene's name, or else the first."""
+    """One run a scene: as the file has it before one with --set, in a folder of its name, or else the first."""
     chosen = {}
-    for run in runs:
-        if run.scene not in chosen or run.name == run.scene:
-            chosen[run.scene] = run
+    for run in sorted(runs, key=lambda run: (bool(run.overrides), run.name.split("/")[-1] != run.scene)):
+        chosen.setdefault(run.scene, run)
     return chosen
 
 
