@@ -524,6 +524,7 @@ class Malformed(Report):
             "peak_force_N": [json.dumps({**good, "peak_force_N": value})
                              for value in ("8", True, [], float("nan"), float("inf"), 10**400)],
             "step_time_ns": [json.dumps({**good, "step_time_ns": 5})],
+            "log: no object": [json.dumps({**good, "log": "stopped"})],
             "p99": [json.dumps({**good, "step_time_ns": {"median": 5}})],
             "tcp_error_rms_m: missing": [
                 json.dumps({key: good[key] for key in good if key != "tcp_error_rms_m"})]}
@@ -566,9 +567,20 @@ class Malformed(Report):
         self.refuse("stiffness_N_per_m: a number that is not finite")
 
     def test_a_log_that_was_cut_off_is_shown_up_to_there(self):
-        write_run(self.runs, "cut", log_of()[:-20])
-        self.assertEqual(self.report().returncode, 0)
-        self.assertIn("sensor force, peak 8.00 N", self.page())
+        """And so is one that a full disk has stopped; page and standard error say so."""
+        reason = "No space left on device"
+        for log, changes, text in (
+                (log_of()[:-20], {}, "cut: log ends at 12.990 s, before the run"),
+                (log_of(), {"log": {"state": "stopped", "reason": reason, "files": 1, "removed_files": 0}},
+                 f"cut: log ends at 12.995 s ({reason}), before the run"),
+                (log_of(), {"log": {"state": "complete", "files": 1, "removed_files": 0}}, "")):
+            run = write_run(self.runs, "cut", log)
+            (run / "summary.json").write_text(json.dumps(summary_of("cut", **changes)), encoding="utf-8")
+            result = self.report()
+            self.assertEqual((result.returncode, result.stderr), (0, f"{text}\n" if text else ""))
+            self.assertIn("sensor force, peak 8.00 N", self.page())
+            self.assertEqual(re.findall(r"cut: log ends [^<]*", self.page()), [f"{text}."] if text else [])
+            shutil.rmtree(self.runs)
 
     def test_binary_log(self):
         run = write_run(self.runs, "scenario1_none")

@@ -20,7 +20,8 @@ def read(path):
             "stiffness_N_per_m": fields["stiffness_N_per_m"], "joint_jerk": jerk(fields["t_s"], dq),
             "joint_speed_squared": np.sum(np.square(dq), axis=0),
             "tool_error_m": np.sqrt(np.sum(np.square(errors), axis=0)),
-            "sources": log.sources, "overrides": log.overrides, **of_modules(log, fields)}
+            "sources": log.sources, "overrides": log.overrides,
+            "is_cut_off": log.is_cut_off, **of_modules(log, fields)}
 
 
 def open_log(path):

@@ -21,6 +21,7 @@ def build_page(loaded):
         title += ": the paper&#8217;s experiments, simulated"
     body = [f"<h1>{title}</h1>",
             f"<p>{len(loaded)} {'run' if len(loaded) == 1 else 'runs'} of the controller.</p>",
+            *(f'<p class="missing">{html.escape(run.end_text)}.</p>' for run in loaded if run.end_text),
             *comparison_with_paper(by_scene),
             *paper_section(of_paper),
             *beyond_the_paper(by_scene),

@@ -34,6 +34,7 @@ class Run:
     tool_error_m: np.ndarray  # |w_d - w| of the real arm
     sources: dict  # of each file that it was made of its text, the scene first
     overrides: dict  # the values of --set
+    is_cut_off: bool  # the log's file ends within a record
     # Of each tactile module, in the order of robot.yaml; of logs of one: nothing.
     modules: list = dataclasses.field(default_factory=list)  # their links
     forces_N: list = dataclasses.field(default_factory=list)
@@ -46,6 +47,15 @@ class Run:
     def set_text(self):
         """What --set changed of its scene."""
         return ", ".join(f"{key}={value}" for key, value in self.overrides.items())
+
+    @property
+    def end_text(self):
+        """Of a log that ends before its run, whose summary is of the whole run."""
+        log = self.summary.get("log") or {}
+        if not self.is_cut_off and log.get("state") != "stopped":
+            return ""
+        reason = "" if self.is_cut_off else f" ({log.get('reason', 'it was stopped')})"
+        return f"{self.name}: log ends at {self.time_s[-1]:.3f} s{reason}, before the run"
 
 
 def load_runs(folders):
@@ -121,6 +131,8 @@ def read_summary(path):
     check_fault(path, summary.get("fault"))
     check_unsensed(path, summary.get("unsensed_contact"))
     check_contacts(path, summary.get("contacts", []))
+    if not isinstance(summary.get("log"), dict | None):
+        raise InputError(f"{path}: log: no object, expected its state")
     return summary
 
 
