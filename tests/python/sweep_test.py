@@ -11,6 +11,7 @@ import pathlib
 import random
 import re
 import shlex
+import shutil
 import subprocess
 import tempfile
 import types
@@ -259,6 +260,12 @@ class BadStudies(Sweeps):
                 (begin + "grid: {'a[0]': [1], a: [1]}", r":2:\d+: grid.a: takes the place of a\[0\], "),
                 (begin + "grid: {controller.damping: {from: 0.5, to: 1, count: 1001}, "
                  "controller.time_constant_s: {from: 0.1, to: 1, count: 1001}}", r"1002001 runs, expected at"),
+                (begin + "grid: {robot: [a.yaml, b.yaml]}", r":2:15: grid.robot: a file cannot vary within a study, "
+                 "expected a scene for each in scenes"),
+                (begin + "sobol: {points: 2, keys: {robot.urdf: [a, b]}}", r"robot.urdf: a file cannot vary"),
+                (begin + "disturbances: {draws: 2, keys: {'robot.drives.joints[0].profile': [a, b]}}",
+                 r"profile: a file cannot vary"),
+                (begin + "set: {robot: nowhere.yaml}", r":2:7: robot: .*nowhere.yaml: No such file or directory, "),
                 (begin + "limits: {peak: 1}", r"limits.peak: unknown key"),
                 (begin + "objective: nothing", r"'nothing', expected one of peak_force_N")):
             with self.subTest(text=text):
@@ -288,6 +295,24 @@ class BadStudies(Sweeps):
     def test_name_what_is_wrong_with_a_scene(self):
         self.file("scene.yaml", f"extends: {SCENE}\ncontroller:\n  damping: x\n")
         self.refuse("scenes: [scene.yaml]", r"scene.yaml:3:12: controller.damping: 'x' is not a number")
+
+    def test_may_have_scenes_that_are_whole_with_what_they_set(self):
+        """As --set makes them; another robot, and the mistake of another key is still found."""
+        self.file("scene.yaml", f"extends: {SCENE}\ncontroller: {{damping: null, time_constant_s: 0.0001}}\n")
+        robot = self.file("robot.yaml", (ROOT / "config/robots/planar2/robot.yaml").read_text()
+                          .replace("urdf: ", f"urdf: {ROOT}/config/robots/planar2/"))
+        text = (f"scenes: [scene.yaml]\nset: {{controller.time_constant_s: 0.1, simulation.duration_s: 0.1, "
+                f"robot: {robot}}}\ngrid: {{controller.damping: [0.5, 0.7]}}\n")
+        done = self.sweep(self.study(text), self.folder / "out")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("2 completed", done.stdout)
+        self.assertIn(str(robot), (self.folder / "out/results.jsonl").read_text())
+        shutil.rmtree(self.folder / "out")
+        self.refuse(text.replace("duration_s: 0.1", "duration: 0.1"), r"^study.yaml:2:\d+: simulation.duration: unknown")
+        self.refuse(text.replace("scene.yaml", str(SCENE)).replace("duration_s: 0.1", "duration: 0.1"),
+                    r"^study.yaml:2:\d+: simulation.duration: unknown")
+        self.refuse(text.replace("time_constant_s: 0.1", "activation_force_N: 5"),
+                    r"scene.yaml:2:\d+: controller.time_constant_s: '0.0001' is out of range")
 
     def test_are_usage_where_options_are(self):
         for arguments in ((), ("-o", "out", "-j", "0"), ("-o", "out", "--nonsense")):

@@ -6,6 +6,7 @@ import tactus
 from tactus import _core
 from tactus._sweep import as_bytes, load
 
+from .study import names_file
 from .study_text import StudyError, one_line
 
 MAX_WORDS = 8  # of a list, each tried with the values of the other keys
@@ -13,16 +14,32 @@ MAX_WORDS = 8  # of a list, each tried with the values of the other keys
 
 def load_files(study):
     """Of each scene its files as they are now, [(path, text)]. Raises StudyError."""
-    return [read_files(item, path) for item, _, path in study.scenes]
+    return [read_files(item, path, study.fixed) for item, _, path in study.scenes]
 
 
-def read_files(item, path):
-    try:
-        return _core.load_scene(as_bytes(str(pathlib.Path(path).absolute())), []).sources()
-    except tactus.ConfigError as error:
-        if error.line == 1 and error.key == "-" and not pathlib.Path(path).is_file():
-            raise item.error(f"'{item.node.value}' is no file", "a scene, relative to this file") from error
-        raise StudyError(one_line(str(error))) from error
+def read_files(item, path, fixed):
+    """With what the study sets, which may be what the scene lacks; or else with the files that it sets alone, for
+    the rest may be right with other keys, and check_keys() finds what is wrong."""
+    file = as_bytes(str(pathlib.Path(path).absolute()))
+    entries = {setting.split("=")[0]: (entry, as_bytes(setting)) for entry, setting in fixed}
+    problem = None
+    for keys in (entries, filter(names_file, entries)):
+        try:
+            return _core.load_scene(file, [entries[key][1] for key in keys]).sources()
+        except tactus.ConfigError as error:
+            problem = problem or error
+    key = str(problem.file).removeprefix("--set ")
+    if problem.line == 1 and problem.key == "-" and not pathlib.Path(path).is_file():
+        raise item.error(f"'{item.node.value}' is no file", "a scene, relative to this file") from problem
+    raise (error_of_key(problem, entries[key][0], item.node.value) if key in entries
+           else StudyError(one_line(str(problem)))) from problem
+
+
+def error_of_key(error, entry, scene):
+    """Of --set, where the study has the key."""
+    problem = str(error).removeprefix(f"{error.file}:{error.line}:{error.column}: ")
+    at = entry.name_mark
+    return StudyError(one_line(f"{entry.path}:{at.line + 1}:{at.column + 1}: {problem}, in {scene}"))
 
 
 def check_keys(study, plan):
@@ -72,12 +89,11 @@ def try_setting(files, others, setting, places, scene):
             load(files, replaced(settings, [setting]))
         except tactus.ConfigError as error:
             key = setting.split("=")[0]
-            if problem is None and error.file == f"--set {key}":
-                problem = str(error).removeprefix(f"--set {key}:{error.line}:{error.column}: ")
+            if error.file == f"--set {key}":
+                problem = problem or error
             continue
         if number > 1:
             others.insert(1, others.pop(number))  # likely to do for the next value, too
         return
     if problem is not None:
-        at = places[key].name_mark
-        raise StudyError(one_line(f"{places[key].path}:{at.line + 1}:{at.column + 1}: {problem}, in {scene}"))
+        raise error_of_key(problem, places[key], scene)

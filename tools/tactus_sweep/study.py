@@ -57,6 +57,7 @@ def read_study(path):
                   read_points(entries.get("disturbances"), "random", "draws"),
                   read_figures(entries.get("limits")), read_objective(entries.get("objective")))
     refuse_twice(study)
+    refuse_files(study)
     return study
 
 
@@ -147,6 +148,17 @@ def refuse_twice(study):
                 raise entries[section_place][1].error(f"takes the place of {entries[place][0]}, which is before",
                                                       "one of them")
         sections.append((words, place))
+
+
+def refuse_files(study):
+    """A study has one state of the files of each scene."""
+    for axis in study.axes:
+        if names_file(axis.key):
+            raise axis.entry.error("a file cannot vary within a study", "a scene for each in scenes")
+
+
+def names_file(key):
+    return re.fullmatch(r"robot(\.(.*\.)?(urdf|profile))?", key) is not None
 
 
 def words_of(key):
