@@ -24,7 +24,8 @@ SEEDS = [STUDY.replace(str(ROOT), "/r"), (ROOT / "config/studies/stiff_profile.y
          "scenes: [a]\nsobol: {points: 2, keys: {a: {mean: 0, standard_deviation: 1e308}}}\n",
          "scenes: [a]\nsobol: {points: 2, keys: {a: {mean: 1, standard_deviation: 1e20, from: 0, to: 2}}}\n",
          "scenes: [a]\ngrid: {a: {from: 1, to: 4, count: 4, scale: log}}\nlimits: {peak_force_N: 1}\n"
-         "objective: {peak_force_N: 1, tcp_error_max_m: 2}\n"]
+         "objective: {peak_force_N: 1, tcp_error_max_m: 2}\n",
+         "scenes: [a]\ngrid: {a: {from: 1, to: 10, count: 4, whole: true}}\n"]
 WORDS = ["nan", ".inf", "-1e308", "1e308", "5e-324", "0", "-1", "1_000", "0x10", "999999999999999999", "٣",
          "1e", "true", "~", "''", "\"\\e[2J\"", "{}", "[]", "[[]]", "{a: b}", "- ", "? ", "|", ">", "&a ", "*a",
          "!!python/object:os.system ", "!!float ", "%YAML 1.1\n---\n", "---\n", "\t", "\x00", "\x1b[2J", "\ufeff",

@@ -245,6 +245,10 @@ class BadStudies(Sweeps):
                 (begin + "grid: {controller.damping: {from: 0.5, to: 1, count: 1}}", r"'1', expected a whole"),
                 (begin + "grid: {controller.damping: {from: 0, to: 1, count: 2, scale: log}}", r"scale is log"),
                 (begin + "grid: {controller.damping: {from: 0.7, to: 0.700002, count: 5}}", r"5 values that 6 dig"),
+                (begin + "grid: {simulation.tactile_module.seed: {from: 1, to: 10, count: 4, scale: log, whole: true}}",
+                 r"with scale log"),
+                (begin + "grid: {simulation.tactile_module.seed: {from: 1, to: 10, count: 5, whole: true}}",
+                 r":2:\d+: .*seed.count: 5 values from 1 to 10 are not whole, expected a count that parts"),
                 (begin + "sobol: {points: 3, keys: {controller.damping: [1]}}", r":2:17: .*a power of 2"),
                 (begin + "sobol: {points: 4}", r"sobol: without keys"),
                 (begin + "disturbances: {draws: 2, keys: {controller.damping: {mean: 1, "
@@ -308,9 +312,9 @@ class BadStudies(Sweeps):
         self.assertIn("2 completed", done.stdout)
         self.assertIn(str(robot), (self.folder / "out/results.jsonl").read_text())
         shutil.rmtree(self.folder / "out")
-        self.refuse(text.replace("duration_s: 0.1", "duration: 0.1"), r"^study.yaml:2:\d+: simulation.duration: unknown")
-        self.refuse(text.replace("scene.yaml", str(SCENE)).replace("duration_s: 0.1", "duration: 0.1"),
-                    r"^study.yaml:2:\d+: simulation.duration: unknown")
+        for scene in ("scene.yaml", SCENE):
+            self.refuse(text.replace("scene.yaml", str(scene)).replace("duration_s: 0.1", "duration: 0.1"),
+                        r"^study.yaml:2:\d+: simulation.duration: unknown")
         self.refuse(text.replace("time_constant_s: 0.1", "activation_force_N: 5"),
                     r"scene.yaml:2:\d+: controller.time_constant_s: '0.0001' is out of range")
 
@@ -318,6 +322,22 @@ class BadStudies(Sweeps):
         for arguments in ((), ("-o", "out", "-j", "0"), ("-o", "out", "--nonsense")):
             done = subprocess.run([TACTUS, "sweep", self.study(), *arguments], capture_output=True, cwd=self.folder)
             self.assertEqual(done.returncode, 2)
+
+
+class Ranges(Sweeps):
+    def settings(self, grid):
+        text = f"scenes: [{SCENE}]\ngrid: {{simulation.tactile_module.seed: {{{grid}}}}}\n"
+        read = study.read_study(self.study(text))
+        plan = study.make_plan(read, scenes.load_files(read))
+        scenes.check_keys(read, plan)
+        return [plan.settings(run)[0].split("=")[1] for run in range(plan.runs)]
+
+    def test_of_the_grid_may_be_whole(self):
+        self.assertEqual(self.settings("from: 1, to: 10, count: 4, whole: true"), ["1", "4", "7", "10"])
+        self.assertEqual(self.settings("from: 9007199254740, to: 9007199254742, count: 3, whole: true"),
+                         ["9007199254740", "9007199254741", "9007199254742"])
+        with self.assertRaisesRegex(study.StudyError, "'1.0' is not a whole number"):
+            self.settings("from: 1, to: 10, count: 4")
 
 
 class Texts(Scratch):

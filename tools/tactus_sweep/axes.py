@@ -149,12 +149,22 @@ def read_grid(entry):
     """All settings of a key of the grid."""
     if entry.is_list:
         return read_list(entry)
-    known = entry.section(("from", "to", "count", "scale"))
+    known = entry.section(("from", "to", "count", "scale", "whole"))
     axis = read_range(entry, known)
     if "count" not in known:
         raise entry.error("without count", "how many values there are from from to to")
     count = known["count"].whole(2, MAX_VALUES)
+    if axis.is_whole:
+        return Axis(entry, whole_steps(axis, known["count"], count))
     texts = [as_setting(axis.value(number / (count - 1)), axis) for number in range(count)]
     if len(set(texts)) < count:
         raise known["count"].error(f"{count} values that {DIGITS} digits do not tell apart", "fewer, or farther apart")
     return Axis(entry, texts)
+
+
+def whole_steps(axis, entry, count):
+    step, rest = divmod(int(axis.upper) - int(axis.lower), count - 1)
+    if rest:
+        raise entry.error(f"{count} values from {axis.lower:.0f} to {axis.upper:.0f} are not whole",
+                          "a count that parts the range evenly")
+    return [str(int(axis.lower) + number * step) for number in range(count)]
