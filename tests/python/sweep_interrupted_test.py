@@ -155,6 +155,16 @@ class Interrupted(Sweeps):
         self.assertEqual((done.returncode, done.stderr), (-signal.SIGPIPE, ""))
         self.expect_whole()
 
+    def test_where_its_path_is_no_text(self):
+        out = os.fsencode(self.folder) + b"/o\xff"
+        os.rename(self.out, out)
+        pathlib.Path(os.fsdecode(out), "results.jsonl").write_bytes(self.content)
+        for arguments in ((), ("--json",)):
+            done = self.sweep(self.folder / "study.yaml", out, *arguments,
+                              env={**os.environ, "PYTHONIOENCODING": "utf-8:strict"})
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn("udcff/table.csv", done.stdout)
+
     def test_without_anybody_to_tell(self):
         done = subprocess.run(self.command(self.folder / "study.yaml", self.out),
                               preexec_fn=lambda: os.closerange(1, 3))

@@ -403,6 +403,12 @@ class Unwritten(Report):
                          (1, "/dev/full: cannot be written: No space left on device\n"))
         self.assertEqual(self.run_report("-o", "/dev/null", stdout=subprocess.DEVNULL).returncode, 0)
 
+    def test_a_path_that_is_no_text_is_told(self):
+        result = self.run_report("-o", os.fsencode(self.scratch) + b"/p\xff.html", stdout=subprocess.PIPE,
+                                 env={**os.environ, "PYTHONIOENCODING": "utf-8:strict"})
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertTrue(result.stdout.endswith("/p\\udcff.html\n"), result.stdout)
+
     def test_standard_output_that_is_full_or_gone(self):
         with open("/dev/full", "w") as full:
             result = self.run_report(stdout=full)
