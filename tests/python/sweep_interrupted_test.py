@@ -213,6 +213,9 @@ class Interrupted(Sweeps):
         self.assertEqual(done.returncode, 0)
         self.assertRegex(done.stderr, r"\A.*results.jsonl: 2 damaged lines, their runs are done again\n\Z")
         self.assertEqual(table_of(self.out), table_of(self.done))
+        again = self.sweep(self.folder / "study.yaml", self.out)
+        self.assertEqual((again.returncode, again.stderr), (0, ""))
+        self.assertIn(" 0 of them now", again.stdout)
 
 
 class Others(Sweeps):

@@ -76,7 +76,7 @@ def sweep(study, plan, arguments):
     kept = results.Results(arguments.output, results.header_of(plan, me))
     before = len(kept.rows)
     try:
-        if kept.damaged:
+        if kept.damaged and before < plan.runs:  # the lines stay when their runs have been done again
             print(f"{kept.path}: {kept.damaged} damaged lines, their runs are done again", file=sys.stderr)
         compute(plan, kept, arguments, me)
     finally:
