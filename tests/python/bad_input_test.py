@@ -170,6 +170,17 @@ class Objects(unittest.TestCase):
             controller.module_poses(q + 1e18)
         with self.assertRaisesRegex(RuntimeError, "expected update"):
             controller.record()
+        masked = np.ma.array(q, mask=np.eye(len(q))[0])
+        for arguments in ((masked,), ([np.ma.masked, *q[1:]],), (q, np.ma.masked_equal(np.zeros((1, 4)), 0.0)),
+                          (q, [np.ma.masked_equal(np.zeros(4), 0.0)]),
+                          (q, np.zeros((1, 4)), np.ma.masked_equal([1], 1))):
+            with self.assertRaisesRegex(TypeError, r"^(q_measured|tactile|sequence): a masked entry in it, expected"):
+                controller.update(*arguments)
+        with self.assertRaisesRegex(TypeError, "^q: a masked entry"):
+            controller.module_poses(masked)
+        for value in (np.ma.masked, masked, [np.ma.masked]):
+            with self.assertRaisesRegex(TypeError, "^set: task.home has a masked entry, expected a number"):
+                tactus.Scene(SCENE, set={"task.home": value})
         slightly_past = np.r_[0.5, q[1:]]  # j1 goes to 0.4
         self.assertTrue(np.isfinite(tactus.Controller(self.scene).update(slightly_past)).all())
         with self.assertRaisesRegex(KeyError, "expected one of t_s, force_sensor_N"):

@@ -258,6 +258,19 @@ class NoDaemon(unittest.TestCase):
         with self.assertRaisesRegex(tactus.RunError, "ended the connection"):
             tactus.Daemon(self.path).show()
 
+    def test_is_not_asked_for_what_are_no_points(self):
+        """Nor for what it would take for others: a masked entry for zero or what stays, keys for numbers."""
+        masked = np.ma.array([0.9, 0.4, 0.2], mask=[0, 1, 0])
+        self.serve(None)
+        with tactus.Daemon(self.path, timeout_s=0.05) as daemon:
+            for point in (masked, [0.9, np.ma.masked, 0.2], {0: 0.9, 1: 0.4, 2: 0.2}, {0.9, 0.4, 0.2},
+                          {0.9: 0, 0.4: 0, 0.2: 0}.keys()):
+                for order in (daemon.move, daemon.stream):
+                    with self.subTest(point=point), self.assertRaisesRegex(TypeError, "^to_m: .*, expected "):
+                        order(point)
+            with self.assertRaisesRegex(TypeError, "expected numbers"):
+                daemon.follow([{"to_m": masked}])
+
     def test_that_is_silent_is_not_waited_for(self):
         self.serve(None)
         daemon = tactus.Daemon(self.path, timeout_s=0.05)

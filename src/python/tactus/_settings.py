@@ -19,6 +19,11 @@ def path_bytes(path: Path) -> bytes:
     return name
 
 
+def is_masked(value: object) -> bool:
+    """NumPy's conversions leave the mask out, so that what it hides would count."""
+    return isinstance(value, np.ma.MaskedArray) and bool(np.any(value.mask))
+
+
 def settings(values: Mapping[str, object] | None) -> list[bytes]:
     """KEY=VALUE each. A text is taken as on the command line."""
     if values is None:
@@ -37,6 +42,8 @@ def _key(key: object) -> str:
 
 def _yaml(key: str, value: object) -> str:
     """In YAML's flow style."""
+    if is_masked(value):
+        raise TypeError(f"set: {key} has a masked entry, expected a number")
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if value is None:

@@ -8,11 +8,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._settings import is_masked
 from .scene import Scene
 
 
+def _plain(name: str, values: ArrayLike) -> NDArray[Any]:
+    rows = values if isinstance(values, (list, tuple)) else [values]
+    if any(map(is_masked, rows)):
+        raise TypeError(f"{name}: a masked entry in it, expected numbers")
+    return np.asarray(values)
+
+
 def _array(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    array = np.asarray(values)
+    array = _plain(name, values)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name}: {array.dtype} in it, expected numbers")
     return array.astype(np.float64, copy=False)
@@ -53,7 +61,7 @@ class Controller:
         """
         numbers = None
         if sequence is not None:
-            numbers = np.asarray(sequence)
+            numbers = _plain("sequence", sequence)
             if numbers.dtype.kind not in "iu":
                 raise TypeError(f"sequence: {numbers.dtype} in it, expected whole numbers")
             if numbers.size and int(numbers.max()) > 0xFFFFFFFF:

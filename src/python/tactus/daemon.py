@@ -9,12 +9,13 @@ import pathlib
 import socket
 import threading
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from types import TracebackType
 from typing import Any
 
 import numpy as np
 
+from ._settings import is_masked
 from .errors import DaemonError, RunError
 from .scene import Scene
 
@@ -219,20 +220,22 @@ def _without_none(request: Mapping[str, object]) -> dict[str, object]:
 
 def _plain(value: object) -> object:
     """Of NumPy's numbers and arrays, for which JSON has no word."""
-    if isinstance(value, (np.generic, np.ndarray)):
+    if isinstance(value, (np.generic, np.ndarray)) and not is_masked(value):
         return value.tolist()
     raise TypeError(f"{value!r}: a {type(value).__name__}, expected numbers, texts, bools, None, or lists "
                     "or mappings of these")
 
 
 def _numbers(name: str, point: _Point | None) -> list[float | None] | None:
-    """Text is refused: "123" would be three numbers."""
+    """Text is refused: "123" would be three numbers. So is what has no order, or keys in place of numbers."""
+    if isinstance(point, (Mapping, Set)):
+        raise TypeError(f"{name}: a {type(point).__name__}, expected a list of numbers")
     return None if point is None else [None if x is None else _number(name, x) for x in point]
 
 
 def _number(name: str, value: object) -> float:
     array = np.asarray(value)
-    if array.ndim != 0 or array.dtype.kind not in "fiu":
+    if array.ndim != 0 or array.dtype.kind not in "fiu" or is_masked(value):
         raise TypeError(f"{name}: {value!r} in it, expected numbers, or None for what stays")
     if not math.isfinite(array):
         raise ValueError(f"{name}: {value} in it, expected finite numbers")
