@@ -110,6 +110,9 @@ def main():
     arguments = parser.parse_args()
     try:
         scene = tactus.Scene(arguments.scene)
+        if len(scene.modules) != 1:
+            print(f"{arguments.scene}: {len(scene.modules)} tactile modules, expected one", file=sys.stderr)
+            return 1
         world = Mujoco(scene, (0.70771, 0.00265), arguments.stiffness)
     except ModuleNotFoundError as error:
         print(f"{error}; install MuJoCo: pip install mujoco", file=sys.stderr)

@@ -140,6 +140,15 @@ class OtherEngines(unittest.TestCase):
         self.assertGreater(fields["force_sensor_N"].max(), 15)
 
 
+class BehindMujoco(unittest.TestCase):
+    def test_takes_an_arm_with_one_module(self):
+        for scene, modules in (("whole_arm/crops9_skin_in_turn", 3), ("free_motion", 0)):
+            path = SCENES / f"{scene}.yaml"
+            done = example("behind_mujoco.py", path)
+            self.assertEqual((done.returncode, done.stdout, done.stderr),
+                             (1, "", f"{path}: {modules} tactile modules, expected one\n"))
+
+
 class WithoutMujoco(unittest.TestCase):
     def test_says_what_to_install(self):
         done = subprocess.run(
