@@ -271,6 +271,14 @@ class NoDaemon(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, "expected numbers"):
                 daemon.follow([{"to_m": masked}])
 
+    def test_is_not_sent_more_than_a_packet(self):
+        """After which the connection is as it was."""
+        self.serve(b'{"done": true}')
+        with tactus.Daemon(self.path) as daemon:
+            with self.assertRaisesRegex(ValueError, r"^a request of \d+ bytes, expected at most 32768$"):
+                daemon.follow([{"to_m": [0.9, 0.4, 0.25]}] * 100_000)
+            self.assertEqual(daemon.show(), {"done": True})
+
     def test_that_is_silent_is_not_waited_for(self):
         self.serve(None)
         daemon = tactus.Daemon(self.path, timeout_s=0.05)

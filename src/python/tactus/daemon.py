@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import os
@@ -19,6 +20,7 @@ from ._settings import is_masked
 from .errors import DaemonError, RunError
 from .scene import Scene
 
+_MAX_REQUEST = 1 << 15
 _MAX_ANSWER = 1 << 18
 _MAX_STATUS_AGE_S = 2.0
 _UNDER_WAY = ("moving", "blocked")
@@ -99,6 +101,8 @@ class Daemon:
             self._socket.send(packet)
             return self._socket.recv(_MAX_ANSWER)
         except OSError as error:
+            if error.errno == errno.EMSGSIZE:  # nothing was sent
+                raise ValueError(f"a request of {len(packet)} bytes, expected at most {_MAX_REQUEST}") from error
             self.close()  # an answer that comes late would be taken for the next one
             raise RunError(f"{self.path}: the daemon does not answer: {error}") from error
         except BaseException:  # Ctrl-C, likewise
