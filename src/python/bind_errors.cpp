@@ -1,4 +1,8 @@
+#include <cxxabi.h>
+#include <unistd.h>
+
 #include <exception>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,6 +19,16 @@ template <typename... Arguments>
 void raise(const char* type, Arguments... arguments) {
   const py::object error = py::module_::import("tactus.errors").attr(type)(arguments...);
   PyErr_SetObject(py::type::handle_of(error).ptr(), error.ptr());
+}
+
+/// Runs what takes the interpreter's lock, unless Python ends.
+template <typename Take>
+void takeLock(Take take) {
+  try {
+    take();
+  } catch (const abi::__forced_unwind&) {  // pthread_exit(), which nothing here is made for
+    while (true) pause();
+  }
 }
 
 void translate(std::exception_ptr thrown) {
@@ -41,8 +55,13 @@ py::str textOf(const std::string& text) {
   return py::reinterpret_steal<py::str>(decoded);
 }
 
+LockRelease::~LockRelease() {
+  takeLock([this] { PyEval_RestoreThread(state_); });
+}
+
 void lookForSignals() {
-  const py::gil_scoped_acquire acquire;
+  std::optional<py::gil_scoped_acquire> acquire;
+  takeLock([&] { acquire.emplace(); });
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 

@@ -38,7 +38,7 @@ py::tuple simulateScene(const Scene& scene) {
       std::make_unique<Columns>(describeLog(scene).shape, [](std::string_view) { return true; });
   std::string summary;
   {
-    const py::gil_scoped_release release;
+    const LockRelease release;
     columns->reserve(cyclesToReserve(scene));
     const SimulationResult result = simulate(scene, Collector(*columns));
     summary = jsonText(summaryJson(scene, result.figures, result.real_time_factor));
@@ -77,7 +77,7 @@ py::tuple readLog(const std::string& path) {
   bool is_cut_off = false;
   int part = 0;
   {
-    const py::gil_scoped_release release;
+    const LockRelease release;
     std::ifstream in = openLog(path);
     UlogReader reader(in, path);
     description = reader.description();

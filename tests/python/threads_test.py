@@ -7,14 +7,34 @@ usage: threads_test.py FOLDER TACTUS"""
 import os
 import pathlib
 import signal
+import subprocess
 import sys
 import tempfile
 import threading
 import unittest
 
-from common import SCENES, program, tactus
+from common import FOLDER, SCENES, program, tactus
 
 NEVER_S = 1e4  # nobody is made to hand the lock over
+DAEMONS = """
+import sys, threading
+sys.path.insert(0, sys.argv[1])
+import tactus
+scene = tactus.Scene(sys.argv[2], set={"simulation.duration_s": float(sys.argv[3])})
+begun = threading.Semaphore(0)
+def work():
+    begun.release()
+    while True:
+        tactus.simulate(scene)
+for _ in range(4):
+    threading.Thread(target=work, daemon=True).start()
+for _ in range(4):
+    begun.acquire()
+class Late:  # gives the threads time to want the lock, once Python ends
+    def __del__(self, sleep=__import__("time").sleep):
+        sleep(0.2)
+late = Late()
+"""
 
 
 class Threads(unittest.TestCase):
@@ -83,6 +103,13 @@ class Threads(unittest.TestCase):
         for thread in threads:
             thread.join()
         self.assertEqual([run["dq"].tobytes() for run in results], [alone] * 4)
+
+    def test_of_daemons_end_with_the_program(self):
+        """Of short runs, which want the lock back at their end, and of long ones, which look for signals."""
+        for duration_s in (0.05, 3600):
+            done = subprocess.run([sys.executable, "-c", DAEMONS, FOLDER, SCENES / "free_motion.yaml",
+                                   str(duration_s)], text=True, capture_output=True, timeout=60)
+            self.assertEqual((done.returncode, done.stderr), (0, ""), duration_s)
 
     def test_are_ended_by_a_signal(self):
         endless = tactus.Scene(SCENES / "free_motion.yaml", set={"simulation.duration_s": 3600})

@@ -15,8 +15,22 @@ void bindScene(pybind11::module_& module);
 void bindRuns(pybind11::module_& module);
 void bindController(pybind11::module_& module);
 
+/// While it is there other threads of Python go on. A daemon thread that wants the interpreter's
+/// lock back while Python ends sleeps for ever, as of Python 3.14 on: those before end it by
+/// unwinding its stack, which this destructor would turn into an abort of the process.
+class LockRelease {
+ public:
+  LockRelease() : state_(PyEval_SaveThread()) {}
+  ~LockRelease();
+  LockRelease(const LockRelease&) = delete;
+  LockRelease& operator=(const LockRelease&) = delete;
+
+ private:
+  PyThreadState* state_;
+};
+
 /// Of functions that take long and touch nothing of Python: other threads of it go on.
-using WithoutLock = pybind11::call_guard<pybind11::gil_scoped_release>;
+using WithoutLock = pybind11::call_guard<LockRelease>;
 
 /// A class whose objects come from functions of the module alone: pybind11 would hand out the
 /// memory of one that __new__ has made, and that no __init__ has filled.
