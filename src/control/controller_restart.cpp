@@ -9,7 +9,7 @@ namespace {
 
 /// m or rad; less is an encoder's rounding, and no jump.
 constexpr double kBeside = 1e-4;
-/// m/s or rad/s, of a cost's way in scaled joints; less is no jump either.
+/// m/s or rad/s, of a way out in scaled joints; less is no jump either.
 constexpr double kLed = 1e-3;
 
 Variant variantOf(const ControllerConfig& config) {
@@ -69,19 +69,39 @@ void Controller::leadAnew(const Gains& gains, bool is_leaning,
   if (is_leaning) state.way_out_added -= state.way_out_before;
 }
 
-/// By a cost in its null space.
-bool Controller::isLed(const Gains& gains, ControllerState& state) const noexcept {
-  if (posture_ || (config_.clearance && config_.clearance->avoid)) return true;
-  return joint_limit_avoidance_ &&
-         costAt(state.q_desired, gains, state).gradient.cwiseAbs().maxCoeff() > kLed;
+/// By this way out in its null space: one that only the task keeps from its limits is not.
+bool Controller::isLed(const ScaledVector& way_out, const ControllerState& state) const noexcept {
+  if (way_out.isZero(0.0)) return false;
+  PreparedCycle prepared;
+  computeKinematics(0.0, state, prepared);
+  const WeightedPseudoinverse& pseudoinverse = prepared.kinematics.pseudoinverse;
+  const ScaledVector motion = way_out - pseudoinverse.expand(pseudoinverse.project(way_out));
+  return motion.cwiseAbs().maxCoeff() > kLed;
+}
+
+/// The way out of limits' zones, where it leads the arm: as soon as what an arm leans on asks for,
+/// for it may be what keeps a joint off its limit against the motion of the path.
+void Controller::bringBackSoon(const ScaledVector& way_out, ControllerState& state) const noexcept {
+  if (!isLed(way_out, state)) return;
+  state.return_share = 0.0;
+  state.is_leaning = true;
+  state.way_out_before = way_out;
+  state.way_out_added.setZero();
+}
+
+/// By costs that hold nothing off.
+bool Controller::isLedAway() const noexcept {
+  return posture_ || (config_.clearance && config_.clearance->avoid);
 }
 
 void Controller::begin(ControllerState& state) const noexcept {
   const JointVector beside = state.q_desired - config_.q_start;
   // A scene may begin far from its posture, near to a joint limit or a body, and where it begins.
-  const bool is_led = posture_ || state.way_out_added.cwiseAbs().maxCoeff() > kLed ||
-                      (config_.clearance && config_.clearance->avoid);
-  if (is_led || beside.cwiseAbs().maxCoeff() > kBeside) state.return_share = 0.0;
+  if (isLedAway() || beside.cwiseAbs().maxCoeff() > kBeside) {
+    state.return_share = 0.0;
+  } else {
+    bringBackSoon(ScaledVector(state.way_out_added), state);
+  }
 }
 
 void Controller::hold(const Gains& gains, ControllerState& state) const noexcept {
@@ -101,11 +121,15 @@ void Controller::goOn(const Gains& gains, ControllerState& state) const noexcept
   // free, or was, on by a jump, and without its pull (joint_space_transition.h) joint space is out
   // of balance.
   const bool keeps_balance = state.has_leaned && leans(gains, state);
-  const bool comes_back_gently =
-      variantOf(config_) == Variant::kJointSpace || (!keeps_balance && isLed(gains, state));
-  if (!comes_back_gently || state.return_share == 0.0) return;
-  state.return_share = 0.0;
-  if (joint_limit_avoidance_) leadAnew(gains, false, state);
+  const bool is_led_away =
+      variantOf(config_) == Variant::kJointSpace || (isLedAway() && !keeps_balance);
+  if (state.return_share == 0.0) return;
+  if (is_led_away) {
+    state.return_share = 0.0;
+    if (joint_limit_avoidance_) leadAnew(gains, false, state);
+  } else if (joint_limit_avoidance_ && !keeps_balance) {
+    bringBackSoon(ScaledVector(-costAt(state.q_desired, gains, state).gradient), state);
+  }
 }
 
 }  // namespace tactus

@@ -99,32 +99,39 @@ void ControlSocket::receive() {
     const bool may_speak = client.may_speak_s <= now_s && client.request.empty();
     polled.push_back({client.socket.fd(), static_cast<short>(may_speak ? POLLIN : 0), 0});
   }
-  if (await(polled) <= 0) return;
+  await(polled);
   auto client = clients_.begin();
   for (std::size_t i = 1; i < polled.size(); ++i) {
     const bool is_new = polled[i].revents != 0 && client->request.empty();
     const bool stays = !is_new || hear(*client);
     client = stays ? std::next(client) : clients_.erase(client);
   }
-  for (int i = 0; i < kMaxClients && isReady(listening_); ++i) accept();
+  acceptAll();
 }
 
 /// As poll(). What is there at once came since the last look, which may be long ago.
-int ControlSocket::await(std::vector<pollfd>& polled) {
+void ControlSocket::await(std::vector<pollfd>& polled) {
   const auto cycle = [this] { return link_.pulse.cycles.load(std::memory_order_relaxed); };
   const std::int64_t before = std::exchange(looked_at_cycle_, cycle());
   const auto count = ::poll(polled.data(), polled.size(), 0);
   came_after_cycle_ = before;
+  auto seen = polled.begin();
+  for (Client& client : clients_) {
+    ++seen;
+    if (seen->events != 0 && seen->revents == 0) client.is_overtaken = false;
+  }
   const bool has_to_answer =
       std::ranges::any_of(clients_, [](const Client& client) { return !client.request.empty(); });
-  if (count != 0 || has_to_answer) return count;
+  if (count != 0 || has_to_answer) return;
   const double now_s = monotonicTime_s();
   const bool is_all_ears = std::ranges::all_of(
       clients_, [now_s](const Client& client) { return client.may_speak_s <= now_s; });
-  const int ready =
-      ::poll(polled.data(), polled.size(), is_all_ears ? kLook_ms : 1000 / kMessagesPerS);
-  came_after_cycle_ = looked_at_cycle_ = cycle();
-  return ready;
+  ::poll(polled.data(), polled.size(), is_all_ears ? kLook_ms : 1000 / kMessagesPerS);
+  came_after_cycle_ = looked_at_cycle_;
+}
+
+void ControlSocket::acceptAll() {
+  for (int i = 0; i < kMaxClients && isReady(listening_); ++i) accept();
 }
 
 void ControlSocket::accept() {
@@ -150,17 +157,20 @@ bool ControlSocket::hear(Client& client) {
   client.request.assign(room.data(), static_cast<std::size_t>(size));
   client.is_hold = isHold(client.request);
   client.asker = {.waits = [&client] { return !hasLeft(client.socket); },
+                  .is_overtaken = client.is_overtaken,
                   .came_after_cycle = came_after_cycle_};
   return true;
 }
 
-/// A hold, or else who was answered the longest ago. What had come before the hold would move the
-/// arm behind it.
+/// A hold, or else who was answered the longest ago. What had come before the hold, also what has
+/// not been read yet, would move the arm behind it.
 void ControlSocket::answerOne() {
   auto client = std::ranges::find_if(
       clients_, [](const Client& it) { return it.is_hold && !it.request.empty(); });
   if (client != clients_.end()) {
-    for (Client& other : clients_) other.asker.is_overtaken = true;
+    acceptAll();
+    for (Client& other : clients_)
+      if (&other != &*client) other.is_overtaken = other.asker.is_overtaken = true;
   } else {
     client = std::ranges::find_if(clients_, [](const Client& it) { return !it.request.empty(); });
   }

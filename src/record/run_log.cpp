@@ -119,10 +119,11 @@ void RunLog::beginNextFile() {
   try {
     description_.infos.back().second = fmt::to_string(part_ + 1);
     std::unique_ptr<UlogWriter> writer = begin(next);
-    writer_->close();
+    writer_->flush();
     shiftFiles();
     writer->rename(next, folder_ + "/" + logName(0));
-    writer_ = std::move(writer);
+    writer_.swap(writer);  // open until the next has its name: who follows it waits for that
+    writer->close();
   } catch (const std::exception&) {
     std::error_code ignored;
     fs::remove(next, ignored);

@@ -133,6 +133,44 @@ TEST_F(ControlSocketTest, AnswersAHoldBeforeWhatWaits) {
   EXPECT_FALSE(link_->tool_orders.pop(order));
 }
 
+/// Also of whoever connects while something else takes long.
+TEST_F(ControlSocketTest, TakesNothingBehindAHoldThatCameBefore) {
+  const ControlSocket socket(scene_, *link_);
+  const JointVector& q = scene_.controller.q_start;
+  const Pose X_BaseTool = tipPose(scene_.controller.chain, q);
+  ToolSight sight;
+  sight.is_running = true;
+  std::copy_n(q.data(), q.size(), sight.q);
+  std::copy_n(X_BaseTool.p_AB.data(), 3, sight.p_BaseTool_m);
+  std::copy_n(X_BaseTool.R_AB.data(), 9, sight.R_BaseTool);
+  link_->tool_sights.put(sight);
+  const auto ask = [](int fd, const Json& request) {
+    const std::string text = request.dump();
+    EXPECT_EQ(::send(fd, text.data(), text.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(text.size()));
+  };
+  const auto answer = [](int fd) {
+    std::string room(4096, ' ');
+    room.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::recv(fd, room.data(), 4096, 0))));
+    ::close(fd);
+    return Json::parse(room);
+  };
+  const int holder = connect(controlPath()), follower = connect(controlPath());
+  Json follow = {{"do", "follow"}, {"waypoints", Json::array()}};
+  for (int i = 0; i < 200; ++i)
+    follow["waypoints"].push_back({{"to_m", {0, 0.05 * (i % 2), 0}}, {"relative", true}});
+  ask(follower, follow);
+  const int streamer = connect(controlPath());
+  ask(streamer, {{"do", "stream"}, {"to_m", {0, 0.001, 0}}, {"relative", true}});
+  ask(holder, {{"do", "hold"}});
+  const Json held = answer(holder), streamed = answer(streamer);
+  ASSERT_EQ(held.at("done"), true) << held;
+  if (streamed.at("done") == true) {
+    EXPECT_LT(streamed.at("task").at("number"), held.at("task").at("number"));
+  }
+  answer(follower);
+}
+
 TEST_F(ControlSocketTest, LeavesAPathToTheDaemonThatAnswersThere) {
   const ControlSocket socket(scene_, *link_);
   const auto other = std::make_unique<LoopLink>();

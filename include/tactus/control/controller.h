@@ -104,7 +104,8 @@ class Controller {
   /// For an arm that stands at q, wherever it was commanded to be, m or rad.
   void place(const JointVector& q, const Gains& gains, ControllerState& state) const noexcept;
 
-  /// For an arm that was placed and begins to move: from beside the configured start it returns to
+  /// For an arm that was placed and begins to move: led by a cost it does so gently, see
+  /// return_speed.h, and from beside the configured start it returns to
   /// its path gently, as after restart().
   void begin(ControllerState& state) const noexcept;
 
@@ -168,7 +169,9 @@ class Controller {
                                     ControllerState& state) const noexcept;
   ScaledVector wayOut(const Gains& gains, ControllerState& state) const noexcept;
   bool leans(const Gains& gains, const ControllerState& state) const noexcept;
-  bool isLed(const Gains& gains, ControllerState& state) const noexcept;
+  bool isLed(const ScaledVector& way_out, const ControllerState& state) const noexcept;
+  bool isLedAway() const noexcept;
+  void bringBackSoon(const ScaledVector& way_out, ControllerState& state) const noexcept;
   void leadAnew(const Gains& gains, bool is_leaning, ControllerState& state) const noexcept;
   int modules() const noexcept { return static_cast<int>(config_.tactile_modules.size()); }
   Fault read(int module, const RobotInput& input, double period_s,

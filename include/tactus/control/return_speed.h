@@ -8,10 +8,10 @@ namespace tactus {
 /// starts, nearer to a joint limit or away from its posture, and beta e or the way out of the
 /// limit's zone and to the posture at once would be a jump. So beta and joint space's pull grow
 /// linearly within this time: with beta = 5/s an error e makes at most 1.0 e /s, and not 5. Of the
-/// way out what the stop added grows likewise, and all of the way to a posture. A hold adds
-/// nothing, see Controller::goOn().
+/// way out what the stop added grows likewise, and all of the way to a posture and of `avoid`.
 /// Where the arm leans on something, what there was before of the way out has held its push off,
-/// and comes as fast as the law's answer does anew.
+/// and comes as fast as the law's answer does anew; and so does that of an arm that starts in a
+/// zone, or goes on there after a hold: it may be what holds the path's motion off.
 inline constexpr double kReturnRise_s = 2.0;
 inline constexpr double kAnswerRise_s = 0.3;
 

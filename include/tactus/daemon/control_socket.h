@@ -42,6 +42,7 @@ class ControlSocket {
     double may_speak_s = 0.0;  ///< on the monotonic clock
     std::string request{};     ///< that waits for its answer
     bool is_hold = false;
+    bool is_overtaken = false;  ///< by a hold, with all that it has sent until then
     Asker asker{};
   };
   using Clients = std::list<Client>;
@@ -49,7 +50,8 @@ class ControlSocket {
   void serve(const std::stop_token& stop) noexcept;
   void look();
   void receive();
-  int await(std::vector<pollfd>& polled);
+  void await(std::vector<pollfd>& polled);
+  void acceptAll();
   void accept();
   bool hear(Client& client);
   void answerOne();
