@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
+#include "support/random.h"
+#include "tactus/control/controller.h"
 #include "tactus/math/trajectory.h"
 #include "tactus/scene/scene_loader.h"
 
@@ -43,6 +46,48 @@ TEST(PathCheck, WarnsOfAPathThatTheArmWouldHaveToTouchItselfFor) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("path not followed: at 4."), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[0].find("the clearance or a singular pose"), std::string::npos);
+}
+
+/// The largest lag of the tool, m, where the way out of limits' zones begins gently or at once.
+double largestLag(const Controller& controller, bool begins) {
+  ControllerState state = controller.initialState();
+  if (begins) controller.begin(state);
+  const Gains& gains = controller.initialGains();
+  ControllerOutput output;
+  double lag = 0.0;
+  for (int cycle = 0; cycle < 1500; ++cycle) {
+    controller.update(RobotInput{}, gains, 0.002 * cycle, 0.002, state, output);
+    lag = std::max(lag, output.error.norm());
+  }
+  return lag;
+}
+
+/// What leads a joint off its limit is back in time, also where the path moves from the first cycle
+/// on.
+TEST(PathCheck, APathIsFollowedFromAStartInALimitsZone) {
+  ControllerConfig config =
+      loadScene(TACTUS_SOURCE_DIR "/config/scenes/robots/kuka_iiwa7_free.yaml", {}).controller;
+  config.force_control.reset();
+  config.task.trajectory.start_s = 0.0;
+  test::Random random(407);
+  int followed = 0, led = 0;
+  for (int draw = 0; draw < 60; ++draw) {
+    for (int i = 0; i < config.q_start.size(); ++i)
+      config.q_start[i] =
+          random.uniform(0.95 * config.limits.lower[i], 0.95 * config.limits.upper[i]);
+    Waypoint& to = config.task.trajectory.waypoints.front();
+    to.displacement_m = 0.3 * random.vector<Vector3>(3, -1.0, 1.0).normalized();
+    to.speed_m_per_s = 0.15;
+    const Controller controller(config);
+    if (largestLag(controller, false) > 1e-3) continue;
+    ++followed;
+    ControllerState state = controller.initialState();
+    controller.begin(state);
+    led += state.return_share == 0.0;
+    EXPECT_LT(largestLag(controller, true), 2e-3) << draw;
+  }
+  EXPECT_GT(followed, 20);
+  EXPECT_EQ(led, followed);
 }
 
 /// At its end the tool is where it shall be. Then joints that are led off their limits lean on what
