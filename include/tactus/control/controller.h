@@ -114,8 +114,9 @@ class Controller {
   void beginRetreat(const Gains& gains, ControllerState& state) const noexcept;
   /// For an arm that runs and is held: remembers whether it leans on something.
   void hold(const Gains& gains, ControllerState& state) const noexcept;
-  /// For an arm that goes on where a hold or a retreat has left it: if that was after a retreat, or
-  /// its task is gone that its law opposed, it returns to its path as after restart().
+  /// For an arm that goes on where a hold or a retreat has left it, led gently by costs if it is
+  /// free: see return_speed.h. If that was after a retreat, or its task is gone that its law
+  /// opposed, it returns to its path as after restart().
   void goOn(const Gains& gains, ControllerState& state) const noexcept;
 
   /// For a cycle in which the controller has nothing to do: only samples are taken over, or age.
