@@ -20,6 +20,7 @@ class CommandReplay : public ::testing::Test {
   std::vector<CycleRecord> record(const Scene& scene, int cycles) const {
     const Controller controller(scene.controller);
     ControllerState state = controller.initialState();
+    controller.begin(state);
     ControllerOutput output;
     RobotInput input;
     input.q_measured = scene.controller.q_start;

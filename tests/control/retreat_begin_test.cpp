@@ -159,10 +159,12 @@ TEST(RetreatBegin, RemembersTheVelocityOfTheFault) {
   EXPECT_EQ(arm.begin().velocity_at_fault, JointVector(JointVector::Constant(7, 0.2)));
 }
 
-/// An arm that has left its path comes back to it gently, one that has not goes on.
+/// An arm that has left its path comes back to it gently, one that has not, and leans on something,
+/// goes on.
 TEST(RetreatBegin, MakesForAGentleReturnOnceItHasMoved) {
   Struck arm = struckSkin();
-  arm.state.retreat.is_under_way = true;
+  arm.state.retreat.is_under_way = arm.state.has_leaned = true;
+  arm.state.modules[0].contact = pushOf(5.0, 0.2);
   arm.controller.goOn(arm.config.gains, arm.state);
   EXPECT_FALSE(arm.state.retreat.is_under_way);
   EXPECT_EQ(arm.state.return_share, 1.0);

@@ -38,7 +38,8 @@ LAYERS = {
              "canopen", "sim", "control", "math"}, {"Eigen", "CLI", "fmt", "nlohmann"}),
     "panel": ({"daemon", "record", "supervisor", "scene", "control", "math"},
               {"Eigen", "CLI", "fmt", "nlohmann"}),
-    "python": ({"run", "record", "scene", "control", "math"}, {"Eigen", "fmt", "nlohmann", "pybind11"}),
+    "python": ({"run", "record", "scene", "control", "math"},
+               {"Eigen", "cxxabi.h", "fmt", "nlohmann", "pybind11"}),
     "bench": ({"cli", "run", "record", "supervisor", "scene", "analysis", "sim", "control", "math"},
               {"Eigen", "CLI", "fmt", "kdl", "mujoco", "nlohmann", "valgrind"}),
 }
