@@ -115,11 +115,6 @@ void ControlSocket::await(std::vector<pollfd>& polled) {
   const std::int64_t before = std::exchange(looked_at_cycle_, cycle());
   const auto count = ::poll(polled.data(), polled.size(), 0);
   came_after_cycle_ = before;
-  auto seen = polled.begin();
-  for (Client& client : clients_) {
-    ++seen;
-    if (seen->events != 0 && seen->revents == 0) client.is_overtaken = false;
-  }
   const bool has_to_answer =
       std::ranges::any_of(clients_, [](const Client& client) { return !client.request.empty(); });
   if (count != 0 || has_to_answer) return;
@@ -157,8 +152,9 @@ bool ControlSocket::hear(Client& client) {
   client.request.assign(room.data(), static_cast<std::size_t>(size));
   client.is_hold = isHold(client.request);
   client.asker = {.waits = [&client] { return !hasLeft(client.socket); },
-                  .is_overtaken = client.is_overtaken,
+                  .is_overtaken = client.overtaken_bytes > 0,
                   .came_after_cycle = came_after_cycle_};
+  client.overtaken_bytes -= std::min(size, client.overtaken_bytes);
   return true;
 }
 
@@ -169,8 +165,11 @@ void ControlSocket::answerOne() {
       clients_, [](const Client& it) { return it.is_hold && !it.request.empty(); });
   if (client != clients_.end()) {
     acceptAll();
-    for (Client& other : clients_)
-      if (&other != &*client) other.is_overtaken = other.asker.is_overtaken = true;
+    for (Client& other : clients_) {
+      if (&other == &*client) continue;
+      other.asker.is_overtaken = true;
+      other.overtaken_bytes = other.socket.waiting();
+    }
   } else {
     client = std::ranges::find_if(clients_, [](const Client& it) { return !it.request.empty(); });
   }

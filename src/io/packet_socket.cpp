@@ -1,5 +1,6 @@
 #include "tactus/io/packet_socket.h"
 
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/time.h>
@@ -97,6 +98,11 @@ long PacketSocket::receive(std::span<char> room) const noexcept {
     size = ::recv(fd_, room.data(), room.size(), MSG_TRUNC);
   } while (size < 0 && errno == EINTR);  // that a signal came says nothing of the other side
   return size;
+}
+
+long PacketSocket::waiting() const noexcept {
+  int bytes = 0;
+  return ::ioctl(fd_, FIONREAD, &bytes) == 0 ? bytes : 0;
 }
 
 bool PacketSocket::send(std::string_view packet) const noexcept {

@@ -171,6 +171,36 @@ TEST_F(ControlSocketTest, TakesNothingBehindAHoldThatCameBefore) {
   answer(follower);
 }
 
+/// Of all that had come, and of nothing that comes later.
+TEST_F(ControlSocketTest, AHoldOvertakesWhatWaitsInASocketToo) {
+  const ManagedSocket managed(controlPath());
+  const std::string stream = R"({"do": "stream", "to_m": [0, 0.001, 0], "relative": true})";
+  const std::string hold = R"({"do": "hold"})";
+  ToolSight sight;
+  sight.is_running = true;
+  link_->tool_sights.put(sight);
+  const int streamer = connect(controlPath()), holder = connect(controlPath());
+  for (int i = 0; i < 2; ++i)
+    EXPECT_GT(::send(streamer, stream.data(), stream.size(), MSG_NOSIGNAL), 0);
+  EXPECT_GT(::send(holder, hold.data(), hold.size(), MSG_NOSIGNAL), 0);
+  const ControlSocket socket(scene_, *link_);
+  const auto answer = [](int fd) {
+    std::string room(4096, ' ');
+    room.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::recv(fd, room.data(), 4096, 0))));
+    return Json::parse(room);
+  };
+  EXPECT_EQ(answer(holder).at("done"), true);
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(answer(streamer).value("error", ""), "a hold has come meanwhile");
+  const std::string show = R"({"do": "show"})";
+  EXPECT_GT(::send(streamer, show.data(), show.size(), MSG_NOSIGNAL), 0);
+  EXPECT_EQ(answer(streamer).at("done"), true);
+  EXPECT_GT(::send(streamer, stream.data(), stream.size(), MSG_NOSIGNAL), 0);
+  EXPECT_NE(answer(streamer).value("error", "").find("expected it to pause"), std::string::npos);
+  ::close(streamer);
+  ::close(holder);
+}
+
 TEST_F(ControlSocketTest, LeavesAPathToTheDaemonThatAnswersThere) {
   const ControlSocket socket(scene_, *link_);
   const auto other = std::make_unique<LoopLink>();

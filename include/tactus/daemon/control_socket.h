@@ -42,7 +42,7 @@ class ControlSocket {
     double may_speak_s = 0.0;  ///< on the monotonic clock
     std::string request{};     ///< that waits for its answer
     bool is_hold = false;
-    bool is_overtaken = false;  ///< by a hold, with all that it has sent until then
+    long overtaken_bytes = 0;  ///< sent, and not received yet, when a hold was answered
     Asker asker{};
   };
   using Clients = std::list<Client>;
