@@ -36,7 +36,10 @@ class Fuzz(unittest.TestCase):
 
     def test_every_line_is_a_mode_with_a_fault_of_the_table(self):
         names = fault_names()
-        self.assertEqual(len(self.modes), len((self.folder / "tactusd.txt").read_text().splitlines()))
+        lines = (self.folder / "tactusd.txt").read_text().splitlines()
+        remedies = [line for line in lines if line.startswith("tactusd: what to do: ")]
+        self.assertLessEqual(len(remedies), len([fault for _, fault in self.modes if fault]))
+        self.assertEqual(len(self.modes), len(lines) - len(remedies))
         for mode, fault in self.modes:
             self.assertIn(fault, names | {""})
             if mode == "fault":
