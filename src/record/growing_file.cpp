@@ -16,7 +16,7 @@ namespace {
 
 /// The log's writer leaves its cycles with the kernel every 100 ms.
 constexpr std::chrono::milliseconds kPause{20};
-/// For a writer that has closed this file and renames the next one.
+/// A writer closes a file once the next one has its name, which may be seen later.
 constexpr int kLeftAfter_looks = 50;
 constexpr const char* kSignOfTheEnd = "summary.json";
 

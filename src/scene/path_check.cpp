@@ -79,9 +79,7 @@ std::string laggingPath(const Scene& scene) {
 std::string partOfRotation(const ControllerConfig& config) {
   std::vector<int> free;
   for (int component = 3; component < 6; ++component)
-    if (std::find(config.task.components.begin(), config.task.components.begin() + config.task.size,
-                  component) == config.task.components.begin() + config.task.size)
-      free.push_back(component);
+    if (!config.task.controls(component)) free.push_back(component);
   if (free.empty() || free.size() == 3) return "";
   ChainPose pose;
   config.chain.computePose(config.q_start, pose);

@@ -16,6 +16,7 @@
 
 #include "support/run_folder.h"
 #include "support/shipped_scene.h"
+#include "support/tool_sight.h"
 #include "support/unread_stderr.h"
 #include "tactus/daemon/control_client.h"
 #include "tactus/io/packet_socket.h"
@@ -33,6 +34,19 @@ class ControlSocketTest : public testing::Test {
     const int fd = ::socket(AF_UNIX, SOCK_SEQPACKET, 0);
     EXPECT_EQ(::connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
     return fd;
+  }
+
+  static PacketSocket asker() { return PacketSocket::connectTo(controlPath(), 60.0); }
+  static Json answerTo(const PacketSocket& asker) {
+    std::string room(4096, ' ');
+    room.resize(static_cast<std::size_t>(std::max(0L, asker.receive(room))));
+    return Json::parse(room);
+  }
+
+  void runAtStart() {
+    ToolSight sight;
+    test::placeAtStart(scene_.controller, true, sight);
+    link_->tool_sights.put(sight);
   }
 
   const test::RunFolder folder_;
@@ -105,29 +119,20 @@ TEST_F(ControlSocketTest, TakesOfWhoHasLeftNothingButAHold) {
   EXPECT_EQ(order.kind, ToolOrder::Kind::kStream);
 }
 
-/// Whoever connected first, and although the move came first.
+constexpr const char* kHold = R"({"do": "hold"})";
+constexpr const char* kShow = R"({"do": "show"})";
+constexpr const char* kStream = R"({"do": "stream", "to_m": [0, 0.001, 0], "relative": true})";
+
+/// Whoever connected first, and although the stream came first.
 TEST_F(ControlSocketTest, AnswersAHoldBeforeWhatWaits) {
   const ManagedSocket managed(controlPath());
-  const auto send = [](const std::string& request) {
-    const int fd = connect(controlPath());
-    EXPECT_EQ(::send(fd, request.data(), request.size(), MSG_NOSIGNAL),
-              static_cast<ssize_t>(request.size()));
-    return fd;
-  };
-  const int stream = send(R"({"do": "stream", "to_m": [0, 0.001, 0], "relative": true})");
-  const int hold = send(R"({"do": "hold"})");
-  ToolSight sight;
-  sight.is_running = true;
-  link_->tool_sights.put(sight);
+  const PacketSocket streamer = asker(), holder = asker();
+  EXPECT_TRUE(streamer.send(kStream));
+  EXPECT_TRUE(holder.send(kHold));
+  runAtStart();
   const ControlSocket socket(scene_, *link_);
-  const auto answer = [](int fd) {
-    std::string room(4096, ' ');
-    room.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::recv(fd, room.data(), 4096, 0))));
-    ::close(fd);
-    return Json::parse(room);
-  };
-  EXPECT_EQ(answer(hold).at("done"), true);
-  EXPECT_EQ(answer(stream).value("error", ""), "a hold has come meanwhile");
+  EXPECT_EQ(answerTo(holder).at("done"), true);
+  EXPECT_EQ(answerTo(streamer).value("error", ""), "a hold has come meanwhile");
   ToolOrder order;
   EXPECT_TRUE(link_->tool_holds.take(order));
   EXPECT_FALSE(link_->tool_orders.pop(order));
@@ -136,69 +141,38 @@ TEST_F(ControlSocketTest, AnswersAHoldBeforeWhatWaits) {
 /// Also of whoever connects while something else takes long.
 TEST_F(ControlSocketTest, TakesNothingBehindAHoldThatCameBefore) {
   const ControlSocket socket(scene_, *link_);
-  const JointVector& q = scene_.controller.q_start;
-  const Pose X_BaseTool = tipPose(scene_.controller.chain, q);
-  ToolSight sight;
-  sight.is_running = true;
-  std::copy_n(q.data(), q.size(), sight.q);
-  std::copy_n(X_BaseTool.p_AB.data(), 3, sight.p_BaseTool_m);
-  std::copy_n(X_BaseTool.R_AB.data(), 9, sight.R_BaseTool);
-  link_->tool_sights.put(sight);
-  const auto ask = [](int fd, const Json& request) {
-    const std::string text = request.dump();
-    EXPECT_EQ(::send(fd, text.data(), text.size(), MSG_NOSIGNAL),
-              static_cast<ssize_t>(text.size()));
-  };
-  const auto answer = [](int fd) {
-    std::string room(4096, ' ');
-    room.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::recv(fd, room.data(), 4096, 0))));
-    ::close(fd);
-    return Json::parse(room);
-  };
-  const int holder = connect(controlPath()), follower = connect(controlPath());
+  runAtStart();
+  const PacketSocket holder = asker(), follower = asker();
   Json follow = {{"do", "follow"}, {"waypoints", Json::array()}};
   for (int i = 0; i < 200; ++i)
     follow["waypoints"].push_back({{"to_m", {0, 0.05 * (i % 2), 0}}, {"relative", true}});
-  ask(follower, follow);
-  const int streamer = connect(controlPath());
-  ask(streamer, {{"do", "stream"}, {"to_m", {0, 0.001, 0}}, {"relative", true}});
-  ask(holder, {{"do", "hold"}});
-  const Json held = answer(holder), streamed = answer(streamer);
+  EXPECT_TRUE(follower.send(follow.dump()));
+  const PacketSocket streamer = asker();
+  EXPECT_TRUE(streamer.send(kStream));
+  EXPECT_TRUE(holder.send(kHold));
+  const Json held = answerTo(holder), streamed = answerTo(streamer);
   ASSERT_EQ(held.at("done"), true) << held;
   if (streamed.at("done") == true) {
     EXPECT_LT(streamed.at("task").at("number"), held.at("task").at("number"));
   }
-  answer(follower);
+  answerTo(follower);
 }
 
 /// Of all that had come, and of nothing that comes later.
 TEST_F(ControlSocketTest, AHoldOvertakesWhatWaitsInASocketToo) {
   const ManagedSocket managed(controlPath());
-  const std::string stream = R"({"do": "stream", "to_m": [0, 0.001, 0], "relative": true})";
-  const std::string hold = R"({"do": "hold"})";
-  ToolSight sight;
-  sight.is_running = true;
-  link_->tool_sights.put(sight);
-  const int streamer = connect(controlPath()), holder = connect(controlPath());
-  for (int i = 0; i < 2; ++i)
-    EXPECT_GT(::send(streamer, stream.data(), stream.size(), MSG_NOSIGNAL), 0);
-  EXPECT_GT(::send(holder, hold.data(), hold.size(), MSG_NOSIGNAL), 0);
+  runAtStart();
+  const PacketSocket streamer = asker(), holder = asker();
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(streamer.send(kStream));
+  EXPECT_TRUE(holder.send(kHold));
   const ControlSocket socket(scene_, *link_);
-  const auto answer = [](int fd) {
-    std::string room(4096, ' ');
-    room.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::recv(fd, room.data(), 4096, 0))));
-    return Json::parse(room);
-  };
-  EXPECT_EQ(answer(holder).at("done"), true);
+  EXPECT_EQ(answerTo(holder).at("done"), true);
   for (int i = 0; i < 2; ++i)
-    EXPECT_EQ(answer(streamer).value("error", ""), "a hold has come meanwhile");
-  const std::string show = R"({"do": "show"})";
-  EXPECT_GT(::send(streamer, show.data(), show.size(), MSG_NOSIGNAL), 0);
-  EXPECT_EQ(answer(streamer).at("done"), true);
-  EXPECT_GT(::send(streamer, stream.data(), stream.size(), MSG_NOSIGNAL), 0);
-  EXPECT_NE(answer(streamer).value("error", "").find("expected it to pause"), std::string::npos);
-  ::close(streamer);
-  ::close(holder);
+    EXPECT_EQ(answerTo(streamer).value("error", ""), "a hold has come meanwhile");
+  EXPECT_TRUE(streamer.send(kShow));
+  EXPECT_EQ(answerTo(streamer).at("done"), true);
+  EXPECT_TRUE(streamer.send(kStream));
+  EXPECT_NE(answerTo(streamer).value("error", "").find("expected it to pause"), std::string::npos);
 }
 
 TEST_F(ControlSocketTest, LeavesAPathToTheDaemonThatAnswersThere) {

@@ -7,20 +7,14 @@
 
 #include "support/random.h"
 #include "support/shipped_scene.h"
+#include "support/tool_sight.h"
 #include "tactus/daemon/control_requests.h"
 #include "tactus/scene/reach_check.h"
 
 namespace tactus {
 namespace {
 
-/// The arm at its start.
-void placeAtStart(const ControllerConfig& config, bool is_running, ToolSight& sight) {
-  const Pose X = tipPose(config.chain, config.q_start);
-  sight.is_running = is_running;
-  std::copy_n(config.q_start.data(), config.q_start.size(), sight.q);
-  std::copy_n(X.p_AB.data(), 3, sight.p_BaseTool_m);
-  std::copy_n(X.R_AB.data(), 9, sight.R_BaseTool);
-}
+using test::placeAtStart;
 
 /// What tells the tool, and the loop's side of the link.
 class ToolRequestsTest : public ::testing::Test {

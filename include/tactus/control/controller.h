@@ -105,8 +105,8 @@ class Controller {
   void place(const JointVector& q, const Gains& gains, ControllerState& state) const noexcept;
 
   /// For an arm that was placed and begins to move: led by a cost it does so gently, see
-  /// return_speed.h, and from beside the configured start it returns to
-  /// its path gently, as after restart().
+  /// return_speed.h, and from beside the configured start it returns to its path gently, as after
+  /// restart().
   void begin(ControllerState& state) const noexcept;
 
   /// For an arm that a tactile fault takes from its task, with is_stopping: out of the contact, or

@@ -45,7 +45,6 @@ class ControlSocket {
     long overtaken_bytes = 0;  ///< sent, and not received yet, when a hold was answered
     Asker asker{};
   };
-  using Clients = std::list<Client>;
 
   void serve(const std::stop_token& stop) noexcept;
   void look();
@@ -61,7 +60,7 @@ class ControlSocket {
   ControlRequests requests_;
   std::string made_path_;  ///< of a socket of our own, to be removed
   PacketSocket listening_;
-  Clients clients_;                    ///< who was answered last is the last
+  std::list<Client> clients_;          ///< who was answered last is the last
   std::int64_t looked_at_cycle_ = 0;   ///< of the loop, when all that had come was taken
   std::int64_t came_after_cycle_ = 0;  ///< what was taken last
   std::jthread thread_;
