@@ -107,7 +107,7 @@ void noteCapsules(const LinkContacts& links, double t_s, std::vector<CapsuleTouc
 }  // namespace
 
 ControllerConfig undisturbed(ControllerConfig config) {
-  config.gains.task.wait_beyond_m = kNoLimit;
+  config.gains.task.wait_beyond_m = config.gains.task.wait_beyond_rad = kNoLimit;
   config.tactile_modules.clear();
   config.force_control.reset();
   return config;

@@ -46,6 +46,7 @@ Controller::Controller(const ControllerConfig& config)
       trajectory_(config.task.trajectory, tipPose(config.chain, config.q_start)),
       inv_sqrt_weights_(scaled(config.weights.cwiseSqrt().cwiseInverse(), ScaledVector::Ones())),
       has_rotation_(config.task.hasRotation()),
+      has_part_of_rotation_(config.task.hasPartOfRotation()),
       is_acceleration_level_(config.force_control &&
                              config.force_control->level == ControlLevel::kAcceleration),
       limiter_(config.limits),
@@ -224,29 +225,35 @@ ToolAcceleration Controller::referenceAcceleration(double path_time_s,
                            : trajectory_.evaluateAcceleration(path_time_s);
 }
 
+ToolReference Controller::referenceAt(double path_time_s,
+                                      const ControllerState& state) const noexcept {
+  return state.tool_motion ? state.tool_motion->evaluate(path_time_s)
+                           : trajectory_.evaluate(path_time_s);
+}
+
 void Controller::computeKinematics(double path_time_s, const ControllerState& state,
                                    PreparedCycle& prepared) const noexcept {
   const TaskConfig& task = config_.task;
   TaskKinematics& kinematics = prepared.kinematics;
   config_.chain.computePose(state.q_desired, kinematics.pose);
-  ToolReference reference = trajectory_.evaluate(path_time_s);
-  if (state.tool_motion) [[unlikely]]
-    reference = state.tool_motion->evaluate(path_time_s);
+  const ToolReference reference = referenceAt(path_time_s, state);
   Twist w = Twist::Zero();
   Twist w_d_dot;
   Twist error = Twist::Zero();
   w.head<3>() = framePosition(kinematics.pose, config_.chain.tip());
   error.head<3>() = reference.p_BaseTool - w.head<3>();
-  w_d_dot << reference.v_BaseTool, reference.omega_BaseTool;
+  Vector3 omega_d = reference.omega_BaseTool;
+  ScaledJacobian J;
+  computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
+                     inv_sqrt_weights_, J);
   if (has_rotation_) {
     const Matrix3 R_BaseTool = framePose(kinematics.pose, config_.chain.tip()).R_AB;
     w.tail<3>() = rotationVector(R_BaseTool);
     error.tail<3>() = rotationVector(reference.R_BaseTool * R_BaseTool.transpose());
     prepared.rotation_vector_d = rotationVector(reference.R_BaseTool);
+    if (has_part_of_rotation_) keepPartOfRotation(kinematics.pose, error.tail<3>(), J, omega_d);
   }
-  ScaledJacobian J;
-  computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
-                     inv_sqrt_weights_, J);
+  w_d_dot << reference.v_BaseTool, omega_d;
   kinematics.pseudoinverse.factorise(J, config_.chain.size(), task.size);
   kinematics.error.setZero();
   prepared.w.setZero();
@@ -262,12 +269,10 @@ void Controller::computeKinematics(double path_time_s, const ControllerState& st
 void Controller::computeTaskMotion(const TaskGains& gains, const ControllerState& state,
                                    PreparedCycle& prepared) const noexcept {
   TaskKinematics& kinematics = prepared.kinematics;
-  if (gains.wait_beyond_m < kNoLimit) {
-    prepared.progress =
-        pathProgress(toolLag_m(config_.task, kinematics.error), gains.wait_beyond_m);
+  prepared.progress = 1.0;
+  if (gains.wait_beyond_m < kNoLimit || gains.wait_beyond_rad < kNoLimit) {
+    prepared.progress = pathProgress(gains, toolLag(config_.task, kinematics.error));
     prepared.w_d_dot *= prepared.progress;
-  } else {
-    prepared.progress = 1.0;
   }
   PaddedTaskVector correction = state.return_share * gains.drift_gain_per_s * kinematics.error;
   if (hasReturnSpeed(gains)) {

@@ -1,5 +1,4 @@
 #include "tactus/control/controller.h"
-#include "tactus/math/velocity_product.h"
 
 /// What the acceleration level asks of a controller.
 namespace tactus {
@@ -25,14 +24,17 @@ FreeAcceleration Controller::freeAcceleration(const Gains& gains, double path_ti
   const TaskVector w_dot = kinematics.pseudoinverse.taskVelocity(free.y_before);
   const double beta = state.return_share * gains.task.drift_gain_per_s;
   const double progress = prepared.progress * prepared.progress;
+  const Vector3 linear = progress * reference.a_BaseTool - curvature.linear;
+  const Vector3 alpha_d = progress * reference.alpha_BaseTool;
+  const Vector3 angular = has_part_of_rotation_
+                              ? partOfRotationAcceleration(path_time_s, prepared.progress, alpha_d,
+                                                           curvature, kinematics.pose, state)
+                              : Vector3(alpha_d - curvature.angular);
   free.w_dd.setZero();
   for (int i = 0; i < config_.task.size; ++i) {
     const int k = config_.task.components[i] % 3;
-    const bool is_position = config_.task.components[i] < 3;
-    free.w_dd[i] =
-        progress * (is_position ? reference.a_BaseTool[k] : reference.alpha_BaseTool[k]) -
-        (is_position ? curvature.linear[k] : curvature.angular[k]) +
-        beta * (prepared.w_d_dot[i] - w_dot[i]);
+    free.w_dd[i] = (config_.task.components[i] < 3 ? linear[k] : angular[k]) +
+                   beta * (prepared.w_d_dot[i] - w_dot[i]);
   }
 
   free.cost_change.setZero();

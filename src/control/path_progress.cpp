@@ -1,21 +1,27 @@
 #include "tactus/control/path_progress.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tactus {
 
-double toolLag_m(const TaskConfig& task, const PaddedTaskVector& error) noexcept {
-  double squared = 0.0;
+ToolLag toolLag(const TaskConfig& task, const PaddedTaskVector& error) noexcept {
+  ToolLag squared;
   for (int i = 0; i < task.size; ++i)
-    if (task.components[i] < 3) squared += error[i] * error[i];
-  return std::sqrt(squared);
+    (task.components[i] < 3 ? squared.position_m : squared.rotation_rad) += error[i] * error[i];
+  return {std::sqrt(squared.position_m), std::sqrt(squared.rotation_rad)};
 }
 
-double pathProgress(double lag_m, double wait_beyond_m) noexcept {
-  const double x = lag_m / wait_beyond_m - 1.0;
+double pathProgress(double lag, double wait_beyond) noexcept {
+  const double x = lag / wait_beyond - 1.0;
   if (x >= 1.0) return 0.0;
   if (x > 0.0) return 1.0 - x * x * (3.0 - 2.0 * x);
   return 1.0;
+}
+
+double pathProgress(const TaskGains& gains, const ToolLag& lag) noexcept {
+  return std::min(pathProgress(lag.position_m, gains.wait_beyond_m),
+                  pathProgress(lag.rotation_rad, gains.wait_beyond_rad));
 }
 
 }  // namespace tactus

@@ -4,8 +4,8 @@ namespace tactus {
 
 VelocityProduct velocityProduct(const SerialChain& chain, const ChainPose& pose, int joint,
                                 const Vector3& p_BasePoint, const JointVector& q_dot) noexcept {
-  Vector3 omega = Vector3::Zero();
-  VelocityProduct result{Vector3::Zero(), Vector3::Zero()};
+  VelocityProduct result{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+  Vector3& omega = result.omega;
   Vector3 p = Vector3::Zero();  // whatever the first joint's lever is: the base does not turn
   const auto goTo = [&](const Vector3& next) {
     const Vector3 lever = next - p;

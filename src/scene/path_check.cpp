@@ -38,15 +38,14 @@ std::string slowestJoint(const Scene& scene, const JointVector& velocity) {
                      scene.controller.limits.max_velocity[joint]);
 }
 
-/// A reference waits for a tool's place, not for its turn: half a turn ahead the way there is the
-/// other one.
+/// Half a turn ahead the way there is the other one.
 std::string wayRound(const TaskConfig& task, const TaskGains& gains) {
   const bool turns = std::ranges::any_of(task.trajectory.waypoints, [](const Waypoint& waypoint) {
     return waypoint.rotation_vector_rad.norm() > 0.0;
   });
-  if (!turns || gains.max_return_speed_rad_per_s < kNoLimit) return "";
-  return "; a tool that falls behind by half a turn would turn back the other way, slower with "
-         "task.max_return_speed_rad_per_s";
+  if (!turns || gains.wait_beyond_rad < kNoLimit) return "";
+  return "; a tool that falls behind by half a turn would turn back the other way, not with "
+         "task.wait_beyond_rad";
 }
 
 /// Where the tool first lags behind its path, or how much of it was not followed.
@@ -67,29 +66,12 @@ std::string laggingPath(const Scene& scene) {
       return fmt::format("{}: at {:.3f} s the tool lags by {:g} mm or mrad; {}{}",
                          t_s > end_s ? "end of the path not kept" : "path not followed", t_s,
                          1e3 * kMaxLag, slowestJoint(scene, output.velocity),
-                         wayRound(config.task, config.gains.task));
+                         wayRound(config.task, scene.controller.gains.task));
   }
   const double followed_s = kMaxFollowedCycles * scene.period_s;
   if (end_s <= followed_s) return "";
   return fmt::format("only the first {:g} s of the path were followed, which ends at {:g} s",
                      followed_s, end_s);
-}
-
-/// The rest of the turn that the task leaves free enters what the rotation vector says of it.
-std::string partOfRotation(const ControllerConfig& config) {
-  std::vector<int> free;
-  for (int component = 3; component < 6; ++component)
-    if (!config.task.controls(component)) free.push_back(component);
-  if (free.empty() || free.size() == 3) return "";
-  ChainPose pose;
-  config.chain.computePose(config.q_start, pose);
-  TaskJacobian J;
-  const auto size = static_cast<int>(free.size());
-  computeTipJacobian(config.chain, pose, framePosition(pose, config.chain.tip()), free.data(), size,
-                     J);
-  if (J.topRows(size).norm() < 1e-9) return "";  // as of a planar arm
-  return "task.components have a part of rx, ry and rz: the tool keeps it while it turns about the "
-         "rest by some tenths of a radian, and jumps at half a turn; better all three, or none";
 }
 
 std::string shortRun(const Scene& scene) {
@@ -123,8 +105,8 @@ std::string uncompensatedCover(const Scene& scene) {
 std::vector<std::string> checkPath(const Scene& scene) {
   std::vector<std::string> warnings;
   for (const std::string& warning :
-       {singularStart(scene.controller), laggingPath(scene), partOfRotation(scene.controller),
-        shortRun(scene), unfeltObstacles(scene), uncompensatedCover(scene)}) {
+       {singularStart(scene.controller), laggingPath(scene), shortRun(scene),
+        unfeltObstacles(scene), uncompensatedCover(scene)}) {
     if (!warning.empty()) warnings.push_back(warning);
   }
   return warnings;

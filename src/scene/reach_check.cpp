@@ -75,6 +75,7 @@ Reach followTo(const ControllerConfig& config, const JointVector& q, const Pose&
   ControllerConfig alone = undisturbed(config);
   // A reference that waits for a tool that is kept off something leads it no further round that.
   alone.gains.task.wait_beyond_m = config.gains.task.wait_beyond_m;
+  alone.gains.task.wait_beyond_rad = config.gains.task.wait_beyond_rad;
   const Controller controller(alone);
   ControllerState state = controller.initialState(q);
   ControllerOutput output;

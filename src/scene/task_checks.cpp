@@ -22,6 +22,10 @@ void checkComponents(const CheckedScene& c) {
     c.fail("task.wait_beyond_m", "the task has no position that could lag",
            "x, y or z among task.components, or no such key");
   }
+  if (c.scene.gains.task.wait_beyond_rad < kNoLimit && !task.hasRotation()) {
+    c.fail("task.wait_beyond_rad", "the task has no orientation that could lag",
+           "rx, ry or rz among task.components, or no such key");
+  }
 }
 
 /// A sound bound, not a sharp one: how far from the base's origin the tool can ever be.

@@ -10,7 +10,10 @@ Row<TaskConfig> componentsRow() {
   row.spec.key = "components";
   row.spec.type = ValueType::kChoiceList;
   row.spec.presence = Presence::kDefaulted;
-  row.spec.doc = "what the task controls of the tool, base frame";
+  row.spec.doc =
+      "what the task controls of the tool, base frame; with a part of rx, ry and rz the tool is "
+      "free "
+      "to turn about the rest";
   row.spec.count = {1, kMaxTaskSize};
   for (const Word<int>& word : kComponentWords) row.spec.choices.push_back(word.text);
   row.spec.target = [](void* owner) -> Target {
@@ -54,6 +57,11 @@ Table<TaskGains> correctionKeys() {
           "lag of the tool's position beyond which the reference goes on slower; beyond twice "
           "that it stands still until the tool has caught up; absent: it never waits",
           &Config::wait_beyond_m)),
+      optional(number(
+          "wait_beyond_rad", "rad", above(0, 1),
+          "the same for the lag of the tool's orientation; the reference waits for the one that "
+          "lags more of its own",
+          &Config::wait_beyond_rad)),
   };
 }
 

@@ -5,6 +5,7 @@
 #include "support/random_robot.h"
 #include "support/tactile_samples.h"
 #include "tactus/control/controller.h"
+#include "tactus/math/rotation.h"
 
 /// The signs of (1), (3), (5), (16)-(19) together: what the whole controller commands is put into
 /// the contact, and the contact point is moved by differences of its position alone.
@@ -13,6 +14,7 @@ namespace {
 
 using test::kPeriod_s;
 constexpr double kAlpha = 0.7;
+constexpr double kPathTime_s = 0.8;
 
 struct Touched {
   Touched(test::Random& random, Variant variant)
@@ -38,7 +40,7 @@ struct Touched {
     ControllerState state = controller.initialState();
     state.q_desired = config.q_start + JointVector::Constant(n, 0.002);  // some drift to correct
     controller.update({state.q_desired, test::touchAt(x_m, force_N, angle_rad, 1)},
-                      controller.initialGains(), 0.8, kPeriod_s, state, output);
+                      controller.initialGains(), kPathTime_s, kPeriod_s, state, output);
   }
 
   Vector3 contactPoint(const JointVector& q) const {
@@ -53,6 +55,29 @@ struct Touched {
     config.chain.computePose(output.q_desired, pose);
     return framePose(pose, config.tactile_modules.front().link).R_AB *
            Vector3(0.0, std::cos(angle_rad), std::sin(angle_rad));
+  }
+
+  /// What the joints change of w; of a part of rx, ry and rz by differences of its error alone.
+  TaskJacobian taskJacobian() const {
+    const TaskConfig& task = config.task;
+    TaskJacobian J =
+        test::tipJacobian(config.chain, output.q_desired, task.components.data(), task.size);
+    if (!task.hasPartOfRotation()) return J;
+    const Matrix3 R_d = Trajectory(task.trajectory, tipPose(config.chain, config.q_start))
+                            .evaluate(kPathTime_s)
+                            .R_BaseTool;
+    constexpr double kStep = 1e-5;
+    const auto error = [&](int joint, double step) {
+      JointVector q = output.q_desired;
+      q[joint] += step;
+      return rotationVector(R_d * tipPose(config.chain, q).R_AB.transpose());
+    };
+    for (int i = 0; i < n; ++i) {
+      const Vector3 change = (error(i, -kStep) - error(i, kStep)) / (2.0 * kStep);
+      for (int k = 0; k < task.size; ++k)
+        if (task.components[k] >= 3) J(k, i) = change[task.components[k] - 3];
+    }
+    return J;
   }
 
   /// Velocity of the contact point along F^ for a joint velocity: positive is away.
@@ -113,9 +138,7 @@ TEST_P(ContactSigns, CommandIsEquation1WithMatrices) {
     touched.run();
     const ControllerConfig& config = touched.config;
     const ControllerOutput& output = touched.output;
-    const Eigen::MatrixXd J = test::tipJacobian(config.chain, output.q_desired,
-                                                config.task.components.data(), config.task.size);
-    const auto inverse = test::expandPseudoinverse(TaskJacobian(J), config.weights);
+    const auto inverse = test::expandPseudoinverse(touched.taskJacobian(), config.weights);
     const Eigen::VectorXd b = touched.a().cwiseQuotient(config.weights);
     // Joint-limit avoidance follows W^-1 dH/dq, like every controller its b.
     const Eigen::VectorXd gradient =
@@ -147,8 +170,7 @@ TEST(ContactSigns, JointSpaceIsEquation6) {
     const ControllerOutput& output = touched.output;
     const ContactReport& r = output.contact;
     if (r.x_dot_eff_m_per_s > 0.0 || r.k_j < 0.01) continue;  // no feedforward against a retreat
-    const TaskJacobian J = test::tipJacobian(config.chain, output.q_desired,
-                                             config.task.components.data(), config.task.size);
+    const TaskJacobian J = touched.taskJacobian();
     const Eigen::VectorXd w_eff = output.w_d_dot + 5.0 * output.error;
     const Eigen::VectorXd a = touched.a();
     const Eigen::MatrixXd S_w =

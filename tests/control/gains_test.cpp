@@ -21,6 +21,7 @@ Gains randomGains(test::Random& random) {
   if (random.chance(0.5)) task.max_return_speed_m_per_s = random.logUniform(1e-3, 1.0);
   if (random.chance(0.5)) task.max_return_speed_rad_per_s = random.logUniform(1e-3, 1.0);
   if (random.chance(0.5)) task.wait_beyond_m = random.logUniform(1e-4, 1.0);
+  if (random.chance(0.5)) task.wait_beyond_rad = random.logUniform(1e-4, 1.0);
   return gains;
 }
 

@@ -44,14 +44,28 @@ TEST(PathProgress, IsANumberForEveryLag) {
   EXPECT_EQ(pathProgress(0.0, kTiny), 1.0);
 }
 
-/// Its rotation may lag as it will.
-TEST(ToolLag, IsThatOfThePosition) {
+TEST(ToolLag, IsThatOfPositionAndOfOrientation) {
   TaskConfig task;
   task.components = {4, 2, 0, 3, 5, 1};
   task.size = 5;
   PaddedTaskVector error = PaddedTaskVector::Zero();
-  error.head<5>() << 0.7, 0.03, -0.04, 0.8, 0.9;
-  EXPECT_NEAR(toolLag_m(task, error), 0.05, 1e-15);
+  error.head<5>() << 0.2, 0.03, -0.04, -0.1, 0.2;
+  const ToolLag lag = toolLag(task, error);
+  EXPECT_NEAR(lag.position_m, 0.05, 1e-15);
+  EXPECT_NEAR(lag.rotation_rad, 0.3, 1e-15);
+}
+
+TEST(PathProgress, IsThatOfWhatLagsMore) {
+  TaskGains gains;
+  EXPECT_EQ(pathProgress(gains, {1e9, 1e9}), 1.0) << "it never waits";
+  gains.wait_beyond_m = 0.01;
+  EXPECT_EQ(pathProgress(gains, {0.015, 1e9}), 0.5);
+  gains.wait_beyond_rad = 0.1;
+  EXPECT_EQ(pathProgress(gains, {0.015, 0.0}), 0.5);
+  EXPECT_NEAR(pathProgress(gains, {0.0125, 0.15}), 0.5, 1e-15);
+  EXPECT_EQ(pathProgress(gains, {0.0, 0.2}), 0.0);
+  gains.wait_beyond_m = kNoLimit;
+  EXPECT_NEAR(pathProgress(gains, {1e9, 0.15}), 0.5, 1e-15);
 }
 
 }  // namespace

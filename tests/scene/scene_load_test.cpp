@@ -41,14 +41,18 @@ TEST(SceneLoad, PutsTheWayBackToThePathInItsPlace) {
   EXPECT_EQ(without.max_return_speed_m_per_s, kNoLimit);
   EXPECT_EQ(without.max_return_speed_rad_per_s, kNoLimit);
   EXPECT_EQ(without.wait_beyond_m, kNoLimit);
+  EXPECT_EQ(without.wait_beyond_rad, kNoLimit);
   const TaskGains with = SceneFiles{}
-                             .load({{"task.max_return_speed_m_per_s", "0.25"},
+                             .load({{"task.components", "[x, rz]"},
+                                    {"task.wait_beyond_rad", "0.1"},
+                                    {"task.max_return_speed_m_per_s", "0.25"},
                                     {"task.max_return_speed_rad_per_s", "0.5"},
                                     {"task.wait_beyond_m", "0.05"}})
                              .controller.gains.task;
   EXPECT_EQ(with.max_return_speed_m_per_s, 0.25);
   EXPECT_EQ(with.max_return_speed_rad_per_s, 0.5);
   EXPECT_EQ(with.wait_beyond_m, 0.05);
+  EXPECT_EQ(with.wait_beyond_rad, 0.1);
 }
 
 TEST(SceneLoad, PutsTheLawInItsPlace) {

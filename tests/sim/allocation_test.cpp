@@ -111,7 +111,7 @@ TEST_P(NoAllocation, InSingularPosesOfAnyRobot) {
     config.task.components = {0, 1, 2, 3, 4, 5};
     config.task.size = std::min(count, 6);
     config.gains.task.max_return_speed_m_per_s = config.gains.task.max_return_speed_rad_per_s = 0.1;
-    config.gains.task.wait_beyond_m = 0.01;
+    config.gains.task.wait_beyond_m = config.gains.task.wait_beyond_rad = 0.01;
     const Controller controller(config);
     for (int pose = 0; pose < 20; ++pose) {
       ControllerState state = controller.initialState();

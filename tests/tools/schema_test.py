@@ -39,11 +39,12 @@ robot: robot.yaml
 period_s: 0.001
 start: [0.05435, -0.55466, 0.46559, 0.45517, 0.44598, 0.91397, 1.07822, -0.66951, 0.58605]
 task:
-  components: [x, y, z]
+  components: [x, y, z, rz]
   drift_gain_per_s: 5
   max_return_speed_m_per_s: 0.25
   max_return_speed_rad_per_s: 0.5
   wait_beyond_m: 0.05
+  wait_beyond_rad: 0.1
   trajectory:
     start_s: 0.5
     line: {displacement_m: [0, 0.4, 0], rotation_vector_rad: [0, 0, 0], speed_m_per_s: 0.05,

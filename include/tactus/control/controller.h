@@ -18,6 +18,7 @@
 #include "tactus/control/robot.h"
 #include "tactus/control/several_contacts.h"
 #include "tactus/control/tactile_reading.h"
+#include "tactus/math/velocity_product.h"
 
 namespace tactus {
 
@@ -162,6 +163,12 @@ class Controller {
                          PreparedCycle& prepared) const noexcept;
   void computeTaskMotion(const TaskGains& gains, const ControllerState& state,
                          PreparedCycle& prepared) const noexcept;
+  ToolReference referenceAt(double path_time_s, const ControllerState& state) const noexcept;
+  void keepPartOfRotation(const ChainPose& pose, const Vector3& phi, ScaledJacobian& J,
+                          Vector3& omega_d) const noexcept;
+  Vector3 partOfRotationAcceleration(double path_time_s, double progress, const Vector3& alpha_d,
+                                     const VelocityProduct& curvature, const ChainPose& pose,
+                                     const ControllerState& state) const noexcept;
   /// Of joint limits and posture together.
   JointLimitCost costAt(const JointVector& q, const Gains& gains,
                         ControllerState& state) const noexcept;
@@ -219,6 +226,7 @@ class Controller {
   Trajectory trajectory_;
   ScaledVector inv_sqrt_weights_;  ///< diagonal of W^-1/2
   bool has_rotation_;
+  bool has_part_of_rotation_;  ///< one or two of its three components
   bool is_acceleration_level_;
   CommandLimiter limiter_;
   MotionGate gate_;

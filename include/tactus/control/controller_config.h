@@ -49,7 +49,14 @@ struct TaskCommandsConfig {
 ///   Waiting: while the tool lags by e = |p_d - p|, the reference has a slower clock t_path,
 ///     dt_path/dt = s(e),   w_dot_d = s(e) dw_d/dt_path
 ///     s = 1 - 3 x^2 + 2 x^3 with x = e / wait_beyond_m - 1, clamped to 0..1
-///   so it goes on as planned up to wait_beyond_m and stands still from twice that on.
+///   so it goes on as planned up to wait_beyond_m and stands still from twice that on. The same for
+///   the orientation and wait_beyond_rad; the reference has the lesser s of both.
+/// Orientation: its error is the rotation vector phi of R_d R^T, in the base frame. A task with one
+/// or two of rx, ry, rz keeps those components of phi at zero, while the tool turns about the rest
+/// as the null space likes; their rows are those of phi_dot, see rotation.h:
+///   J = Jl^-T(phi) J_omega,   w_dot_d = Jl^-1(phi) omega_d
+/// With all three phi is small, and both matrices are taken as I. Where a tool has turned by half a
+/// turn about the rest phi changes its sign, and its rows do, too: what they ask for does not.
 struct TaskConfig {
   std::array<int, kMaxTaskSize> components{};  ///< 0..5: x, y, z, rx, ry, rz of the tool
   int size = 0;
@@ -66,6 +73,9 @@ struct TaskConfig {
   bool hasRotation() const noexcept {
     return std::any_of(components.begin(), components.begin() + size,
                        [](int component) { return component >= 3; });
+  }
+  bool hasPartOfRotation() const noexcept {
+    return hasRotation() && !(controls(3) && controls(4) && controls(5));
   }
 };
 

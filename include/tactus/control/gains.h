@@ -17,6 +17,7 @@ struct TaskGains {
   double max_return_speed_m_per_s = kNoLimit;    ///< v_max of position, > 0
   double max_return_speed_rad_per_s = kNoLimit;  ///< v_max of rotation, > 0
   double wait_beyond_m = kNoLimit;               ///< > 0
+  double wait_beyond_rad = kNoLimit;             ///< > 0, for the orientation
 };
 
 /// dH/dq_i of (1): zero in the middle of the range, rising linearly over the outer
@@ -77,7 +78,7 @@ struct Gains {
 
 static_assert(std::is_trivially_copyable_v<Gains> && std::is_standard_layout_v<Gains>);
 static_assert(
-    sizeof(Gains) == 8 * (4 + 3 + 2 + 10 + 5 + 4),
+    sizeof(Gains) == 8 * (5 + 3 + 2 + 10 + 5 + 4),
     "no padding, for gains are compared as bytes; a new one gets a row in scene_keys.cpp");
 
 /// Of any of the above, to the bit.

@@ -8,6 +8,7 @@ namespace tactus {
 struct VelocityProduct {
   Vector3 linear;   ///< of the point, m/s^2, base frame
   Vector3 angular;  ///< of its link, rad/s^2, base frame
+  Vector3 omega;    ///< how fast its link turns, rad/s, base frame
 };
 
 /// Of the point at p_BasePoint (base frame, m), which moves with `joint`; -1: with the base, which
