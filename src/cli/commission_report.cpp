@@ -33,6 +33,11 @@ std::string strokeText(const Scene& scene, int joint, const StrokeReport& stroke
   if (stroke.end == StrokeEnd::kWrongWay)
     return "its counts run against the command: encoder and motor of the drive disagree in sense; "
            "set its polarity (607E), or its wiring, right";
+  if (stroke.end == StrokeEnd::kMovedAway)
+    return fmt::format(
+        "it moved by {} before it was told to: is it pushed, does it run away as its brake opens, "
+        "or do its counts jump?",
+        lengthText(scene, joint, stroke.detail.value));
   if (stroke.fault == Fault::kDriveSetupRefused && refused.index != 0)
     return "the drive refuses its set-up at " +
            refusalText(scene.hardware->drives[joint], stroke.drive);

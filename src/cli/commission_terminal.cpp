@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "tactus/canopen/can_robot.h"
 #include "tactus/canopen/canopen.h"
 
 namespace tactus {
@@ -54,15 +55,17 @@ CanSocket openForAllNodes(const HardwareConfig& hardware, int bus) {
 
 }  // namespace
 
-CommissionTerminal::Bus::Bus(const HardwareConfig& hardware, int index)
+CommissionTerminal::Bus::Bus(const HardwareConfig& hardware, int index, double period_s)
     : lock(hardware.buses[static_cast<std::size_t>(index)].interface),
-      socket(openForAllNodes(hardware, index)) {}
+      socket(openForAllNodes(hardware, index)) {
+  socket.monitor() = BusMonitor(probeCycles(hardware.canopen, period_s));
+}
 
 CommissionTerminal::CommissionTerminal(const CommissionConfig& config, bool reads_input)
     : cycle_(config), reads_input_(reads_input), timer_(std::llround(1e9 * config.period_s)) {
   const HardwareConfig& hardware = config.hardware;
   for (std::size_t i = 0; i < hardware.buses.size(); ++i)
-    buses_.push_back(std::make_unique<Bus>(hardware, static_cast<int>(i)));
+    buses_.push_back(std::make_unique<Bus>(hardware, static_cast<int>(i), config.period_s));
   if (hardware.gpio) lines_.emplace(*hardware.gpio, config.period_s);
   catchInterrupts();
 }

@@ -173,7 +173,8 @@ void CommissionCycle::goOn() {
   } else if (joint_->question()) {
     phase_ = Phase::kAsking;
   } else {
-    const StrokePlan plan = joint_->stroke();
+    StrokePlan plan = joint_->stroke();
+    plan.rest_counts = *rest_counts_;  // a motion begins only after a reading
     // What a brake lets a joint turn, and a joint without one sink, until it is noticed.
     rest_tolerance_counts_ = plan.bounds.max_following_error * plan.bounds.counts_per_unit;
     stroke_.emplace(config_.hardware, plan, config_.period_s);

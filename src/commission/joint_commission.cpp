@@ -15,6 +15,8 @@ constexpr int kMostScaleStrokes = 10;
 constexpr double kLeastShare = 0.8;
 /// Of the travel: a shorter way to an end is none.
 constexpr double kLeastJog = 0.05;
+/// Of the wave's amplitude: with less room to an end it goes the other way.
+constexpr double kLeastWave = 0.5;
 /// So many at different places show a wrong one among them; fewer are believed in nothing.
 constexpr std::size_t kTrustedMarks = 3;
 
@@ -213,7 +215,8 @@ void JointCommission::takeEnd(bool is_upper, double counts) {
   ask(Asked::kEndPlace, counts);
 }
 
-/// Where there is room: away from the nearer end that is known, else back from where it came.
+/// Where there is room: away from the nearer end of both, else back from where it came, but not
+/// beyond an end that was told.
 void JointCommission::beginWave(double counts) noexcept {
   double away = shape_.distance > 0.0 ? -1.0 : 1.0;
   double amplitude = 0.5 * allowed().max_travel;
@@ -223,7 +226,14 @@ void JointCommission::beginWave(double counts) noexcept {
         std::max(std::abs(*upper_counts_ - counts), std::abs(*lower_counts_ - counts));
     amplitude = std::min(amplitude, room / bounds().counts_per_unit);
   } else if (upper_counts_ || lower_counts_) {
-    away = upper_counts_ ? -seen_sign_ : seen_sign_;
+    const double to_end = (upper_counts_ ? *upper_counts_ : *lower_counts_) - counts;
+    const double room = std::abs(to_end) / bounds().counts_per_unit;
+    const bool leads_to_end = away * to_end > 0.0;
+    if (leads_to_end && room < kLeastWave * amplitude) {
+      away = -away;
+    } else if (leads_to_end) {
+      amplitude = std::min(amplitude, room);
+    }
   }
   beginShape(Step::kWave, {StrokeShape::Kind::kWave, away * amplitude});
 }

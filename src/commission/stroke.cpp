@@ -116,6 +116,7 @@ Fault Stroke::judge(const CommissionInput& input) noexcept {
     report_.detail = drive.detail;
     return drive.fault;
   }
+  if (!report_.has_moved) return judgePlace();
   if (mode_.mode != Mode::kRunning && mode_.mode != Mode::kStopping) return Fault::kNone;
   if (runsWrongWay()) {
     report_.end = StrokeEnd::kWrongWay;
@@ -125,6 +126,19 @@ Fault Stroke::judge(const CommissionInput& input) noexcept {
   if (mode_.mode != Mode::kRunning || gap_s <= kMaxGap_s) return Fault::kNone;
   report_.detail = {gap_s, kMaxGap_s, "s"};
   return Fault::kOverrun;
+}
+
+/// Hazard: until it moves the command follows the joint, so that no following error tells of one
+/// that runs away as its brake opens, or that is pushed to where it must not begin.
+Fault Stroke::judgePlace() noexcept {
+  if (!robot_.hasPositions()) return Fault::kNone;
+  const double counts_per_unit = plan_.bounds.counts_per_unit;
+  const double most = std::max(plan_.bounds.max_following_error, kNoise_counts / counts_per_unit);
+  const double way = std::abs(robot_.drive(0).position - plan_.rest_counts / counts_per_unit);
+  if (way <= most) return Fault::kNone;
+  report_.end = StrokeEnd::kMovedAway;
+  report_.detail = {way, most, ""};
+  return Fault::kNotAtStart;
 }
 
 /// Long before the following error is too large.
@@ -203,7 +217,7 @@ void Stroke::note() noexcept {
   report_.fault = mode_.fault;
   report_.is_seen_off = drive.is_off;
   report_.values = figures_.values();
-  if (!isFinished() || report_.end == StrokeEnd::kWrongWay) return;
+  if (!isFinished() || report_.end != StrokeEnd::kNotYet) return;
   const bool has_fault = mode_.fault != Fault::kNone;
   report_.end = has_fault      ? StrokeEnd::kFault
                 : was_stopped_ ? StrokeEnd::kStopped

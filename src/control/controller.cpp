@@ -237,12 +237,10 @@ void Controller::computeKinematics(double path_time_s, const ControllerState& st
   TaskKinematics& kinematics = prepared.kinematics;
   config_.chain.computePose(state.q_desired, kinematics.pose);
   const ToolReference reference = referenceAt(path_time_s, state);
-  Twist w = Twist::Zero();
-  Twist w_d_dot;
-  Twist error = Twist::Zero();
+  Twist w, w_d_dot, error;  // their rotation only where the task has one
   w.head<3>() = framePosition(kinematics.pose, config_.chain.tip());
   error.head<3>() = reference.p_BaseTool - w.head<3>();
-  Vector3 omega_d = reference.omega_BaseTool;
+  w_d_dot << reference.v_BaseTool, reference.omega_BaseTool;
   ScaledJacobian J;
   computeTipJacobian(config_.chain, kinematics.pose, w.head<3>(), task.components.data(), task.size,
                      inv_sqrt_weights_, J);
@@ -251,9 +249,10 @@ void Controller::computeKinematics(double path_time_s, const ControllerState& st
     w.tail<3>() = rotationVector(R_BaseTool);
     error.tail<3>() = rotationVector(reference.R_BaseTool * R_BaseTool.transpose());
     prepared.rotation_vector_d = rotationVector(reference.R_BaseTool);
-    if (has_part_of_rotation_) keepPartOfRotation(kinematics.pose, error.tail<3>(), J, omega_d);
+    if (has_part_of_rotation_)
+      w_d_dot.tail<3>() =
+          keepPartOfRotation(kinematics.pose, error.tail<3>(), reference.omega_BaseTool, J);
   }
-  w_d_dot << reference.v_BaseTool, omega_d;
   kinematics.pseudoinverse.factorise(J, config_.chain.size(), task.size);
   kinematics.error.setZero();
   prepared.w.setZero();
@@ -270,7 +269,7 @@ void Controller::computeTaskMotion(const TaskGains& gains, const ControllerState
                                    PreparedCycle& prepared) const noexcept {
   TaskKinematics& kinematics = prepared.kinematics;
   prepared.progress = 1.0;
-  if (gains.wait_beyond_m < kNoLimit || gains.wait_beyond_rad < kNoLimit) {
+  if (std::min(gains.wait_beyond_m, gains.wait_beyond_rad) < kNoLimit) {
     prepared.progress = pathProgress(gains, toolLag(config_.task, kinematics.error));
     prepared.w_d_dot *= prepared.progress;
   }

@@ -10,18 +10,18 @@ constexpr int kRotation[] = {3, 4, 5};
 
 }  // namespace
 
-/// Only their rows and components are set.
-void Controller::keepPartOfRotation(const ChainPose& pose, const Vector3& phi, ScaledJacobian& J,
-                                    Vector3& omega_d) const noexcept {
+/// Of J their rows are set; w_dot_d of all three, whose others nobody looks at.
+Vector3 Controller::keepPartOfRotation(const ChainPose& pose, const Vector3& phi,
+                                       const Vector3& omega_d, ScaledJacobian& J) const noexcept {
   ScaledJacobian J_omega;
   computeTipJacobian(config_.chain, pose, Vector3::Zero(), kRotation, 3, inv_sqrt_weights_,
                      J_omega);
   const Matrix3 Jl_inverse = inverseLeftJacobian(phi);
-  omega_d = Jl_inverse * Vector3(omega_d);
   for (int i = 0; i < config_.task.size; ++i) {
     const int k = config_.task.components[i] - 3;
     if (k >= 0) J.col(i) = J_omega.leftCols<3>() * Jl_inverse.col(k);
   }
+  return Jl_inverse * omega_d;
 }
 
 /// phi_dd + Jl^-T J_omega q_dd, which is what is left of phi_dd = 0 but for the joints:

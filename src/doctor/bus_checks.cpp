@@ -50,10 +50,10 @@ Finding checkAdapter(const std::filesystem::path& folder, const BusConfig& bus,
   const std::string mend = "use a controller on PCI Express or in the processor";
   if (hardware == "usb")
     return {name, Level::kWarning, bus.interface + ": adapter on USB", why, mend};
-  if (link && link->kind == "slcan")
-    return {name, Level::kWarning, bus.interface + ": adapter on a serial line", why, mend};
-  if (hardware.empty())
+  if (link && (link->kind == "vcan" || link->kind == "vxcan"))
     return {name, Level::kNote, bus.interface + ": virtual, there is no drive behind it"};
+  if (hardware.empty())  // slcan is a controller without a device, before Linux 6.0 of no kind
+    return {name, Level::kWarning, bus.interface + ": adapter on a serial line", why, mend};
   return {name, Level::kOk, fmt::format("{}: controller on {}", bus.interface, hardware)};
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tactus/doctor/kernel_checks.h"
+
 namespace tactus {
 namespace {
 
@@ -117,6 +119,12 @@ std::vector<Finding> checkInterrupts(const MachineRoot& root, const std::string&
     return {{"can_interrupts", Level::kNote,
              interface + ": its interrupt was not found, so neither its priority"}};
   const std::vector<InterruptThread> threads = threadsOf(root, interrupts);
+  // There every handler of a driver has a thread, which is made once the interface is up, and which
+  // /proc may hide.
+  if (threads.empty() && checkPreemption(root).level == Level::kOk)
+    return {{"can_interrupts", Level::kNote,
+             fmt::format("{}: the thread of interrupt {} was not found, so neither its priority",
+                         interface, listOf(interrupts))}};
   if (threads.empty())
     return {{"can_interrupts", Level::kOk,
              fmt::format("{}: interrupt {} has no thread, it goes before all threads", interface,

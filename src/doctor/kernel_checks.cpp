@@ -29,10 +29,43 @@ ControlGroup cpuGroup(const MachineRoot& root) {
   return unified;
 }
 
+std::string releaseOf(const MachineRoot& root) {
+  return readText(root / "proc/sys/kernel/osrelease").value_or("unknown");
+}
+
+/// "6.12.3-rt" is from 6.12 on.
+bool isFrom(const std::string& release, int major, int minor) {
+  const auto numbers = split(release, ".-+");
+  if (numbers.size() < 2) return false;
+  const long long first = numberIn(numbers[0]).value_or(0);
+  return first > major || (first == major && numberIn(numbers[1]).value_or(0) >= minor);
+}
+
+/// A kernel that has the parameter has its default among its settings, on or off.
+bool areGroupsSwitchedOff(const MachineRoot& root, const std::string& config) {
+  const std::string name = "CONFIG_RT_GROUP_SCHED_DEFAULT_DISABLED";
+  if (config.find(name) == std::string::npos) return false;
+  const std::string parameters = readText(root / "proc/cmdline").value_or("");
+  bool is_off = config.find(name + "=y") != std::string::npos;
+  for (const std::string_view word : split(parameters, " \n"))
+    if (word.starts_with("rt_group_sched=")) is_off = word.ends_with("=0");
+  return is_off;
+}
+
+/// Linux 6.12 replaced the throttling, but for real-time groups, by a server for all other threads
+/// that takes its share of a CPU where they starve.
+Finding fairServer(const std::string& release) {
+  return {"rt_throttling", Level::kNote,
+          release +
+              ": sched_rt_runtime_us throttles no thread, but a real-time thread that is "
+              "busy too long is interrupted by the fair server (50 ms of a second; "
+              "/sys/kernel/debug/sched/fair_server)"};
+}
+
 }  // namespace
 
 Finding checkPreemption(const MachineRoot& root) {
-  const std::string release = readText(root / "proc/sys/kernel/osrelease").value_or("unknown");
+  const std::string release = releaseOf(root);
   const std::string version = readText(root / "proc/sys/kernel/version").value_or("");
   const bool is_realtime = readNumber(root / "sys/kernel/realtime") == 1 ||
                            version.find("PREEMPT_RT") != std::string::npos;
@@ -55,6 +88,9 @@ Finding checkThrottling(const MachineRoot& root) {
   if (*runtime_us == 0)
     return {name, Level::kNotFit, "sched_rt_runtime_us = 0", "no real-time thread may run",
             command};
+  const std::string release = releaseOf(root);
+  if (isFrom(release, 6, 12) && !hasRealTimeGroups(root).value_or(false))
+    return fairServer(release);
   if (*runtime_us < 0 || *runtime_us >= *period_us)
     return {name, Level::kOk, "real-time threads are not throttled"};
   return {name, Level::kWarning,
@@ -67,10 +103,10 @@ Finding checkThrottling(const MachineRoot& root) {
 
 std::optional<bool> hasRealTimeGroups(const MachineRoot& root) {
   if (std::filesystem::exists(root / "sys/fs/cgroup/cpu/cpu.rt_runtime_us")) return true;
-  const std::string release = readText(root / "proc/sys/kernel/osrelease").value_or("");
-  const auto config = readText(root / "boot" / ("config-" + release));
+  const auto config = readText(root / "boot" / ("config-" + releaseOf(root)));
   if (!config) return std::nullopt;
-  return config->find("\nCONFIG_RT_GROUP_SCHED=y") != std::string::npos;
+  return config->find("\nCONFIG_RT_GROUP_SCHED=y") != std::string::npos &&
+         !areGroupsSwitchedOff(root, *config);
 }
 
 Finding checkControlGroup(const MachineRoot& root) {

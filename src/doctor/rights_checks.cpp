@@ -86,6 +86,9 @@ Finding checkServiceRights(const MachineRoot& root, int priority,
   const std::string name = "service_rights";
   const std::optional<UnitFile> unit = readUnit(root, "tactusd");
   if (!unit) return {name, Level::kNote, "tactusd is not installed as a service of systemd"};
+  if (unit->is_masked)
+    return {name, Level::kNotFit, unit->path + " is masked", "the service does not start",
+            "systemctl unmask " + unit->name};
   const auto problems = problemsOf(*unit, priority, has_real_time_groups.value_or(false));
   if (problems.empty())
     return {name, Level::kOk, unit->path + " grants SCHED_FIFO and memory lock"};

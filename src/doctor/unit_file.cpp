@@ -114,11 +114,13 @@ bool UnitFile::givesAmbient(const std::string& capability) const {
 std::optional<UnitFile> readUnit(const MachineRoot& root, const std::string& name) {
   for (const char* suffix : {".service", "@.service"}) {
     for (const char* folder : kFolders) {
-      UnitFile unit{name + suffix, "", {}};
+      UnitFile unit;
+      unit.name = name + suffix;
       const fs::path path = root / folder / unit.name;
       const auto text = readText(path);
       if (!text) continue;
       unit.path = "/" + path.lexically_relative(root).string();
+      unit.is_masked = text->empty();  // as /dev/null, to which it leads
       addValues(*text, unit);
       addDropIns(root, unit);
       return unit;

@@ -18,7 +18,6 @@ GpioSurvey surveyGpio(const GpioConfig& config) {
       if (!user) continue;
       survey.users +=
           (survey.users.empty() ? "line " : ", line ") + std::to_string(number) + ": " + *user;
-      survey.has_others = survey.has_others || *user != kGpioConsumer;
     }
   } catch (const std::runtime_error& error) {
     survey.problem = error.what();

@@ -61,9 +61,9 @@ void UlogMessages::readHeader() { header_size_ = read(header_.data(), header_.si
 /// Whether the zeros of a lost part begin in this message. For that the next header is read ahead,
 /// as zeros may end a whole one, too.
 bool UlogMessages::endsInLostZeros(const UlogMessage& message) {
-  const std::uint64_t in_last_sector = offset_ % kSector_bytes;
+  const std::uint64_t in_last_sector = (offset_ - 1) % kSector_bytes + 1;
   const std::string_view payload = message.payload;
-  if (in_last_sector == 0 || in_last_sector > payload.size()) return false;
+  if (in_last_sector > payload.size()) return false;
   if (!isZeros(payload.substr(payload.size() - in_last_sector))) return false;
   readHeader();
   has_header_ = true;

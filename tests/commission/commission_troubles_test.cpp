@@ -130,6 +130,75 @@ TEST(CommissionTrouble, JointThatSinks) {
   EXPECT_NEAR(trouble.value, 65536.0, 1.0);
 }
 
+/// The counts that the drive tells, moved by what nobody commanded.
+struct MovedRig : TroubledRig {
+  explicit MovedRig(double brake_switching_s = 0.1) {
+    config.hardware.gpio->brake_switching_s = brake_switching_s;
+    restart();
+    EXPECT_TRUE(scan());
+    on_frame = [this](int, CanFrame& frame) {
+      const bool is_read = frame.id == 0x582 && test::sdoIndex(frame) == 0x6064;
+      if (!is_read && frame.id != 0x182) return true;
+      std::uint8_t* const at = frame.data.data() + (is_read ? 4 : 2);
+      std::int32_t counts = 0;
+      std::memcpy(&counts, at, 4);
+      counts += static_cast<std::int32_t>(moved_rad * truth[test::kTroubledJoint].counts_per_unit);
+      std::memcpy(at, &counts, 4);
+      return true;
+    };
+  }
+
+  double moved_rad = 0.0;
+};
+
+/// The drive holds it, but with an encoder of the wrong sense not where it is.
+TEST(CommissionTrouble, JointThatRunsAwayAsItsBrakeOpens) {
+  for (const double speed_rad_per_s : {0.1, 0.5, -3.0}) {
+    for (const double switching_s : {0.05, 0.5}) {
+      SCOPED_TRACE(switching_s * speed_rad_per_s);
+      MovedRig rig(switching_s);
+      rig.on_cycle = [&] {
+        rig.watch();
+        const bool has_power =
+            rig.drive(test::kTroubledJoint).powerState() == PowerState::kOperationEnabled;
+        if (rig.cycle->lines().release_brake && has_power &&
+            rig.drive(test::kTroubledJoint).velocity() == 0.0)
+          rig.moved_rad += speed_rad_per_s * CommissionRig::kPeriod_s;
+      };
+      const JointTrouble trouble = rig.trouble();
+      if (std::abs(speed_rad_per_s) * switching_s < 0.01) {
+        EXPECT_LT(std::abs(rig.moved_rad), 0.1);
+        continue;
+      }
+      EXPECT_EQ(trouble.kind, JointTroubleKind::kStroke);
+      EXPECT_EQ(trouble.stroke.end, StrokeEnd::kMovedAway);
+      EXPECT_GT(trouble.stroke.detail.value, 0.0);
+      EXPECT_LT(std::abs(rig.moved_rad), 0.02 + 0.05 * std::abs(speed_rad_per_s));
+    }
+  }
+}
+
+/// Its way was as long as to the end that was told.
+TEST(CommissionTrouble, JointThatIsPushedWhileTheEnableLineIsWaitedFor) {
+  MovedRig rig;
+  rig.on_question = [&](const Question& question) -> std::optional<Answer> {
+    if (question.asked == Asked::kReady) rig.input.lines.enable = false;
+    return std::nullopt;
+  };
+  int waits = 0;
+  rig.on_cycle = [&] {
+    rig.watch();
+    if (!rig.cycle->isWaitingForEnable()) return;
+    if (++waits <= 90) rig.moved_rad += 0.001;
+    rig.input.lines.enable = waits > 200;
+  };
+  const JointTrouble trouble = rig.trouble();
+  EXPECT_EQ(trouble.kind, JointTroubleKind::kStroke);
+  EXPECT_EQ(trouble.stroke.end, StrokeEnd::kMovedAway);
+  EXPECT_EQ(rig.worst_travel, 0.0);
+  EXPECT_EQ(rig.most_powered, 0);
+}
+
 TEST(CommissionTrouble, NodeThatIsNotThere) {
   std::vector<HiddenJoint> truth = test::turnedArm();
   truth[test::kTroubledJoint].is_absent = true;
@@ -273,6 +342,41 @@ TEST(CommissionTrouble, WaveGoesAwayFromTheLastMotion) {
     };
     EXPECT_EQ(rig.trouble().kind, JointTroubleKind::kNone);
     EXPECT_TRUE(is_done);
+  }
+}
+
+/// With one end told, too: the other one may be where it was jogged to.
+TEST(CommissionTrouble, WaveGoesAwayFromTheLastMotionWhereOneEndWasTold) {
+  for (const bool is_upper : {true, false}) {
+    SCOPED_TRACE(is_upper);
+    TroubledRig rig;
+    int jogs = 0;
+    double farthest = 0.0, end = 0.0, least = 1e9;
+    const double away = is_upper ? -1.0 : 1.0;
+    const auto q = [&] { return away * rig.position(test::kTroubledJoint); };
+    rig.on_question = [&](const Question& question) -> std::optional<Answer> {
+      if (question.asked == Asked::kEndPlace) return Answer{Answer::Kind::kUnknown};
+      if (question.asked != Asked::kJog) return std::nullopt;
+      switch (++jogs) {
+        case 1:
+          end = q();
+          return Answer{is_upper ? Answer::Kind::kUpper : Answer::Kind::kLower};
+        case 2:
+          return Answer{is_upper ? Answer::Kind::kMinus : Answer::Kind::kPlus};
+        default:
+          farthest = q();
+          return Answer{Answer::Kind::kDone};
+      }
+    };
+    rig.on_cycle = [&] {
+      if (jogs < 3) return;
+      EXPECT_LT(q(), farthest + 1e-3);
+      least = std::min(least, q());
+    };
+    EXPECT_EQ(rig.trouble().kind, JointTroubleKind::kNone);
+    EXPECT_EQ(jogs, 3);
+    EXPECT_GT(least, end - 1e-3);
+    EXPECT_LT(least, farthest - 0.01) << "it waved";
   }
 }
 

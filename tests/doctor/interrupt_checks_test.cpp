@@ -69,6 +69,12 @@ TEST_F(InterruptChecks, HardInterruptsGoBeforeAllThreads) {
   EXPECT_TRUE(contains(only().what, "34 has no thread")) << only().what;
 }
 
+TEST_F(InterruptChecks, OnPreemptRtAThreadThatIsNotFoundSaysNothing) {
+  machine.write("sys/kernel/realtime", "1\n");
+  EXPECT_EQ(only().level, Level::kNote);
+  EXPECT_TRUE(contains(only().what, "thread of interrupt 34 was not found")) << only().what;
+}
+
 TEST_F(InterruptChecks, DriversThatNameItOtherwiseAreFoundByTheDevice) {
   setTable("peak_pciefd");
   EXPECT_EQ(only().level, Level::kNote) << "by nothing";

@@ -47,6 +47,22 @@ TEST(KernelChecks, ThrottlingIsJudgedByWhatItLeaves) {
   EXPECT_EQ(levelAt("much\n"), Level::kNote);
 }
 
+TEST(KernelChecks, FromLinux612OnAFairServerTakesTheThrottlingsPlace) {
+  const MachineTree machine;
+  machine.write("proc/sys/kernel/sched_rt_period_us", "1000000\n");
+  machine.write("proc/sys/kernel/sched_rt_runtime_us", "950000\n");
+  const auto levelOf = [&](const char* release) {
+    machine.write("proc/sys/kernel/osrelease", release);
+    return checkThrottling(machine.root()).level;
+  };
+  for (const char* release : {"6.1.0-25-rt-amd64\n", "6.11.10\n", "5.19.0\n", "much\n"})
+    EXPECT_EQ(levelOf(release), Level::kWarning) << release;
+  for (const char* release : {"6.12.0-rt\n", "6.18-rc1\n", "7.0.0\n"})
+    EXPECT_EQ(levelOf(release), Level::kNote) << release;
+  machine.write("proc/sys/kernel/sched_rt_runtime_us", "0\n");
+  EXPECT_EQ(levelOf("6.12.0\n"), Level::kNotFit);
+}
+
 TEST(KernelChecks, GroupOfVersion1IsJudgedByItsOwnBudget) {
   const MachineTree machine;
   machine.write("proc/self/cgroup", "4:memory:/a\n3:cpu,cpuacct:/a/b\n0::/x\n");
@@ -86,6 +102,24 @@ TEST(KernelChecks, TellsARealTimeGroupKernelFromOthersAndFromSilence) {
   EXPECT_EQ(hasRealTimeGroups(machine.root()), false);
   machine.write("sys/fs/cgroup/cpu/cpu.rt_runtime_us", "950000\n");
   EXPECT_EQ(hasRealTimeGroups(machine.root()), true);
+}
+
+/// As the mend says; a kernel that does not know the parameter takes no notice of it.
+TEST(KernelChecks, RealTimeGroupsMayBeSwitchedOffAtBoot) {
+  const MachineTree machine;
+  machine.write("proc/sys/kernel/osrelease", "6.18.0\n");
+  const std::string name = "CONFIG_RT_GROUP_SCHED_DEFAULT_DISABLED";
+  const auto hasGroups = [&](const std::string& by_default, const std::string& parameters) {
+    machine.write("boot/config-6.18.0", "A=y\nCONFIG_RT_GROUP_SCHED=y\n" + by_default + "\n");
+    machine.write("proc/cmdline", "quiet " + parameters + "\n");
+    return hasRealTimeGroups(machine.root());
+  };
+  const std::string is_on = "# " + name + " is not set", is_off = name + "=y";
+  EXPECT_EQ(hasGroups(is_on, ""), true);
+  EXPECT_EQ(hasGroups(is_off, ""), false);
+  EXPECT_EQ(hasGroups(is_on, "rt_group_sched=0"), false);
+  EXPECT_EQ(hasGroups(is_off, "rt_group_sched=1"), true);
+  EXPECT_EQ(hasGroups("", "rt_group_sched=0"), true);
 }
 
 }  // namespace

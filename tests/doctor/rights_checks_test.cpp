@@ -56,6 +56,16 @@ TEST(ServiceRights, AreNotJudgedWithoutAService) {
   EXPECT_EQ(checkServiceRights(machine.root(), 80, true).level, Level::kNote);
 }
 
+TEST(ServiceRights, AMaskedServiceDoesNotStart) {
+  const MachineTree machine;
+  machine.write("usr/lib/systemd/system/tactusd.service", "[Service]\nLimitRTPRIO=99\n");
+  machine.write("etc/systemd/system/tactusd.service", "");
+  const Finding finding = checkServiceRights(machine.root(), 80, false);
+  EXPECT_EQ(finding.level, Level::kNotFit);
+  EXPECT_EQ(finding.what, "/etc/systemd/system/tactusd.service is masked");
+  expectMendable(finding);
+}
+
 TEST(ServiceRights, ComeFromTheUnit) {
   const MachineTree machine;
   const std::string both = "LimitRTPRIO=80\nLimitMEMLOCK=infinity\n";

@@ -55,6 +55,26 @@ TEST(LostZeros, AreTheEndOfALogAndTakeTheCycleThatTheyBeginIn) {
   EXPECT_GE(places, 8);
 }
 
+/// It ends with its sector, so that the zeros behind it are those of others.
+TEST(LostZeros, TakeTheCycleWhoseLastSectorIsLostWhole) {
+  LogDescription description = test::smallDescription();
+  description.shape = {16, 6};
+  std::mt19937_64 random(22);
+  std::vector<CycleRecord> records;
+  for (int i = 0; i < 2000; ++i) records.push_back(test::randomRecord(random));
+  const std::string bytes = test::writeLog(description, records);
+  const std::size_t cycle_bytes = logBytesACycle(description.shape);
+  ASSERT_GT(cycle_bytes, kLostSector_bytes + 3);
+  std::size_t end = bytes.size();
+  std::size_t whole = records.size();
+  for (; whole > 0 && end % kLostSector_bytes != 0; --whole) end -= cycle_bytes;
+  ASSERT_GT(whole, 0u) << "or no cycle ends with a sector";
+  const std::size_t place = end - kLostSector_bytes;
+  const auto read = test::readLog(bytes.substr(0, place) + std::string(bytes.size() - place, '\0'));
+  EXPECT_TRUE(read.cut_off);
+  EXPECT_EQ(read.records.size(), whole - 1);
+}
+
 TEST(LostZeros, BehindAWholeCycleTakeNone) {
   const LoggedCycles log;
   for (const std::size_t further : {1, 2, 3, 4, 100'000}) {

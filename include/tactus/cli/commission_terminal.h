@@ -33,7 +33,7 @@ class CommissionTerminal final : public CommissionDesk {
 
  private:
   struct Bus {
-    Bus(const HardwareConfig& hardware, int index);
+    Bus(const HardwareConfig& hardware, int index, double period_s);
     InterfaceLock lock;
     CanSocket socket;
     FrameBatch frames;

@@ -41,14 +41,16 @@ struct StrokePlan {
   /// What the set-up has to know of the drive beyond CiA 402, of robot.yaml, its data sheet and its
   /// profile; place, units and bounds are those above.
   DriveConfig drive{};
+  double rest_counts = 0.0;  ///< where its drive was read last, at rest without power
 };
 
 enum class StrokeEnd : std::uint8_t {
   kNotYet,
   kDone,
-  kStopped,   ///< by the engineer, or the enable line
-  kFault,     ///< of the fault table
-  kWrongWay,  ///< counts ran against the command
+  kStopped,    ///< by the engineer, or the enable line
+  kFault,      ///< of the fault table
+  kWrongWay,   ///< counts ran against the command
+  kMovedAway,  ///< it moved before it was told to, as while the brake opened
 };
 
 struct StrokeReport {
@@ -86,6 +88,7 @@ class Stroke {
 
  private:
   Fault judge(const CommissionInput& input) noexcept;
+  Fault judgePlace() noexcept;
   bool runsWrongWay() const noexcept;
   void move(const CommissionInput& input, Mode before) noexcept;
   void begin() noexcept;

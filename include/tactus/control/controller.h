@@ -164,8 +164,8 @@ class Controller {
   void computeTaskMotion(const TaskGains& gains, const ControllerState& state,
                          PreparedCycle& prepared) const noexcept;
   ToolReference referenceAt(double path_time_s, const ControllerState& state) const noexcept;
-  void keepPartOfRotation(const ChainPose& pose, const Vector3& phi, ScaledJacobian& J,
-                          Vector3& omega_d) const noexcept;
+  Vector3 keepPartOfRotation(const ChainPose& pose, const Vector3& phi, const Vector3& omega_d,
+                             ScaledJacobian& J) const noexcept;
   Vector3 partOfRotationAcceleration(double path_time_s, double progress, const Vector3& alpha_d,
                                      const VelocityProduct& curvature, const ChainPose& pose,
                                      const ControllerState& state) const noexcept;

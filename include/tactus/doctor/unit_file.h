@@ -13,6 +13,7 @@ namespace tactus {
 struct UnitFile {
   std::string name;  ///< "tactusd.service", or "tactusd@.service"
   std::string path;  ///< of the unit itself
+  bool is_masked = false;
   std::map<std::string, std::vector<std::string>> values;  ///< all lines of a key, in their order
 
   bool isSet(const std::string& key) const { return !value(key).empty(); }

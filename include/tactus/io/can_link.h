@@ -8,9 +8,9 @@ namespace tactus {
 
 /// What the kernel knows of an interface's CAN controller.
 struct CanLink {
-  std::string kind;         ///< "can": a controller; "vcan", "vxcan": none; "slcan": a serial line
-  long bit_rate_per_s = 0;  ///< 0: not set, or no controller
-  long restart_ms = 0;      ///< after bus-off; 0: never by itself
+  std::string kind;              ///< "can": a controller; "vcan", "vxcan": none
+  long bit_rate_per_s = 0;       ///< 0: not set, or no controller
+  long restart_ms = 0;           ///< after bus-off; 0: never by itself
   long data_bit_rate_per_s = 0;  ///< of CAN FD; 0: not set
   bool is_passive = false;       ///< error-passive, as where nobody acknowledges
   bool is_bus_off = false;       ///< sends and hears nothing until it is started anew

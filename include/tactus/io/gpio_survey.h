@@ -10,7 +10,6 @@ namespace tactus {
 struct GpioSurvey {
   std::string problem;      ///< chip or line that is not to be had; empty: all are there
   std::string users;        ///< who holds which line: "line 4: gpiomon"; empty: nobody
-  bool has_others = false;  ///< among them some that are no tactusd
 };
 
 GpioSurvey surveyGpio(const GpioConfig& config);
