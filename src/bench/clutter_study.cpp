@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <string>
 
+#include "tactus/bench/base_scene.h"
 #include "tactus/bench/clutter_grid.h"
 #include "tactus/bench/parallel.h"
 #include "tactus/bench/study.h"
-#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {
@@ -16,8 +16,9 @@ constexpr int kClutterDraws = 12;
 std::vector<Cell> clutterRow(ClutterKind kind, int posts, ClutterLaw law,
                              const std::vector<ClutterRun>& runs) {
   double reached = 0, touching = 0, contact_s = 0, high_s = 0, largest_N = 0, low = 0, restless = 0,
-         rest_N = 0, felt_N = 0;
+         rest_N = 0, felt_N = 0, faults = 0;
   for (const ClutterRun& run : runs) {
+    faults += run.fault != Fault::kNone;
     reached += run.isReached();
     touching += run.contact_s > 0.0;
     low += run.isReached() && run.high_s == 0.0;
@@ -40,14 +41,15 @@ std::vector<Cell> clutterRow(ClutterKind kind, int posts, ClutterLaw law,
           largest_N,
           rest_N,
           felt_N,
-          restless};
+          restless,
+          faults};
 }
 
 Table emptyClutterTable() {
   return {"clutter",
           {"kind", "posts", "law", "runs", "with_contact", "reached", "reached_with_low_forces",
            "high_share_of_contact_time", "largest_force_N", "largest_force_at_rest_N",
-           "largest_felt_at_rest_N", "restless"},
+           "largest_felt_at_rest_N", "restless", "faults"},
           {}};
 }
 
@@ -64,10 +66,9 @@ double largestHighShare(const Table& table) {
 }  // namespace
 
 StudyResult studyClutter(const BenchOptions& options) {
-  const Scene scene = loadScene(
-      options.scenes.empty() ? options.scenes_folder + kClutterBase : options.scenes.front(), {},
-      SceneUse::kSimulation);
-  const RunSetup base{scene.controller, scene.plant, scene.period_s, scene.duration_s};
+  const std::string path =
+      options.scenes.empty() ? options.scenes_folder + kClutterBase : options.scenes.front();
+  const RunSetup base = setupOf(loadBase(path, {}));
   StudyResult result;
   result.title = "Reaching in clutter";
   result.text =

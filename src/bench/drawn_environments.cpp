@@ -9,7 +9,7 @@ namespace tactus {
 namespace {
 
 constexpr double kDrawnRest_s = 20.0;
-constexpr double kHighPeak = 1.15, kWorsePeak = 1.02, kHighRest = 1.01;
+constexpr double kWorsePeak = 1.02, kHighRest = 1.01;
 
 /// Returns whether the link meets the last of them on a free path.
 bool drawPosts(BenchRandom& draw, RunSetup& setup) {
@@ -59,18 +59,20 @@ DrawnRun runDrawn(const RunSetup& setup) {
   EndWatch ends(setup);
   RunSetup watched = setup;
   watched.watch = [&](const JointVector& q, double t_s) {
-    drawn.is_out = drawn.is_out || ends.isOut(q, t_s == 0.0);
+    drawn.is_out = drawn.is_out || ends.isOut(q, t_s);
   };
   drawn.run = judgeRun(watched);
   return drawn;
 }
 
 Table emptyDrawnTable() {
-  return {"law_drawn",
-          {"arm", "runs", "peaks_above_1_15", "largest_peak_to_scale", "limit_cycles",
-           "rests_above_1_01", "largest_rest_to_limit", "estimation_hurts", "estimation_helps",
-           "without_estimator_peaks_above_1_15", "without_estimator_limit_cycles"},
-          {}};
+  return {
+      "law_drawn",
+      {"arm", "runs", "peaks_above_1_15", "largest_peak_to_scale", "limit_cycles",
+       "rests_above_1_01", "largest_rest_to_limit", "estimation_hurts", "estimation_helps",
+       "without_estimator_peaks_above_1_15", "without_estimator_limit_cycles", "faults", "left_out",
+       "left_out_peaks_above_1_15", "left_out_largest_peak_to_scale", "left_out_limit_cycles"},
+      {}};
 }
 
 void addDrawnRow(const std::string& arm, const std::vector<RunSetup>& setups, Table& table) {
@@ -82,28 +84,37 @@ void addDrawnRow(const std::string& arm, const std::vector<RunSetup>& setups, Ta
     assumed[i] = runDrawn(setup);
   });
   double runs = 0, high = 0, restless = 0, rests = 0, hurts = 0, helps = 0, highest = 0.0;
-  double largest_rest = 0.0, assumed_high = 0, assumed_restless = 0;
+  double largest_rest = 0.0, assumed_high = 0, assumed_restless = 0, faults = 0;
+  double out = 0, out_high = 0, out_highest = 0.0, out_restless = 0;
   for (std::size_t i = 0; i < setups.size(); ++i) {
-    if (estimated[i].is_out || assumed[i].is_out) continue;
     const JudgedRun& run = estimated[i].run;
     const JudgedRun& other = assumed[i].run;
     const ForceGains& force = setups[i].controller.gains.force;
     const double limit_N = force.activation_force_N + force.contact_threshold_N;
     const double ratio = run.peak_true_force_N / naturalScale(setups[i], run);
     const double peak_N = run.peak_true_force_N, other_N = other.peak_true_force_N;
+    if (estimated[i].is_out || assumed[i].is_out) {  // no module felt all of it, but it is told
+      out += 1;
+      out_high += !(ratio <= JudgedRun::kHighPeak);
+      out_highest = std::max(out_highest, ratio);
+      out_restless += run.isRestless();
+      continue;
+    }
     runs += 1;
-    high += ratio > kHighPeak;
+    faults += run.fault != Fault::kNone || other.fault != Fault::kNone;
+    high += !(ratio <= JudgedRun::kHighPeak);
     highest = std::max(highest, ratio);
     restless += run.isRestless();
     rests += !(run.peak_at_rest_N <= kHighRest * limit_N);
     largest_rest = std::max(largest_rest, run.peak_at_rest_N / limit_N);
     hurts += peak_N > kWorsePeak * std::max(other_N, limit_N);
     helps += other_N > kWorsePeak * std::max(peak_N, limit_N);
-    assumed_high += other_N > kHighPeak * naturalScale(setups[i], other);
+    assumed_high += other_N > JudgedRun::kHighPeak * naturalScale(setups[i], other);
     assumed_restless += other.isRestless();
   }
   table.rows.push_back({arm, runs, high, highest, restless, rests, largest_rest, hurts, helps,
-                        assumed_high, assumed_restless});
+                        assumed_high, assumed_restless, faults, out, out_high, out_highest,
+                        out_restless});
 }
 
 }  // namespace tactus

@@ -89,12 +89,18 @@ bool isOver(const ControllerOutput& output) {
   return output.fault != Fault::kNone && output.velocity.isZero(0.0);
 }
 
-std::string outcomeOf(const ExtremeRun& run, bool is_noisy) {
+/// Of each component of the force, as it is read.
+double noise_N(const SimulatedModuleConfig& module) {
+  return module.noise_N * module.channels.calibration.row(0).norm();
+}
+
+std::string outcomeOf(const ExtremeRun& run, double noise_N) {
+  const bool follows = noise_N > 0.0 && run.restlessness_N <= ExtremeRun::kMostNoise * noise_N;
   if (!run.isBounded()) return "NOT BOUNDED";
   if (run.fault != Fault::kNone) return faultName(run.fault);
-  if (run.restlessness_N > ExtremeRun::kMaxRestlessness_N)
-    return is_noisy ? "follows noise" : "limit cycle";
-  if (run.final_speed > ExtremeRun::kMaxFinalSpeed) return is_noisy ? "follows noise" : "drifts";
+  if (!(run.restlessness_N <= ExtremeRun::kMaxRestlessness_N))
+    return follows ? "follows noise" : "limit cycle";
+  if (!(run.final_speed <= ExtremeRun::kMaxFinalSpeed)) return follows ? "follows noise" : "drifts";
   return "at rest";
 }
 
@@ -155,7 +161,7 @@ ExtremeRun runExtreme(const std::string& base, const ExtremeCase& extreme, const
       run.refused_by_check = keyOf(error);
     }
     play(scene, extreme, run);
-    run.outcome = outcomeOf(run, scene.plant.modules[0].noise_N > 0.0);
+    run.outcome = outcomeOf(run, noise_N(scene.plant.modules[0]));
   } catch (const InputError& error) {
     run.refused_at_load = keyOf(error);
     run.outcome = "refused at load";

@@ -77,10 +77,12 @@ LawGridFigures lawGridFigures(const std::vector<LawGridRow>& rows, GridLaw law) 
   figures.final_max_N = -figures.final_min_N;
   for (const LawGridRow& row : rows) {
     const JudgedRun& run = row.runs[i];
-    figures.peak_N = std::max(figures.peak_N, run.peak_force_N);
-    figures.peak_to_scale = std::max(figures.peak_to_scale, run.peak_force_N / row.scale_N[i]);
+    const double peak_N = run.peak_true_force_N;
+    figures.faults += run.fault != Fault::kNone;
+    figures.peak_N = std::max(figures.peak_N, peak_N);
+    figures.peak_to_scale = std::max(figures.peak_to_scale, peak_N / row.scale_N[i]);
     figures.peak_to_assumed =
-        std::max(figures.peak_to_assumed, run.peak_force_N / row.runs[0].peak_force_N);
+        std::max(figures.peak_to_assumed, peak_N / row.runs[0].peak_true_force_N);
     if (run.isRestless()) {
       ++figures.restless;
     } else {
@@ -103,9 +105,9 @@ Table lawGridTable(const std::vector<LawGridRow>& rows) {
       const bool has_fault = run.fault != Fault::kNone;
       table.rows.push_back({std::string(gridLawName(kAllGridLaws[i])), row.point.band_N_per_m,
                             row.point.profile_N_per_m, row.point.robot_stiffness_N_per_m,
-                            row.point.speed_factor, run.peak_force_N, run.final_force_N,
-                            run.restlessness_N, row.scale_N[i], run.peak_force_N / row.scale_N[i],
-                            1e3 * run.tcp_error_final_m,
+                            row.point.speed_factor, run.peak_true_force_N, run.final_force_N,
+                            run.restlessness_N, row.scale_N[i],
+                            run.peak_true_force_N / row.scale_N[i], 1e3 * run.tcp_error_final_m,
                             std::string(has_fault          ? faultName(run.fault)
                                         : run.isRestless() ? "limit cycle"
                                                            : "at rest")});
@@ -117,7 +119,7 @@ Table lawGridTable(const std::vector<LawGridRow>& rows) {
 Table emptyLawSummary(const std::string& name) {
   return {name,
           {"trial", "law", "points", "limit_cycles", "largest_peak_N", "final_min_N", "final_max_N",
-           "largest_peak_to_scale", "largest_peak_to_assumed"},
+           "largest_peak_to_scale", "largest_peak_to_assumed", "faults"},
           {}};
 }
 
@@ -126,7 +128,8 @@ void addLawSummary(const std::string& trial, GridLaw law, const std::vector<LawG
   const LawGridFigures figures = lawGridFigures(rows, law);
   table.rows.push_back({trial, std::string(gridLawName(law)), static_cast<double>(rows.size()),
                         static_cast<double>(figures.restless), figures.peak_N, figures.final_min_N,
-                        figures.final_max_N, figures.peak_to_scale, figures.peak_to_assumed});
+                        figures.final_max_N, figures.peak_to_scale, figures.peak_to_assumed,
+                        static_cast<double>(figures.faults)});
 }
 
 }  // namespace tactus

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <string>
 
+#include "tactus/bench/base_scene.h"
 #include "tactus/bench/drawn_environments.h"
 #include "tactus/bench/law_grid.h"
 #include "tactus/bench/law_trials.h"
 #include "tactus/bench/parallel.h"
 #include "tactus/bench/study.h"
-#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {
@@ -39,16 +39,11 @@ Plot peaks(const Table& grid) {
   return plot;
 }
 
-RunSetup setupOf(const std::string& path) {
-  const Scene scene = loadScene(path, {}, SceneUse::kSimulation);
-  return {scene.controller, scene.plant, scene.period_s, scene.duration_s};
-}
-
 Table drawnEnvironments(const BenchOptions& options, const RunSetup& base) {
   const int count = options.is_quick ? 5 : kEnvironments;
   Table table = emptyDrawnTable();
   addDrawnRow("of the scene", drawEnvironments(base, kEnvironmentsSeed, count), table);
-  const RunSetup other = setupOf(options.scenes_folder + kOtherArm);
+  const RunSetup other = setupOf(loadBase(options.scenes_folder + kOtherArm, {}));
   addDrawnRow("kuka_iiwa7", drawEnvironments(other, kEnvironmentsSeed, count), table);
   return table;
 }
@@ -58,7 +53,7 @@ Table drawnEnvironments(const BenchOptions& options, const RunSetup& base) {
 StudyResult studyLaw(const BenchOptions& options) {
   const std::string path =
       options.scenes.empty() ? options.scenes_folder + kLawBase : options.scenes.front();
-  const RunSetup base = setupOf(path);
+  const RunSetup base = setupOf(loadBase(path, {.obstacles = 2}));
   std::vector<LawGridPoint> points = lawGridPoints(base.plant.robot_stiffness_N_per_m);
   if (options.is_quick) {
     std::size_t i = 0;
@@ -90,10 +85,12 @@ StudyResult studyLaw(const BenchOptions& options) {
       "starts, paths and posts that were drawn, for this arm "
       "and another. What "
       "the figures mean is in docs/approach_speed_limit.md.";
-  result.goals = {{"null_limit: limit cycles", 0.0, static_cast<double>(limited.restless)},
-                  {"null_limit: peak over the natural scale, largest", 1.15, limited.peak_to_scale},
-                  {"null_limit: peak over the paper's with the assumed stiffness, largest", 1.05,
-                   limited.peak_to_assumed}};
+  result.goals = {
+      {"null_limit: limit cycles", 0.0, static_cast<double>(limited.restless)},
+      {"null_limit: peak over the natural scale, largest", 1.15, limited.peak_to_scale},
+      {"null_limit: peak over the paper's with the assumed stiffness, largest", 1.05,
+       limited.peak_to_assumed},
+      {"null_limit: runs that end in a fault", 0.0, static_cast<double>(limited.faults)}};
   result.tables = {robustness, ablation, drawnEnvironments(options, base),
                    lawGridTable(undisturbed)};
   result.plots = {peaks(result.tables.back())};

@@ -41,8 +41,9 @@ Scene loadArm(const Case& one, const std::string& scenes_folder) {
   return scene;
 }
 
+/// Infinite where a touch is missing, and NaN where a number is.
 double change(double value, double reference) {
-  return reference > 0.0 ? value / reference - 1.0 : 0.0;
+  return value == 0.0 && reference == 0.0 ? 0.0 : value / reference - 1.0;
 }
 
 }  // namespace

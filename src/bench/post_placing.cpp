@@ -86,12 +86,15 @@ EndWatch::EndWatch(const RunSetup& setup)
     : chain_(setup.controller.chain), modules_(setup.controller.tactile_modules) {
   for (std::size_t i = 0; i < modules_.size(); ++i)
     radii_m_.push_back(setup.plant.modules[i].cover_radius_m);
-  for (const ObstacleConfig& obstacle : setup.plant.obstacles)
+  for (ObstacleConfig post : setup.plant.obstacles) {
+    post.stiffness_N_per_m = 1.0;
+    post.foam.clear();
     for (std::size_t i = 0; i < modules_.size(); ++i)
-      posts_.push_back({i, ObstacleShape(obstacle), ObstacleShape(obstacle)});
+      posts_.push_back({i, Obstacle(post, kNoLimit), Obstacle(post, kNoLimit)});
+  }
 }
 
-bool EndWatch::isOut(const JointVector& q, bool is_start) {
+bool EndWatch::isOut(const JointVector& q, double t_s) {
   chain_.computePose(q, pose_);
   bool is_out = false;
   for (Post& post : posts_) {
@@ -101,10 +104,10 @@ bool EndWatch::isOut(const JointVector& q, bool is_start) {
     const double radius_m = radii_m_[post.module];
     const CoverAxis cover{X.p_AB, u, length_m, radius_m};
     const CoverAxis longer{X.p_AB - kEnd_m * u, u, length_m + 2.0 * kEnd_m, radius_m};
-    const bool touches = post.at_cover.meet(cover, Vector3::Zero()).depth_m > 0.0;
-    const bool touches_longer = post.at_longer.meet(longer, Vector3::Zero()).depth_m > 0.0;
-    is_out |= is_start ? touches_longer
-                       : touches_longer && post.touched_longer && touches != post.touched;
+    const bool touches = post.at_cover.touch(cover, t_s).force_N > 0.0;
+    const bool touches_longer = post.at_longer.touch(longer, t_s).force_N > 0.0;
+    is_out |= t_s == 0.0 ? touches_longer
+                         : touches_longer && post.touched_longer && touches != post.touched;
     post.touched = touches;
     post.touched_longer = touches_longer;
   }

@@ -76,7 +76,7 @@ bool placePosts(BenchRandom& draw, const ModulePaths& paths, SeveralCase& drawn)
     if (moves) letMove(draw, setup, share, post);
     setup.plant.obstacles.push_back(post);
   }
-  return !EndWatch(setup).isOut(setup.controller.q_start, true);
+  return !EndWatch(setup).isOut(setup.controller.q_start, 0.0);
 }
 
 bool drawSeveralPosts(BenchRandom& draw, SeveralCase& drawn) {
@@ -91,15 +91,18 @@ bool drawSeveralPosts(BenchRandom& draw, SeveralCase& drawn) {
 }
 
 struct Figures {
-  double runs = 0, both = 0, high = 0, highest = 0.0, restless = 0, most_restless = 0.0, rests = 0,
-         largest_rest = 0.0, largest_tcp = 0.0, steps = 0.0, step = 0.0, intrusion = 0.0;
+  double runs = 0, faults = 0, both = 0, high = 0, highest = 0.0, restless = 0, most_restless = 0.0,
+         rests = 0, largest_rest = 0.0, largest_tcp = 0.0, steps = 0.0, step = 0.0, intrusion = 0.0;
+  double out = 0, out_high = 0, out_highest = 0.0, out_restless = 0;
 
   void add(const SeveralCase& drawn, const SeveralRun& run) {
     const bool is_one_module = drawn.kind >= SeveralKind::kSameSide;
     const double peak = is_one_module ? run.contact_peak_to_scale : run.largest_peak_to_scale;
+    if (run.is_out) return addOut(run, peak);
     runs += 1;
+    faults += run.fault != Fault::kNone;
     both += (is_one_module ? run.touched_posts : run.touched_modules) > 1;
-    high += peak > 1.15;
+    high += !(peak <= JudgedRun::kHighPeak);
     highest = std::max(highest, peak);
     restless += !(run.restlessness_N <= JudgedRun::kMaxRestlessness_N);
     most_restless = std::max(most_restless, run.restlessness_N);
@@ -110,12 +113,21 @@ struct Figures {
     step = std::max(step, run.step_between_samples);
     intrusion = std::max(intrusion, -run.clearance_left_m);
   }
+
+  /// What no module felt says nothing of the law, but is told.
+  void addOut(const SeveralRun& run, double peak) {
+    out += 1;
+    out_high += !(peak <= JudgedRun::kHighPeak);
+    out_highest = std::max(out_highest, peak);
+    out_restless += !(run.restlessness_N <= JudgedRun::kMaxRestlessness_N);
+  }
 };
 
 void addRow(const std::string& trial, const std::string& kind, const Figures& f, Table& table) {
-  if (f.runs == 0.0) return;
+  if (f.runs + f.out == 0.0) return;
   table.rows.push_back({trial, kind, f.runs, f.both, f.high, f.highest, f.restless, f.most_restless,
-                        f.rests, f.largest_rest, f.largest_tcp, f.steps, f.step, f.intrusion});
+                        f.rests, f.largest_rest, f.largest_tcp, f.steps, f.step, f.intrusion,
+                        f.faults, f.out, f.out_high, f.out_highest, f.out_restless});
 }
 
 }  // namespace
@@ -157,7 +169,8 @@ Table emptySeveralTable(const std::string& name) {
           {"trial", "kind", "runs", "with_several_contacts", "peaks_above_1_15",
            "largest_peak_to_scale", "restless", "largest_restlessness_N", "rests_above_1_02",
            "largest_rest_to_limit", "largest_tcp_error_m", "steps_above_0_02",
-           "largest_step_between_samples", "largest_intrusion_m"},
+           "largest_step_between_samples", "largest_intrusion_m", "faults", "left_out",
+           "left_out_peaks_above_1_15", "left_out_largest_peak_to_scale", "left_out_restless"},
           {}};
 }
 
@@ -168,7 +181,6 @@ void addSeveralRows(const std::string& trial, const std::vector<SeveralCase>& ca
   std::array<Figures, kSurroundings> of_surroundings;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const SeveralCase& drawn = cases[i];
-    if (runs[i].is_out) continue;
     of_kind[static_cast<std::size_t>(drawn.kind)].add(drawn, runs[i]);
     if (drawn.kind != SeveralKind::kMoving)
       of_surroundings[static_cast<std::size_t>(drawn.surroundings)].add(drawn, runs[i]);

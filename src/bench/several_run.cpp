@@ -181,7 +181,7 @@ SeveralRun runSeveral(const RunSetup& setup) {
     steps.update(output.velocity, is_new, run);
     run.clearance_left_m = std::min(run.clearance_left_m, clearance.left_m(output.q_desired));
     touches.update(input.q_measured, t_s, run, output);
-    run.is_out = run.is_out || ends.isOut(input.q_measured, cycle == 0);
+    run.is_out = run.is_out || ends.isOut(input.q_measured, t_s);
   }
   sumUp(rest, run);
   run.fault = output.fault;

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <array>
 
+#include "tactus/bench/base_scene.h"
 #include "tactus/bench/parallel.h"
 #include "tactus/bench/same_module.h"
 #include "tactus/bench/several_grid.h"
 #include "tactus/bench/study.h"
 #include "tactus/scene/key_words.h"
-#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {
@@ -48,7 +48,7 @@ bool isOfStaticKind(const std::string& name) {
 /// Of all kinds and trials, without posts that move: a force that follows them does not rest.
 struct StaticShares {
   double runs = 0, high = 0, restless = 0, most_restless_N = 0.0, largest_rest = 0.0, steps = 0.0,
-         alone = 0.0, intrusion_m = 0.0;
+         alone = 0.0, intrusion_m = 0.0, faults = 0;
 
   explicit StaticShares(const Table& table) {
     const std::size_t kind = table.column("kind");
@@ -59,6 +59,7 @@ struct StaticShares {
       const std::string& name = std::get<std::string>(row[kind]);
       if (!isOfStaticKind(name)) continue;
       runs += value(row, "runs");
+      faults += value(row, "faults");
       high += value(row, "peaks_above_1_15");
       restless += value(row, "restless");
       most_restless_N = std::max(most_restless_N, value(row, "largest_restlessness_N"));
@@ -82,7 +83,8 @@ std::vector<Goal> severalGoals(const Table& table) {
       {"several contacts: share with a step of a joint above 0.02 rad/s between samples, without "
        "noise",
        0.02, all.steps / all.alone},
-      {"several contacts: how far the arm came within a safe distance, m", 1e-9, all.intrusion_m}};
+      {"several contacts: how far the arm came within a safe distance, m", 1e-9, all.intrusion_m},
+      {"several contacts: runs that end in a fault", 0.0, all.faults}};
 }
 
 /// Two contacts on one module, by where the approach is limited.
@@ -108,10 +110,9 @@ Table tryLimitPlaces(const RunSetup& base, int draws) {
 }  // namespace
 
 StudyResult studySeveral(const BenchOptions& options) {
-  const Scene scene = loadScene(
-      options.scenes.empty() ? options.scenes_folder + kSeveralBase : options.scenes.front(), {},
-      SceneUse::kSimulation);
-  const RunSetup base{scene.controller, scene.plant, scene.period_s, scene.duration_s};
+  const std::string path =
+      options.scenes.empty() ? options.scenes_folder + kSeveralBase : options.scenes.front();
+  const RunSetup base = setupOf(loadBase(path, {.modules = 2}));
   const std::vector<SeveralCase> cases =
       drawSeveral(base, kSeveralSeed, options.is_quick ? 12 : kSeveralDraws);
   StudyResult result;

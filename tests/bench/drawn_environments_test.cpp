@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "support/crops9.h"
+#include "tactus/bench/post_placing.h"
 #include "tactus/scene/scene_loader.h"
 
 namespace tactus {
@@ -52,6 +53,9 @@ TEST(DrawnEnvironments, SeesAPostThatTouchesAtTheStart) {
   setup.plant.obstacles.back().y_m = middle.y();
   setup.duration_s = 0.01;
   EXPECT_TRUE(runDrawn(setup).is_out);
+  for (ObstacleConfig& post : setup.plant.obstacles) post.appears_s = 0.005;
+  EXPECT_FALSE(EndWatch(setup).isOut(setup.controller.q_start, 0.0)) << "it is not there yet";
+  EXPECT_FALSE(EndWatch(setup).isOut(setup.controller.q_start, 0.01)) << "nor at an end";
 }
 
 /// With V that fades below F_th, and c that is forgotten there, about one in seven of the iiwa's

@@ -120,6 +120,14 @@ TEST(Extremes, WatchEveryNumberOfTheState) {
   EXPECT_EQ(found[8.0], "joint_space.direction");
 }
 
+/// It swings as it does without noise.
+TEST(Extremes, DoNotTakeALimitCycleForNoise) {
+  ExtremeCase extreme = caseNamed("stiffness.assumed_N_per_m = 10");
+  EXPECT_EQ(runExtreme(kExtremesBase, extreme, lawNamed("assumed")).outcome, "limit cycle");
+  extreme.overrides.push_back({"simulation.tactile_module.noise_N", "1e-6"});
+  EXPECT_EQ(runExtreme(kExtremesBase, extreme, lawNamed("assumed")).outcome, "limit cycle");
+}
+
 /// What a long run is judged by, in a minute of one.
 TEST(Extremes, OfLongRunsTellWhatBecomesOfTheState) {
   ExtremeCase extreme = caseNamed("half an hour on a 60 N/m band, no noise");

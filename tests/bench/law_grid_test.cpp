@@ -146,6 +146,7 @@ TEST(LawGrid, TheLimitPeaksNearTheNaturalScaleAndComesToRest) {
   ASSERT_EQ(rows.size(), 24u);
   const LawGridFigures limited = lawGridFigures(rows, GridLaw::kLimited);
   EXPECT_EQ(limited.restless, 0);
+  EXPECT_EQ(limited.faults, 0);
   EXPECT_GT(limited.final_min_N, 4.95);
   EXPECT_LT(limited.final_max_N, 5.02);
   EXPECT_LT(limited.peak_to_scale, 1.2);

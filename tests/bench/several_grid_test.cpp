@@ -50,6 +50,13 @@ TEST(SeveralGrid, TheLawKeepsItsForcesAndRests) {
     EXPECT_LT(run.restlessness_N, 0.2);
     EXPECT_LT(run.peak_at_rest_N, 5.1);
   }
+  Table table = emptySeveralTable("several");
+  addSeveralRows("alone", cases, runs, table);
+  const std::size_t all = table.rows.size() - 1;
+  EXPECT_EQ(table.number(all, "runs") + table.number(all, "left_out"),
+            static_cast<double>(cases.size()));
+  EXPECT_EQ(table.number(all, "faults"), 0.0);
+  EXPECT_GE(table.number(all, "left_out"), table.number(all, "left_out_restless"));
   EXPECT_LE(high, 1);
   EXPECT_LE(restless, 1);
   EXPECT_GT(judged, 8);

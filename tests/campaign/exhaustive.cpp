@@ -33,18 +33,37 @@ std::string lineOf(const Case& one, const Result& result) {
                      faultName(result.fault), violated);
 }
 
-/// Of whole lines: half of one, which a run that was killed has left, is cut off.
-std::set<std::string> takeUp(const std::string& path) {
-  std::ifstream file(path);
+/// Of this program, by its bytes (FNV-1a): what another one found says nothing of it.
+std::string stampOfProgram() {
+  std::ifstream program("/proc/self/exe", std::ios::binary);
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (std::istreambuf_iterator<char> byte(program), end; byte != end; ++byte)
+    hash = (hash ^ static_cast<unsigned char>(*byte)) * 0x100000001b3;
+  return fmt::format("# by the program {:016x}", hash);
+}
+
+struct Done {
   std::set<std::string> names;
-  std::uintmax_t size = 0;
+  int bad = 0;
+};
+
+/// Of whole lines: half of one, which a run that was killed has left, is cut off.
+Done takeUp(const std::string& path, const std::string& stamp) {
+  std::ifstream file(path);
+  Done done;
   std::string line;
+  if (!std::getline(file, line) || line != stamp) {
+    std::ofstream(path) << stamp << "\n";
+    return done;
+  }
+  std::uintmax_t size = line.size() + 1;
   while (std::getline(file, line) && !file.eof()) {
-    names.insert(line.substr(0, line.find('\t')));
+    done.names.insert(line.substr(0, line.find('\t')));
+    done.bad += line.ends_with("\t-") ? 0 : 1;
     size += line.size() + 1;
   }
-  if (std::filesystem::exists(path)) std::filesystem::resize_file(path, size);
-  return names;
+  std::filesystem::resize_file(path, size);
+  return done;
 }
 
 int runOneCase(const Stage& stage, const std::vector<Case>& cases, const std::string& name) {
@@ -82,15 +101,15 @@ int runExhaustive(const ExhaustiveOptions& options) {
   std::vector<Case> cases = allCases(stage);
   if (options.only) return runOneCase(stage, cases, *options.only);
   if (options.first) cases.resize(std::min(cases.size(), static_cast<std::size_t>(*options.first)));
-  const std::set<std::string> done = takeUp(options.results);
-  std::erase_if(cases, [&](const Case& one) { return done.contains(one.name); });
+  const Done done = takeUp(options.results, stampOfProgram());
+  std::erase_if(cases, [&](const Case& one) { return done.names.contains(one.name); });
   std::FILE* file = std::fopen(options.results.c_str(), "a");
   if (file == nullptr) {
     fmt::print(stderr, "{}: cannot be written\n", options.results);
     return 1;
   }
   std::mutex mutex;
-  int bad = 0;
+  int bad = done.bad;
   share(options.jobs, static_cast<int>(cases.size()), [&](int i) {
     const Result result = simulate(stage, cases[i].plan, false);
     const std::scoped_lock lock(mutex);
@@ -99,7 +118,8 @@ int runExhaustive(const ExhaustiveOptions& options) {
     bad += result.violations.empty() ? 0 : 1;
   });
   const bool is_written = std::ferror(file) == 0 && std::fclose(file) == 0;
-  fmt::print("{} cases, {} with violations; {} were there\n", cases.size(), bad, done.size());
+  fmt::print("{} cases; {} were there; {} of both with violations\n", cases.size(),
+             done.names.size(), bad);
   return bad == 0 && is_written ? 0 : 1;
 }
 

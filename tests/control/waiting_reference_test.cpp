@@ -3,6 +3,7 @@
 #include "support/controller_run.h"
 #include "support/period.h"
 #include "support/rail_robot.h"
+#include "tactus/control/path_progress.h"
 #include "tactus/math/rotation.h"
 
 /// The reference waits for a tool that is held back, and its clock forgets nothing.
@@ -286,6 +287,39 @@ TEST(WaitingReference, IsTheSameWhenPreparedAhead) {
     }
   }
   EXPECT_GT(waited_s, 0.5) << "or nothing was tested";
+}
+
+/// Joints that are too slow for its turn; the way there ends where it shall all the same.
+TEST(WaitingReference, WaitsForTheOrientationAsForThePosition) {
+  constexpr double kWait_rad = 0.1;
+  test::Random random(274);
+  for (const double wait_rad : {kWait_rad, kNoLimit}) {
+    ControllerConfig config = test::randomController(random, 9, 6);
+    config.limits.max_velocity.setConstant(0.05);
+    config.tactile_modules.clear();
+    config.gains.task.drift_gain_per_s = 5.0;
+    config.gains.task.wait_beyond_rad = wait_rad;
+    Waypoint turn;
+    turn.rotation_vector_rad = Vector3(0.5, -0.6, 0.3);
+    config.task.trajectory = {0.1, {turn}};
+    const Controller controller(config);
+    ControllerState state = controller.initialState();
+    ControllerOutput output;
+    double largest_rad = 0.0;
+    for (int cycle = 0; cycle < 60'000; ++cycle) {
+      controller.update({}, controller.initialGains(), cycle * kPeriod_s, kPeriod_s, state, output);
+      const PaddedTaskVector error = paddedTask(output.error);
+      largest_rad = std::max(largest_rad, toolLag(config.task, error).rotation_rad);
+    }
+    if (wait_rad == kWait_rad) {
+      EXPECT_LT(largest_rad, 2.0 * kWait_rad);
+      EXPECT_GT(state.waited_s, 1.0);
+      EXPECT_LT(output.error.norm(), 1e-3);
+    } else {
+      EXPECT_GT(largest_rad, 3.0 * kWait_rad);
+      EXPECT_EQ(state.waited_s, 0.0);
+    }
+  }
 }
 
 /// A sum of rotation vectors is no rotation: that of the reference is its own.

@@ -16,22 +16,30 @@ import places
 from trials import Trials
 
 
-def code_at(target, mutant):
-    return (target.root / mutant.file).read_text().splitlines()[mutant.line - 1].strip()
+def code_at(target, file, line):
+    return (target.root / file).read_text().splitlines()[line - 1].strip() if line > 0 else ""
 
 
 def reason_for(target, mutant, listed):
-    """Of the list: same file, text of the line and change; `nth` where a line has several such places."""
+    """Of the list: same file, text of the line and change. `column` where the line has several such places,
+    `after`, the line before, where the file has several such lines."""
     for entry in listed:
-        if entry["file"] == mutant.file and entry["code"] == code_at(target, mutant) and \
-                mutant.what in entry["what"] and entry.get("column", mutant.column) == mutant.column:
+        if entry["file"] == mutant.file and entry["code"] == code_at(target, mutant.file, mutant.line) and \
+                mutant.what in entry["what"] and entry.get("column", mutant.column) == mutant.column and \
+                entry.get("after") in (None, code_at(target, mutant.file, mutant.line - 1)):
             return entry
     return None
 
 
 def version(target, file):
-    """Of the source: a result of another is none."""
+    """Of the source: a result of another is none. Tests may change: to forget what they killed, begin anew."""
     return hashlib.sha256((target.root / file).read_bytes()).hexdigest()[:12]
+
+
+def judged(target, file):
+    """A result by other judges is none, either."""
+    judges = " ".join(stage.name for stage in target.stages(file))
+    return f"{version(target, file)}-{hashlib.sha256(judges.encode()).hexdigest()[:6]}"
 
 
 class Results:
@@ -95,7 +103,7 @@ def run(target, folder, options, listed, unnoticed=()):
         print(f"reason that fits no mutant any more: {entry['file']}: {entry['code']}: {entry['what']}")
     mutants = chosen(every, options.sample, options.seed)
     results = Results(folder / "results.txt")
-    versions = {file: version(target, file) for file in target.files}
+    versions = {file: judged(target, file) for file in target.files}
 
     def known(mutant):
         return results.known.get((versions[mutant.file], mutant.name))
@@ -133,7 +141,7 @@ def table(target, mutants, known, listed, unnoticed, every):
             counts["without a reason"] += not entry
         if state == "survived" or entry:
             reason = entry["reason"] if entry else "WITHOUT A REASON"
-            print(f"{mutant.name}: {state}: {reason}\n    {code_at(target, mutant)}")
+            print(f"{mutant.name}: {state}: {reason}\n    {code_at(target, mutant.file, mutant.line)}")
     judged = counts["killed"] + counts["survived"]
     low, high = interval_95(counts["killed"], judged)
     print(f"\n{every} mutants, {len(mutants)} of them drawn: {counts['killed']} killed, {counts['survived']} survived "

@@ -68,8 +68,9 @@ class Toy(unittest.TestCase):
         self.root = pathlib.Path(self.held.name)
         (self.root / "src" / "toy").mkdir(parents=True)
         (self.root / FILE).write_text(SOURCE)
-        (self.root / "test.cpp").write_text(TEST)
-        for name in (FILE, "test.cpp"):
+        (self.root / "toy.cpp").write_text(TEST)
+        (self.root / "blind.cpp").write_text(TEST.replace("is_right ? 0 : 1", "0"))
+        for name in (FILE, "toy.cpp", "blind.cpp"):
             subprocess.run([*COMPILER, "-c", self.root / name, "-o", self.object(name)], check=True)
         self.runs = []
 
@@ -79,19 +80,19 @@ class Toy(unittest.TestCase):
     def object(self, name):
         return self.root / (pathlib.Path(name).stem + ".o")
 
-    def target(self):
+    def target(self, stage):
         def link(program, replaced, output):
             self.runs.append(replaced)
-            return subprocess.run([*COMPILER, str(self.object("test.cpp")),
+            return subprocess.run([*COMPILER, str(self.object(f"{program}.cpp")),
                                    str(replaced.get(FILE, self.object(FILE))), "-o", str(output)],
                                   capture_output=True, text=True)
 
         return trials.Target(self.root, [FILE], {FILE: COMPILER}, {FILE: []}, link,
-                             lambda file: [trials.Stage("toy", "toy")])
+                             lambda file: [trials.Stage(stage, stage)])
 
-    def run_all(self, sample=0, seed=1, listed=(), unnoticed=()):
+    def run_all(self, sample=0, seed=1, listed=(), unnoticed=(), stage="toy"):
         options = argparse.Namespace(sample=sample, seed=seed, jobs=2, again=False)
-        return mutate.run(self.target(), self.root / "out", options, list(listed), list(unnoticed))
+        return mutate.run(self.target(stage), self.root / "out", options, list(listed), list(unnoticed))
 
     def state(self, what):
         for line in (self.root / "out" / "results.txt").read_text().splitlines():
@@ -159,11 +160,35 @@ class Toy(unittest.TestCase):
         self.assertEqual(again["survived"], counts["survived"])
         self.assertEqual(again["without a reason"], counts["survived"] - 1)
 
+    def test_a_reason_may_name_the_line_before(self):
+        def survived(after):
+            return {"file": FILE, "code": "return x - 0.0;", "after": after, "what": ["- becomes +"], "reason": "x"}
+
+        stale, counts = self.run_all(listed=[survived("double unused(double x) {"), survived("int limit() {")])
+        self.assertEqual(stale, [survived("int limit() {")])
+        self.assertEqual(counts["equivalent"], 1)
+
+    def test_what_other_judges_said_is_asked_again(self):
+        for stage in ("blind", "toy", "blind"):
+            _, counts = self.run_all(sample=6, stage=stage)
+            self.assertEqual(counts["killed"] > 0, stage == "toy", stage)
+
     def test_the_interval_holds_the_share(self):
         low, high = mutate.interval_95(90, 100)
         self.assertAlmostEqual(low, 0.8256, 3)
         self.assertAlmostEqual(high, 0.9448, 3)
         self.assertEqual(mutate.interval_95(10, 10)[1], 1.0)
+
+
+class Lists(unittest.TestCase):
+    def test_every_reason_is_of_a_line_that_is_there(self):
+        root = pathlib.Path(__file__).resolve().parents[2]
+        for name in ("survivors", "unnoticed", "coverage"):
+            for entry in mutate.read_list(pathlib.Path(__file__).parent / f"{name}.yaml"):
+                lines = [line.strip() for line in (root / entry["file"]).read_text().splitlines()]
+                self.assertIn(entry["code"], lines, f"{name}.yaml: {entry['file']}")
+                if "after" in entry:
+                    self.assertIn((entry["after"], entry["code"]), list(zip(lines, lines[1:])))
 
 
 if __name__ == "__main__":

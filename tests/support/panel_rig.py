@@ -17,6 +17,17 @@ POST = ("simulation.obstacles=[{post: {foot_m: [0.70771, -0.08, 0], axis: [0, 0,
 PATIENCE_S = 60
 
 
+@contextlib.contextmanager
+def cut_off_allowed():
+    """Who is refused may be; to hang is no refusal."""
+    try:
+        yield
+    except TimeoutError:
+        raise
+    except OSError:
+        pass
+
+
 def nobody():
     """For subprocess: without the rights of root."""
     return {"user": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
@@ -77,11 +88,11 @@ class Rig:
         """All that comes back for these bytes, before the end or a reset. is_half: no more will come."""
         answer = b""
         with socket.create_connection(("127.0.0.1", self.port), timeout=PATIENCE_S) as connection:
-            with contextlib.suppress(OSError):  # who is refused may be cut off while it still sends
+            with cut_off_allowed():  # while it still sends
                 connection.sendall(request)
                 if is_half:
                     connection.shutdown(socket.SHUT_WR)
-            with contextlib.suppress(OSError):
+            with cut_off_allowed():
                 while piece := connection.recv(65536):
                     answer += piece
         return answer
@@ -96,6 +107,8 @@ class Rig:
             connection.request(method, path, body, {k: v for k, v in sent.items() if v is not None})
             answer = connection.getresponse()
             return answer.status, dict(answer.getheaders()), answer.read().decode()
+        except TimeoutError:  # to hang is no refusal
+            raise
         except OSError:
             return 0, {}, ""
         finally:

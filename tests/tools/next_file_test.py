@@ -11,13 +11,14 @@ import struct
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from followed import wait_until_read  # noqa: E402
 
 TACTUS = pathlib.Path(sys.argv.pop(1)).resolve()
 SCENE = pathlib.Path(__file__).resolve().parents[2] / "config/scenes/scenario1_multi_space.yaml"
 CYCLES_PER_S = 1000
-OPENED_S = 0.5  # after which a follower has read all that there is
 
 
 class Log:
@@ -67,13 +68,13 @@ class NextFile(unittest.TestCase):
         self.path.write_bytes(self.log.part(0, self.log.cycles[:cycles]))
         program = subprocess.Popen([TACTUS, *arguments], stdout=subprocess.PIPE, text=True)
         self.addCleanup(program.kill)
-        time.sleep(OPENED_S)
+        wait_until_read(program, self.path)
         return program
 
-    def append(self, begin, end):
+    def append(self, program, begin, end):
         with open(self.path, "ab") as file:
             file.write(b"".join(self.log.cycles[begin:end]))
-        time.sleep(OPENED_S)
+        wait_until_read(program, self.path)
 
     def go_on_in_another(self, begin, end):
         following = self.path.with_name("next")
@@ -84,7 +85,7 @@ class NextFile(unittest.TestCase):
     def test_scope_shows_what_ends_in_it(self):
         page = self.path.with_name("page.html")
         scope = self.start(self.touch - 500, "scope", self.path, "--follow", "--single", "--post", "1", "-o", page)
-        self.append(self.touch - 500, self.touch + 500)
+        self.append(scope, self.touch - 500, self.touch + 500)
         self.go_on_in_another(self.touch + 500, self.touch + 3000)
         shown, _ = scope.communicate(timeout=60)
         self.assertEqual(scope.returncode, 0)
@@ -99,7 +100,7 @@ class NextFile(unittest.TestCase):
         stream = self.start(1000, "stream", self.path, "--rate", "1000", "--plotjuggler",
                             f"127.0.0.1:{receiver.getsockname()[1]}")  # fmt: skip
         self.go_on_in_another(1000, 1100)
-        time.sleep(OPENED_S)
+        wait_until_read(stream, self.path)
         self.path.with_name("summary.json").write_text("{}")
         self.assertEqual(stream.wait(60), 0)
         receiver.settimeout(0)

@@ -14,6 +14,9 @@ import time
 import unittest
 import xml.etree.ElementTree
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from followed import wait_until_read  # noqa: E402
+
 TACTUS = pathlib.Path(sys.argv.pop(1)).resolve()
 SCENE = pathlib.Path(__file__).resolve().parents[2] / "config/scenes/whole_arm/crops9_skin_two_links.yaml"
 FIRST, SECOND = "force_N[1] > 1.2", "force_N[2] > 1.2"  # at 5.6 s and 7.2 s
@@ -35,8 +38,10 @@ class Scope(unittest.TestCase):
 
     @classmethod
     def start(cls, *options, **environment):
-        return subprocess.Popen([TACTUS, "scope", "--post", "0.5", *options], text=True,
-                                stdout=subprocess.PIPE, env=os.environ | environment)  # fmt: skip
+        program = subprocess.Popen([TACTUS, "scope", "--post", "0.5", *options], text=True,
+                                   stdout=subprocess.PIPE, env=os.environ | environment)  # fmt: skip
+        cls.addClassCleanup(program.kill)
+        return program
 
     @classmethod
     def run_live(cls):
@@ -55,6 +60,8 @@ class Scope(unittest.TestCase):
             "daemon": cls.start("--trigger", SECOND, "--json", RUNTIME_DIRECTORY=str(cls.live)),
         }
         single = cls.start("--single", "--trigger", SECOND, "-o", cls.live / "page.html", *followed)
+        for program in (single, *programs.values()):
+            wait_until_read(program, path)
         with open(path, "ab") as file:
             while at < len(content):
                 file.write(content[at:at + PIECE])

@@ -18,6 +18,9 @@ import time
 import unittest
 import xml.etree.ElementTree
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from followed import wait_until_read  # noqa: E402
+
 TACTUS = pathlib.Path(sys.argv.pop(1)).resolve()
 CONFIG = pathlib.Path(__file__).resolve().parents[2] / "config"
 SCENE = CONFIG / "scenes/whole_arm/crops9_skin_two_links.yaml"
@@ -60,6 +63,9 @@ class Stream(unittest.TestCase):
             [TACTUS, "stream", "--plotjuggler", f"127.0.0.1:{port}", "--rate", "50", path])
         follow = subprocess.Popen([TACTUS, "contacts", "--follow", "--json", path], text=True,
                                   stdout=subprocess.PIPE)  # fmt: skip
+        for program in (stream, follow):
+            cls.addClassCleanup(program.kill)
+            wait_until_read(program, path)
         received = []
         with open(path, "ab") as file:
             at = half

@@ -43,6 +43,8 @@ struct ExtremeRun {
   static constexpr double kRest_s = 2.0;
   static constexpr double kMaxRestlessness_N = 0.05;
   static constexpr double kMaxFinalSpeed = 0.02;
+  /// Restlessness over that of the force as read, up to which it is the noise that the arm follows.
+  static constexpr double kMostNoise = 5.0;
 
   bool isBounded() const { return not_finite_cycles == 0 && beyond_limits_cycles == 0; }
 };

@@ -37,6 +37,7 @@ struct JudgedRun {
   double touch_mass_kg = 0.0;  ///< that it then met with; 0 where the arm has none
   Fault fault = Fault::kNone;  ///< of the last cycle
 
+  static constexpr double kHighPeak = 1.15;  ///< over the natural scale
   static constexpr double kRest_s = 2.0;
   static constexpr double kMaxRestlessness_N = 0.05;
   bool isRestless() const { return !(restlessness_N <= kMaxRestlessness_N); }

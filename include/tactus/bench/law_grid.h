@@ -47,7 +47,8 @@ LawGridRow runLawGridPoint(const RunSetup& base, const LawGridPoint& point,
 /// Counts and extremes of a law over rows.
 struct LawGridFigures {
   int restless = 0;                             ///< limit cycles
-  double peak_N = 0.0;                          ///< largest
+  int faults = 0;                               ///< runs that end in one
+  double peak_N = 0.0;                          ///< largest true force
   double final_min_N = 0.0, final_max_N = 0.0;  ///< of the runs that come to rest
   double peak_to_scale = 0.0;                   ///< largest
   double peak_to_assumed = 0.0;  ///< largest peak over that of kAssumed at the same point

@@ -4,7 +4,7 @@
 
 #include "tactus/bench/judged_run.h"
 #include "tactus/bench/random.h"
-#include "tactus/sim/obstacle_shape.h"
+#include "tactus/sim/obstacle.h"
 
 /// Posts, vertical and endless, where links come along.
 namespace tactus {
@@ -28,18 +28,20 @@ struct PostPlace {
 bool placePost(const RunSetup& setup, const std::vector<Pose>& path, std::size_t module,
                const PostPlace& place, ObstacleConfig& post);
 
-/// Whether a post comes over an end of a cover, onto it or off it: no module feels that force.
+/// Whether a post comes over an end of a cover, onto it or off it, or touches it at the start: no
+/// module feels that force.
 class EndWatch {
  public:
   explicit EndWatch(const RunSetup& setup);
 
-  bool isOut(const JointVector& q, bool is_start);
+  /// In each cycle. t_s = 0 is the start.
+  bool isOut(const JointVector& q, double t_s);
 
  private:
   /// A post as one cover meets it, and as a longer one does.
   struct Post {
     std::size_t module;
-    ObstacleShape at_cover, at_longer;
+    Obstacle at_cover, at_longer;
     bool touched = false, touched_longer = false;
   };
 
