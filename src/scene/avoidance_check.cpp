@@ -45,6 +45,10 @@ double fastestOfPairs(const ControllerConfig& controller, const BodyDistances& d
 
 void checkAvoidance(const YamlNode& root, const ControllerConfig& controller, double period_s) {
   if (!controller.clearance || !controller.clearance->avoid) return;
+  if (controller.task.size == controller.chain.size())
+    failAt(locate(root, "clearance.avoid"), "clearance.avoid",
+           "the task takes all joints, so that nothing goes out of the way",
+           "expected fewer task.components, or no such section");
   const double gain_per_s = controller.clearance->avoid->gain_per_s;
   const BodyDistances distances(controller.chain, *controller.clearance);
   double fastest = fastestOfPairs(controller, distances, controller.q_start);

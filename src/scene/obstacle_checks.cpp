@@ -71,6 +71,8 @@ void checkFoam(const WrittenObstacle& obstacle) {
 
 /// In fewer cycles a turn it would be another swing, or none.
 void checkSwing(const WrittenObstacle& obstacle, double period_s) {
+  if (obstacle.has("x_m") && obstacle.config.swing.z_m != 0.0)
+    obstacle.fail("swing.z_m", "moves a vertical line along itself", "0, or another shape");
   const double most_hz = 0.1 / period_s;
   if (obstacle.config.swing.frequency_hz > most_hz)
     obstacle.fail("swing.frequency_hz", "has less than ten cycles a turn",

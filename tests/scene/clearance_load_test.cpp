@@ -93,6 +93,13 @@ TEST(ClearanceLoad, LooksAlongAWholeRail) {
             (Names{"base and tool", "base and cover", "link1 and tool"}));
 }
 
+TEST(ClearanceLoad, RefusesToAvoidWhereTheTaskTakesAllJoints) {
+  const test::SceneFiles files = clearFiles("  avoid: {distance_m: 0.3, gain_per_s: 2}\n");
+  EXPECT_EQ(test::loadError(files.sources()), "");
+  const std::string error = test::loadError(files.sources(), {{"task.components", "[x, y, z]"}});
+  EXPECT_NE(error.find("clearance.avoid: the task takes all joints"), std::string::npos) << error;
+}
+
 /// The lift's lever is 1, as 11.1/s of the gain with 0.3 m; what is said to do does.
 TEST(ClearanceLoad, RefusesToAvoidFasterThanACycleCanFollow) {
   const auto errorWith = [](double gain_per_s) {

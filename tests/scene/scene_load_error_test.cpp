@@ -475,6 +475,10 @@ INSTANTIATE_TEST_SUITE_P(
                        "--set simulation.obstacles[0].swing:1:27: "
                        "simulation.obstacles[0].swing.frequency_hz: ",
                        "has less than ten cycles a turn", "at most 100 Hz"},
+        BrokenOverride{"simulation.obstacles[0].swing", "{z_m: 0.01, frequency_hz: 1}",
+                       "--set simulation.obstacles[0].swing:1:8: "
+                       "simulation.obstacles[0].swing.z_m: ",
+                       "moves a vertical line along itself", "another shape"},
         BrokenOverride{"start", "[9, 0.2, 0]",
                        "--set start:1:2: start[0]: ", "9 is outside the limits", "-1 to 0.5"},
         BrokenOverride{"simulation.obstacles.x_m", "1",
