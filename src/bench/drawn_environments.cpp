@@ -109,7 +109,7 @@ void addDrawnRow(const std::string& arm, const std::vector<RunSetup>& setups, Ta
     largest_rest = std::max(largest_rest, run.peak_at_rest_N / limit_N);
     hurts += peak_N > kWorsePeak * std::max(other_N, limit_N);
     helps += other_N > kWorsePeak * std::max(peak_N, limit_N);
-    assumed_high += other_N > JudgedRun::kHighPeak * naturalScale(setups[i], other);
+    assumed_high += !(other_N <= JudgedRun::kHighPeak * naturalScale(setups[i], other));
     assumed_restless += other.isRestless();
   }
   table.rows.push_back({arm, runs, high, highest, restless, rests, largest_rest, hurts, helps,

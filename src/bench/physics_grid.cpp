@@ -41,9 +41,11 @@ Scene loadArm(const Case& one, const std::string& scenes_folder) {
   return scene;
 }
 
-/// Infinite where a touch is missing, and NaN where a number is.
+/// Infinite where one of them missed the touch, or is no number.
 double change(double value, double reference) {
-  return value == 0.0 && reference == 0.0 ? 0.0 : value / reference - 1.0;
+  if (value == 0.0 && reference == 0.0) return 0.0;
+  const double change = value / reference - 1.0;
+  return std::isfinite(change) ? change : kNoLimit;
 }
 
 }  // namespace

@@ -103,7 +103,9 @@ void CanRobot::write(const JointVector& velocity_setpoint) noexcept {
   cycles_to_heartbeat_ = (is_heartbeat_due ? cycles_a_heartbeat_ : cycles_to_heartbeat_) - 1;
   for (std::size_t bus = 0; bus < outboxes_.size(); ++bus) {
     outboxes_[bus].clear();
-    if (has_canopen_[bus] && is_heartbeat_due) outboxes_[bus].push(heartbeat_);
+    has_heartbeat_[bus] = has_canopen_[bus] && (is_heartbeat_due || is_heartbeat_owed_[bus]);
+    is_heartbeat_owed_[bus] = false;
+    if (has_heartbeat_[bus]) outboxes_[bus].push(heartbeat_);
   }
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const int joint = static_cast<int>(i);

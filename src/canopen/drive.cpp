@@ -135,6 +135,7 @@ void Drive::update(DriveGoal goal, bool restart, double velocity, double positio
     fail(Fault::kCommandNotFinite, {velocity, config_.max_velocity, "m/s or rad/s"});
   const DriveCommand command{controlWord(goal), velocityCounts(goal, velocity, position)};
   if (goal != DriveGoal::kSilent) out.push(commandFrame(config_.node_id, command));
+  if (goal == DriveGoal::kQuickStop && hasLeftOperation()) stopNode(out);
 }
 
 void Drive::startSetup() noexcept {
@@ -184,6 +185,9 @@ void Drive::onConfigured() noexcept {
   phase_ = Phase::kConfigured;
   report_.is_configured = true;
   has_old_fault_ = true;  // until its first valid state shows otherwise
+  const bool is_in_fault =
+      state_ == DriveState::kFault || state_ == DriveState::kFaultReactionActive;
+  if (!is_in_fault) report_.emergency_code = 0;  // of before, as of a master that had gone
   reset_cycles_ = 0;
 }
 
@@ -211,7 +215,7 @@ void Drive::takeFeedback() noexcept {
 void Drive::watchSilence() noexcept {
   const bool lacks_feedback = cycles_without_feedback_ > kMaxSilentCycles;
   const bool lacks_heartbeat = cycles_without_heartbeat_ > heartbeat_timeout_cycles_;
-  report_.is_silent = lacks_feedback || lacks_heartbeat;
+  report_.is_silent = lacks_feedback;  // else it is seen to hold, or to be off
   if (lacks_feedback)
     failSilent(cycles_without_feedback_, kMaxSilentCycles, kNoFeedback);
   else if (lacks_heartbeat)

@@ -56,13 +56,24 @@ void Drive::watchStop(DriveGoal goal) noexcept {
                        state_ == DriveState::kOperationEnabled;
   const bool is_unheard = cycles_without_feedback_ > kMaxSilentCycles || !report_.has_position;
   stop_watch_.update(goal, ignores, is_unheard, std::exchange(periods_heard_, 0), report_);
-  if (goal != DriveGoal::kQuickStop) cut_off_cycles_ = 0;
+  if (goal != DriveGoal::kQuickStop) cut_off_cycles_ = cycles_to_stop_node_ = 0;
 }
 
 void Drive::cutOff(FrameBatch& out) noexcept {
-  if (cut_off_cycles_ % kStopPeriod_cycles == 0)
-    out.push(nmtFrame({NmtCommand::kStop, config_.node_id}));
+  stopNode(out);
   cut_off_cycles_ = std::min(cut_off_cycles_, kCuttingOffCycles) + 1;
+}
+
+/// One heartbeat that says so may be a broken one, as long as there is feedback.
+bool Drive::hasLeftOperation() const noexcept {
+  return !is_operational_ && cycles_without_feedback_ > kMaxSilentCycles;
+}
+
+/// Hazard: out of operational a drive obeys no PDO, so no quick stop either, and may go on as it
+/// is. NMT stop is what its own watch (6007) reacts to.
+void Drive::stopNode(FrameBatch& out) noexcept {
+  if (cycles_to_stop_node_ == 0) out.push(nmtFrame({NmtCommand::kStop, config_.node_id}));
+  cycles_to_stop_node_ = (cycles_to_stop_node_ + 1) % kStopPeriod_cycles;
 }
 
 }  // namespace tactus

@@ -90,7 +90,8 @@ void CommissionTerminal::runCycle() {
   input_.stop_requested = isStopped() || std::exchange(stops_motion_, false);
   cycle_.update(input_);
   for (std::size_t i = 0; i < buses_.size(); ++i) {
-    buses_[i]->socket.send(cycle_.outbox(static_cast<int>(i)).frames());
+    const int bus = static_cast<int>(i);
+    if (!buses_[i]->socket.send(cycle_.outbox(bus).frames())) cycle_.noteHeldBack(bus);
     buses_[i]->socket.probe(cycle_.probe());
   }
   if (lines_) are_lines_written_ = lines_->write(cycle_.lines());

@@ -15,8 +15,8 @@ constexpr int kMostScaleStrokes = 10;
 constexpr double kLeastShare = 0.8;
 /// Of the travel: a shorter way to an end is none.
 constexpr double kLeastJog = 0.05;
-/// Of the wave's amplitude: with less room to an end it goes the other way.
-constexpr double kLeastWave = 0.5;
+/// Of the travel: a shorter wave tells no lag, and further on there may be something in the way.
+constexpr double kLeastWave = 0.25;
 /// So many at different places show a wrong one among them; fewer are believed in nothing.
 constexpr std::size_t kTrustedMarks = 3;
 
@@ -216,8 +216,8 @@ void JointCommission::takeEnd(bool is_upper, double counts) {
 }
 
 /// Where there is room: away from the nearer end of both, else back from where it came, but not
-/// beyond an end that was told.
-void JointCommission::beginWave(double counts) noexcept {
+/// beyond an end that was told. Too near to that it has to be jogged away first.
+void JointCommission::beginWave(double counts) {
   double away = shape_.distance > 0.0 ? -1.0 : 1.0;
   double amplitude = 0.5 * allowed().max_travel;
   if (upper_counts_ && lower_counts_) {
@@ -228,12 +228,8 @@ void JointCommission::beginWave(double counts) noexcept {
   } else if (upper_counts_ || lower_counts_) {
     const double to_end = (upper_counts_ ? *upper_counts_ : *lower_counts_) - counts;
     const double room = std::abs(to_end) / bounds().counts_per_unit;
-    const bool leads_to_end = away * to_end > 0.0;
-    if (leads_to_end && room < kLeastWave * amplitude) {
-      away = -away;
-    } else if (leads_to_end) {
-      amplitude = std::min(amplitude, room);
-    }
+    if (away * to_end > 0.0) amplitude = std::min(amplitude, room);
+    if (amplitude < kLeastWave * allowed().max_travel) return askAgain(Asked::kJog, counts);
   }
   beginShape(Step::kWave, {StrokeShape::Kind::kWave, away * amplitude});
 }

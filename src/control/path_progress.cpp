@@ -24,4 +24,9 @@ double pathProgress(const TaskGains& gains, const ToolLag& lag) noexcept {
                   pathProgress(lag.rotation_rad, gains.wait_beyond_rad));
 }
 
+bool waitsForTurn(const TaskGains& gains, const ToolLag& lag) noexcept {
+  const double of_turn = pathProgress(lag.rotation_rad, gains.wait_beyond_rad);
+  return of_turn < 1.0 && of_turn <= pathProgress(lag.position_m, gains.wait_beyond_m);
+}
+
 }  // namespace tactus

@@ -25,9 +25,10 @@ Fault BusPort::receive() noexcept {
   return socket.monitor().fault();
 }
 
-void BusPort::send(const FrameBatch& outbox, const CanFrame& probe) noexcept {
-  socket.send(outbox.frames());
+bool BusPort::send(const FrameBatch& outbox, const CanFrame& probe) noexcept {
+  const bool is_sent = socket.send(outbox.frames());
   socket.probe(probe);
+  return is_sent;
 }
 
 std::vector<std::unique_ptr<BusPort>> openBuses(const HardwareConfig& hardware, double period_s) {

@@ -72,8 +72,10 @@ void HardwareLoop::readAll(const Wake& wake) noexcept {
 }
 
 void HardwareLoop::writeAll() noexcept {
-  for (std::size_t i = 0; i < buses_.size(); ++i)
-    buses_[i]->send(cycle_.outbox(static_cast<int>(i)), cycle_.probe());
+  for (std::size_t i = 0; i < buses_.size(); ++i) {
+    const int bus = static_cast<int>(i);
+    if (!buses_[i]->send(cycle_.outbox(bus), cycle_.probe())) cycle_.noteHeldBack(bus);
+  }
   if (lines_) are_lines_written_ = lines_->write(cycle_.lines());
 }
 

@@ -49,8 +49,10 @@ void exchange(std::vector<std::unique_ptr<BusPort>>& buses, JointReader& reader,
     reader.leave();
   else
     reader.update(std::span(faults).first(buses.size()));
-  for (std::size_t i = 0; i < buses.size(); ++i)
-    buses[i]->send(reader.outbox(static_cast<int>(i)), reader.probe());
+  for (std::size_t i = 0; i < buses.size(); ++i) {
+    const int bus = static_cast<int>(i);
+    if (!buses[i]->send(reader.outbox(bus), reader.probe())) reader.noteHeldBack(bus);
+  }
 }
 
 }  // namespace

@@ -194,15 +194,15 @@ bool CanSocket::isExpected(const CanFrame& frame) const noexcept {
                      });
 }
 
-void CanSocket::send(std::span<const CanFrame> frames) noexcept {
-  if (monitor_.maySend() && !frames.empty()) handOver(frames);
+bool CanSocket::send(std::span<const CanFrame> frames) noexcept {
+  return monitor_.maySend() && !frames.empty() && handOver(frames) > 0;
 }
 
 void CanSocket::probe(const CanFrame& harmless) noexcept {
   if (monitor_.mayProbe()) handOver({&harmless, 1});
 }
 
-void CanSocket::handOver(std::span<const CanFrame> frames) noexcept {
+int CanSocket::handOver(std::span<const CanFrame> frames) noexcept {
   const std::size_t count = std::min(frames.size(), Messages::kCount);
   for (std::size_t i = 0; i < count; ++i) {
     messages_->parts[i].iov_len = putKernelFrame(frames[i], messages_->frames[i]);
@@ -214,6 +214,7 @@ void CanSocket::handOver(std::span<const CanFrame> frames) noexcept {
     for (std::size_t i = 0; i < count; ++i) messages_->parts[i].iov_len = CANFD_MTU;
   if (accepted < 0) monitor_.onSendError(errno);
   monitor_.onSent(std::max(0, accepted), static_cast<int>(frames.size()));
+  return accepted;
 }
 
 int transmitQueueLength(const std::string& interface) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/control/path_progress.h"
 #include "tactus/supervisor/control_cycle.h"
 
 /// Gains and tasks that are ordered while the arm moves.
@@ -57,10 +58,12 @@ void ControlCycle::goOnWithTool() noexcept {
   seen.path_time_s = nextPathTime_s();
   seen.progress = toolProgress();
   const TaskConfig& task = controller_.config().task;
-  for (int i = 0; i < output_.error.size(); ++i) {
-    double& lag = task.components[i] < 3 ? seen.lag_m : seen.lag_rad;
-    lag = std::hypot(lag, output_.error[i]);
-  }
+  const ToolLag lag = toolLag(task, paddedTask(output_.error));
+  seen.lag_m = lag.position_m;
+  seen.lag_rad = lag.rotation_rad;
+  for (int i = 0; waitsForTurn(gains_.task, lag) && i < task.size; ++i)
+    if (task.components[i] >= 3)
+      seen.turn_waited_for_rad[task.components[i] - 3] = output_.error[i];
   seen.X_BaseTool = toolPose();
   seen.run = runs_;
   seen.is_running = isRunning();

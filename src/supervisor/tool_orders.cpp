@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tactus/math/rotation.h"
+
 namespace tactus {
 namespace {
 
@@ -20,10 +22,12 @@ Pose poseOf(const ToolOrder& order) noexcept {
 }
 
 /// From where the tool is, not on to where its reference waits.
-bool leadsBack(const Vector3& target, const ToolWatch& seen, const ToolMotion& motion) noexcept {
-  const Vector3 tool = seen.X_BaseTool.p_AB;
-  const Vector3 ahead = motion.evaluate(seen.path_time_s).p_BaseTool - tool;
-  return (target - tool).dot(ahead) <= 0.0;
+bool leadsBack(const Pose& target, const ToolWatch& seen, const ToolMotion& motion) noexcept {
+  const Pose& tool = seen.X_BaseTool;
+  if (!seen.turn_waited_for_rad.isZero(0.0))
+    return rotationVector(target.R_AB * tool.R_AB.transpose()).dot(seen.turn_waited_for_rad) <= 0.0;
+  const Vector3 ahead = motion.evaluate(seen.path_time_s).p_BaseTool - tool.p_AB;
+  return (target.p_AB - tool.p_AB).dot(ahead) <= 0.0;
 }
 
 }  // namespace
@@ -89,7 +93,7 @@ void ToolOrders::begin(const ToolOrder& order, const ToolWatch& seen, ToolMotion
   if (!streams_on) blocked_s_ = 0.0;
   const std::uint64_t number = motion.plan().number + 1;
   const bool is_held_off =
-      seen.progress < kFreeProgress && (!streams_on || leadsBack(poseOf(order).p_AB, seen, motion));
+      seen.progress < kFreeProgress && (!streams_on || leadsBack(poseOf(order), seen, motion));
   if (is_held_off) motion = ToolMotion(seen.X_BaseTool, number);
   if (order.kind == ToolOrder::Kind::kHold) {
     if (!is_held_off) motion = motion.stop(seen.path_time_s, order.limits);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -33,13 +34,15 @@ std::string lineOf(const Case& one, const Result& result) {
                      faultName(result.fault), violated);
 }
 
+constexpr const char* kStamp = "# by the program ";
+
 /// Of this program, by its bytes (FNV-1a): what another one found says nothing of it.
 std::string stampOfProgram() {
   std::ifstream program("/proc/self/exe", std::ios::binary);
   std::uint64_t hash = 0xcbf29ce484222325;
   for (std::istreambuf_iterator<char> byte(program), end; byte != end; ++byte)
     hash = (hash ^ static_cast<unsigned char>(*byte)) * 0x100000001b3;
-  return fmt::format("# by the program {:016x}", hash);
+  return fmt::format("{}{:016x}", kStamp, hash);
 }
 
 struct Done {
@@ -47,12 +50,16 @@ struct Done {
   int bad = 0;
 };
 
-/// Of whole lines: half of one, which a run that was killed has left, is cut off.
-Done takeUp(const std::string& path, const std::string& stamp) {
+/// Of whole lines: half of one, which a run that was killed has left, is cut off. nullopt: the file
+/// is another one's.
+std::optional<Done> takeUp(const std::string& path, const std::string& stamp) {
   std::ifstream file(path);
   Done done;
   std::string line;
-  if (!std::getline(file, line) || line != stamp) {
+  const bool is_there = static_cast<bool>(std::getline(file, line));
+  if (is_there && !line.starts_with(kStamp)) return std::nullopt;
+  if (line != stamp) {
+    if (is_there) fmt::print("{}: of another program, begun anew\n", path);
     std::ofstream(path) << stamp << "\n";
     return done;
   }
@@ -101,15 +108,19 @@ int runExhaustive(const ExhaustiveOptions& options) {
   std::vector<Case> cases = allCases(stage);
   if (options.only) return runOneCase(stage, cases, *options.only);
   if (options.first) cases.resize(std::min(cases.size(), static_cast<std::size_t>(*options.first)));
-  const Done done = takeUp(options.results, stampOfProgram());
-  std::erase_if(cases, [&](const Case& one) { return done.names.contains(one.name); });
+  const std::optional<Done> done = takeUp(options.results, stampOfProgram());
+  if (!done) {
+    fmt::print(stderr, "{}: holds no results of a campaign\n", options.results);
+    return 2;
+  }
+  std::erase_if(cases, [&](const Case& one) { return done->names.contains(one.name); });
   std::FILE* file = std::fopen(options.results.c_str(), "a");
   if (file == nullptr) {
     fmt::print(stderr, "{}: cannot be written\n", options.results);
     return 1;
   }
   std::mutex mutex;
-  int bad = done.bad;
+  int bad = done->bad;
   share(options.jobs, static_cast<int>(cases.size()), [&](int i) {
     const Result result = simulate(stage, cases[i].plan, false);
     const std::scoped_lock lock(mutex);
@@ -119,7 +130,7 @@ int runExhaustive(const ExhaustiveOptions& options) {
   });
   const bool is_written = std::ferror(file) == 0 && std::fclose(file) == 0;
   fmt::print("{} cases; {} were there; {} of both with violations\n", cases.size(),
-             done.names.size(), bad);
+             done->names.size(), bad);
   return bad == 0 && is_written ? 0 : 1;
 }
 

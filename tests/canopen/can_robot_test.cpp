@@ -232,6 +232,47 @@ TEST(CanRobot, CountsThePowerOfDrivesInReachAlone) {
   EXPECT_TRUE(rig.robot.drives().are_disabled);
 }
 
+/// One that still tells how it stops is in reach, or the brake would close on it.
+TEST(CanRobot, IsHeldByADriveThatLacksItsHeartbeatAlone) {
+  RobotRig rig;
+  rig.enable();
+  rig.slaves[0].sends_heartbeat = false;
+  rig.slaves[0].quick_stop_cycles = 100;
+  for (int i = 0; i < 200 && rig.robot.drives().fault == Fault::kNone; ++i)
+    rig.cycles(1, DriveGoal::kEnabled);
+  ASSERT_EQ(rig.robot.drives().fault, Fault::kDriveSilent);
+  rig.cycles(20, DriveGoal::kQuickStop);
+  ASSERT_EQ(rig.robot.drive(0).state, DriveState::kQuickStopActive);
+  EXPECT_TRUE(rig.robot.isHolding(0));
+  EXPECT_TRUE(rig.robot.drives().is_any_holding);
+  EXPECT_FALSE(rig.robot.drives().are_disabled);
+  rig.cycles(150, DriveGoal::kQuickStop);
+  EXPECT_FALSE(rig.robot.drives().is_any_holding);
+  EXPECT_TRUE(rig.robot.drives().are_disabled);
+}
+
+/// A bus may send in every other cycle, as where an echo takes more than one.
+TEST(CanRobot, SaysThatItRunsHoweverOftenABusIsHeldBack) {
+  for (const int held_back : {1, 2, 3}) {
+    RobotRig rig;
+    const CanFrame heartbeat =
+        heartbeatFrame(CanopenConfig{}.master_node_id, NmtState::kOperational);
+    int silent = 0, most_silent = 0;
+    for (int i = 0; i < 2000; ++i) {
+      if (i % 500 == 499) rig.robot.coast(1);
+      rig.robot.command(DriveGoal::kSilent, false, JointVector::Zero(2));
+      rig.robot.write(JointVector::Zero(2));
+      const std::span<const CanFrame> frames = rig.robot.outbox(0).frames();
+      const bool is_sent = i % (1 + held_back) == 0;
+      if (!is_sent) rig.robot.noteHeldBack(0);
+      const bool has_heartbeat = std::ranges::find(frames, heartbeat) != frames.end();
+      silent = is_sent && has_heartbeat ? 0 : silent + 1;
+      most_silent = std::max(most_silent, silent);
+    }
+    EXPECT_LE(most_silent, 20 + held_back) << held_back;
+  }
+}
+
 TEST(CanRobot, IsHeldByADriveThatSlowsDown) {
   RobotRig rig;
   rig.enable();

@@ -77,6 +77,23 @@ TEST(DriveFrames, ShortGapsOfFeedbackAreBridged) {
   EXPECT_EQ(rig.report().fault, Fault::kNone);
 }
 
+/// As of the master that has gone: nothing of it is of a later fault.
+TEST(DriveFrames, ForgetsTheEmergencyOfBeforeItWasSetUp) {
+  DriveRig rig;
+  rig.cycle(DriveGoal::kConfigure, 0.0, true);
+  rig.slave.say(0x080, {0x30, 0x81, 0x11, 0, 0, 0, 0, 0});
+  rig.cycle(DriveGoal::kConfigure);
+  EXPECT_EQ(rig.report().emergency_code, 0x8130);
+  rig.until([&] { return rig.report().is_configured; }, DriveGoal::kConfigure);
+  EXPECT_EQ(rig.report().emergency_code, 0);
+  rig.position = rig.report().position;
+  rig.cycles(20, DriveGoal::kEnabled);
+  rig.slave.power = test::ScriptedDrive::kFault;
+  rig.cycles(3, DriveGoal::kEnabled);
+  EXPECT_EQ(rig.report().fault, Fault::kDriveFault);
+  EXPECT_EQ(rig.report().detail.value, 0.0);
+}
+
 TEST(DriveFrames, NamesTheEmergencyUntilItHasGone) {
   DriveRig rig;
   rig.enable();

@@ -70,11 +70,39 @@ TEST(DriveTimes, SilenceIsToldInTheFirstCycleBeyondItsLimit) {
     EXPECT_FALSE(running.report().is_silent);
     running.until([&] { return running.report().fault != Fault::kNone; }, DriveGoal::kEnabled);
     expectTold(running, lacks_feedback ? Drive::kMaxSilentCycles : heartbeat_cycles);
-    EXPECT_TRUE(running.report().is_silent);
+    EXPECT_EQ(running.report().is_silent, lacks_feedback) << "else its state is no old one";
     running.slave.sends_feedback = running.slave.sends_heartbeat = true;
     running.cycles(30, DriveGoal::kQuickStop);
     EXPECT_FALSE(running.report().is_silent) << "it is heard again, whatever its fault";
   }
+}
+
+/// As by a tool that scans the bus: a drive that goes on then, whatever PDOs say.
+TEST(DriveTimes, ADriveThatLeavesOperationalGetsNmtStopAtOnce) {
+  test::DriveRig rig;
+  rig.enable();
+  rig.cycles(20, DriveGoal::kEnabled, 0.5);
+  rig.slave.nmt = 127;
+  const CanFrame stop = test::rawFrame(0, {2, test::kNode});
+  int cycles = 0, stops = 0;
+  for (; cycles < 300 && rig.slave.power == test::ScriptedDrive::kEnabled; ++cycles) {
+    const DriveGoal goal =
+        rig.report().fault == Fault::kNone ? DriveGoal::kEnabled : DriveGoal::kQuickStop;
+    const std::vector<CanFrame> sent = rig.cycle(goal, 0.5);
+    stops += std::ranges::find(sent, stop) != sent.end();
+  }
+  EXPECT_GT(stops, 0);
+  EXPECT_NE(rig.report().fault, Fault::kNone);
+  EXPECT_LT(cycles, 40) << "its next heartbeat, and what is missing of its feedback";
+}
+
+/// Its feedback says otherwise.
+TEST(DriveTimes, OneHeartbeatThatSaysSoIsNotBelieved) {
+  test::DriveRig rig;
+  rig.enable();
+  rig.slave.say(0x700, {127});
+  for (int i = 0; i < 50; ++i)
+    for (const CanFrame& frame : rig.cycle(DriveGoal::kQuickStop)) EXPECT_NE(frame.id, 0u);
 }
 
 bool isStarted(const std::vector<CanFrame>& frames) {

@@ -380,6 +380,44 @@ TEST(CommissionTrouble, WaveGoesAwayFromTheLastMotionWhereOneEndWasTold) {
   }
 }
 
+/// Whoever stops a jog may have seen something in the way.
+TEST(CommissionTrouble, NoWaveWhereAJogWasStoppedNearTheEnd) {
+  TroubledRig rig;
+  int jogs = 0;
+  bool was_refused = false, was_stopped = false;
+  double begin = 0.0, farthest = 0.0;
+  const auto q = [&] { return rig.position(test::kTroubledJoint); };
+  rig.on_question = [&](const Question& question) -> std::optional<Answer> {
+    if (question.asked == Asked::kEndPlace) return Answer{Answer::Kind::kUnknown};
+    if (question.asked != Asked::kJog) return std::nullopt;
+    was_refused = was_refused || question.is_refused;
+    switch (++jogs) {
+      case 1:
+        return Answer{Answer::Kind::kUpper};
+      case 2:
+        begin = q();
+        return Answer{Answer::Kind::kMinus};
+      case 3:
+        farthest = q();
+        return Answer{Answer::Kind::kDone};
+      default:
+        rig.input.stop_requested = true;  // enough
+        return Answer{Answer::Kind::kDone};
+    }
+  };
+  rig.on_cycle = [&] {
+    const bool is_enough = jogs == 2 && !was_stopped && q() < begin - 0.01;
+    was_stopped = was_stopped || is_enough;
+    if (jogs < 4) rig.input.stop_requested = is_enough;
+    if (jogs >= 3) {
+      EXPECT_GT(q(), farthest - 1e-3);
+    }
+  };
+  EXPECT_EQ(rig.trouble().kind, JointTroubleKind::kStopped);
+  EXPECT_TRUE(was_stopped);
+  EXPECT_TRUE(was_refused);
+}
+
 TEST(CommissionTrouble, FewerCountsThanTheFileAllowsEndTheJoint) {
   TroubledRig rig(1, 2e4);  // a fifth of what the file allows
   int places = 0;

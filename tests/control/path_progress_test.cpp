@@ -64,7 +64,11 @@ TEST(PathProgress, IsThatOfWhatLagsMore) {
   EXPECT_EQ(pathProgress(gains, {0.015, 0.0}), 0.5);
   EXPECT_NEAR(pathProgress(gains, {0.0125, 0.15}), 0.5, 1e-15);
   EXPECT_EQ(pathProgress(gains, {0.0, 0.2}), 0.0);
+  EXPECT_TRUE(waitsForTurn(gains, {0.0125, 0.15}));
+  EXPECT_FALSE(waitsForTurn(gains, {0.019, 0.15}));
+  EXPECT_FALSE(waitsForTurn(gains, {0.019, 0.1}));
   gains.wait_beyond_m = kNoLimit;
+  EXPECT_TRUE(waitsForTurn(gains, {1e9, 0.15}));
   EXPECT_NEAR(pathProgress(gains, {1e9, 0.15}), 0.5, 1e-15);
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "support/orders_rig.h"
+#include "tactus/math/rotation.h"
 
 /// Orders at the very limits of their times and distances: with a period whose sums have no
 /// rounding, and a tool that is wherever the test says.
@@ -166,6 +167,30 @@ TEST(ToolOrdersLimits, AStreamLeadsBackFromTheToolAndNotFromTheBase) {
       EXPECT_EQ(rig.place().x() > place.x() + 1e-6, !leads_back) << place;
       EXPECT_EQ(rig.state(), leads_back ? ToolState::kMoving : ToolState::kBlocked);
     }
+  }
+}
+
+/// What it leads elsewhere in position is no way back for a turn that is held off.
+TEST(ToolOrdersLimits, AStreamLeadsBackATurnThatIsHeldOff) {
+  for (const double turn_rad : {-0.3, 0.3}) {
+    LimitsRig rig;
+    const auto turned = [&](double angle_rad, double x) {
+      ToolOrder order = orderTo({x, 0.0, 0.0}, 1, kStreaming);
+      const Matrix3 R = rotationMatrix(Vector3(0.0, 0.0, angle_rad));
+      std::copy_n(R.data(), 9, order.R_BaseTool);
+      return order;
+    };
+    rig.tell(turned(0.4, 0.0));
+    rig.pass(100);
+    rig.seen.progress = kHeldOff;
+    rig.seen.turn_waited_for_rad = Vector3(0.0, 0.0, 0.1);
+    rig.pass(1);
+    const Matrix3 ahead = rig.motion.evaluate(rig.seen.path_time_s).R_BaseTool;
+    ASSERT_GT(rotationVector(ahead).z(), 1e-4);
+    rig.tell(turned(turn_rad, -0.1));
+    const Matrix3 begins = rig.motion.evaluate(rig.seen.path_time_s).R_BaseTool;
+    EXPECT_EQ(rotationVector(begins).norm() < 1e-9, turn_rad < 0.0);
+    EXPECT_EQ(rig.state(), turn_rad < 0.0 ? ToolState::kMoving : ToolState::kBlocked);
   }
 }
 

@@ -8,7 +8,11 @@ PATIENCE_S = 60.0
 
 def has_read(program, path):
     """Whether it has this file open, and is at its end."""
-    for link in pathlib.Path(f"/proc/{program.pid}/fd").iterdir():
+    try:
+        links = list(pathlib.Path(f"/proc/{program.pid}/fd").iterdir())
+    except OSError:  # it has ended
+        return False
+    for link in links:
         try:
             if not os.path.samefile(link, path):
                 continue

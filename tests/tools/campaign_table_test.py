@@ -43,6 +43,26 @@ class CampaignTableTest(unittest.TestCase):
             lines = results.read_text().splitlines(keepends=True)
             cls.cases = outcome_table.read(lines)
 
+    def test_goes_on_with_its_own_results_alone(self):
+        def run(count):
+            done = subprocess.run([PROGRAM, "--all", str(results), "--first", str(count)], check=False,
+                                  stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)  # fmt: skip
+            return done.returncode, done.stdout
+
+        with tempfile.TemporaryDirectory() as folder:
+            results = pathlib.Path(folder) / "results"
+            self.assertEqual(run(2), (0, "2 cases; 0 were there; 0 of both with violations\n"))
+            stamp, first, *rest = results.read_text().splitlines(keepends=True)
+            results.write_text("".join([stamp, first[:-2] + "bad: 0\n", *rest, "half a li"]))
+            self.assertEqual(run(3), (1, "1 cases; 2 were there; 1 of both with violations\n"))
+            results.write_text(results.read_text().replace(stamp, stamp[:-2] + "x\n"))
+            code, text = run(1)
+            self.assertEqual(code, 0)
+            self.assertIn("begun anew\n1 cases; 0 were there", text)
+            results.write_text("precious\n")
+            self.assertEqual(run(1)[0], 2)
+            self.assertEqual(results.read_text(), "precious\n")
+
     def test_a_sample_comes_to_what_the_page_says(self):
         self.assertEqual(len(self.cases), int(CASES))
         self.assertEqual(list(differences(self.cases, PAGE)), [])

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -54,6 +55,10 @@ class CanRobot final : public Robot {
   /// nothing on a bus with a drive that only silence stops.
   const FrameBatch& outbox(int bus) const noexcept { return outboxes_[bus]; }
 
+  /// Nothing of this bus's outbox was sent, so a heartbeat in it is due again: else one that is due
+  /// in each other cycle of a bus that sends in each other one would never be.
+  void noteHeldBack(int bus) noexcept { is_heartbeat_owed_[bus] = has_heartbeat_[bus]; }
+
   /// A frame that tells a dead bus's return and moves nothing; on such a bus only, each
   /// probeCycles().
   const CanFrame& probe() const noexcept { return heartbeat_; }
@@ -76,8 +81,10 @@ class CanRobot final : public Robot {
 
   std::vector<AnyDrive> drives_;
   std::vector<TactileReceiver> tactile_modules_;
-  std::vector<FrameBatch> outboxes_;  ///< one a bus
-  std::vector<bool> has_canopen_;     ///< one a bus: drives of CANopen are there
+  std::vector<FrameBatch> outboxes_;                 ///< one a bus
+  std::vector<bool> has_canopen_;                    ///< one a bus: drives of CANopen are there
+  std::array<bool, kMaxBuses> has_heartbeat_{};      ///< is in the outbox
+  std::array<bool, kMaxBuses> is_heartbeat_owed_{};  ///< was in the last one, in vain
   CanFrame heartbeat_;
   int cycles_a_heartbeat_;
   int cycles_to_heartbeat_ = 0;

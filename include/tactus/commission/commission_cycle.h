@@ -35,6 +35,9 @@ class CommissionCycle {
   void receive(int bus, std::span<const CanFrame> frames) noexcept;
   void update(const CommissionInput& input);  ///< once a cycle, after all frames
   const FrameBatch& outbox(int bus) const noexcept { return outboxes_[bus]; }
+  void noteHeldBack(int bus) noexcept {
+    if (stroke_) stroke_->noteHeldBack(bus);
+  }
   const CanFrame& probe() const noexcept { return heartbeat_; }
   GpioOutputs lines() const noexcept;
 

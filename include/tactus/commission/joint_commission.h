@@ -98,7 +98,7 @@ class JointCommission {
   void takeJog(const Answer& answer, double counts);
   void jog(double way, double counts);
   void takeEnd(bool is_upper, double counts);
-  void beginWave(double counts) noexcept;
+  void beginWave(double counts);
   void begin(Step step, double distance) noexcept;
   void beginShape(Step step, const StrokeShape& shape) noexcept;
   void finish();

@@ -80,6 +80,7 @@ class Stroke {
   void update(const CommissionInput& input) noexcept;  ///< once a cycle, after all frames
 
   const FrameBatch& outbox(int bus) const noexcept { return robot_.outbox(bus); }
+  void noteHeldBack(int bus) noexcept { robot_.noteHeldBack(bus); }
   bool isBrakeOpen() const noexcept { return brake_.is_open; }
   /// Off: what is still in the outbox releases the drive, and nothing follows.
   bool isFinished() const noexcept { return mode_.mode == Mode::kOff; }

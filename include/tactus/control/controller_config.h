@@ -56,7 +56,8 @@ struct TaskCommandsConfig {
 /// as the null space likes; their rows are those of phi_dot, see rotation.h:
 ///   J = Jl^-T(phi) J_omega,   w_dot_d = Jl^-1(phi) omega_d
 /// With all three phi is small, and both matrices are taken as I. Where a tool has turned by half a
-/// turn about the rest phi changes its sign, and its rows do, too: what they ask for does not.
+/// turn about the rest phi changes its sign, and its rows do, too: what they ask for does not, as
+/// long as nothing holds the tool off. Held off by 0.2 rad just there it jumps by some 0.1 rad/s.
 struct TaskConfig {
   std::array<int, kMaxTaskSize> components{};  ///< 0..5: x, y, z, rx, ry, rz of the tool
   int size = 0;

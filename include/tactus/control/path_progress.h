@@ -18,5 +18,7 @@ double pathProgress(double lag, double wait_beyond) noexcept;
 
 /// The lesser of those of position and orientation.
 double pathProgress(const TaskGains& gains, const ToolLag& lag) noexcept;
+/// Whether it is the orientation for which the reference waits, or waits longer.
+bool waitsForTurn(const TaskGains& gains, const ToolLag& lag) noexcept;
 
 }  // namespace tactus

@@ -15,8 +15,8 @@ struct BusPort {
 
   /// What has come since, into `frames`; returns the bus's fault.
   Fault receive() noexcept;
-  /// probe: what may go onto a bus that is dead.
-  void send(const FrameBatch& outbox, const CanFrame& probe) noexcept;
+  /// probe: what may go onto a bus that is dead. Returns as CanSocket::send().
+  bool send(const FrameBatch& outbox, const CanFrame& probe) noexcept;
 
   InterfaceLock lock;
   CanSocket socket;

@@ -38,8 +38,9 @@ class CanSocket {
   /// these go to the monitor. One system call, never waits.
   void receive(FrameBatch& frames) noexcept;
   /// Once a cycle: hands frames to the kernel if the monitor lets it. What is not accepted is
-  /// dropped: the next cycle has newer ones. One system call, never waits.
-  void send(std::span<const CanFrame> frames) noexcept;
+  /// dropped: the next cycle has newer ones. One system call, never waits. Returns whether the
+  /// first one was accepted.
+  bool send(std::span<const CanFrame> frames) noexcept;
   /// Once a cycle: hands over a frame that does no harm, where the monitor wants a probe; send()
   /// then does nothing.
   void probe(const CanFrame& harmless) noexcept;
@@ -51,7 +52,7 @@ class CanSocket {
  private:
   struct Messages;
 
-  void handOver(std::span<const CanFrame> frames) noexcept;
+  int handOver(std::span<const CanFrame> frames) noexcept;
   /// True: a data frame for the caller, put into `frame`.
   bool take(std::size_t message, CanFrame& frame) noexcept;
   bool isExpected(const CanFrame& frame) const noexcept;

@@ -55,6 +55,7 @@ class ControlCycle {
   /// know. May be left out. After fill(), as the next cycle's gains are no longer this one's.
   void prepare() noexcept;
   const FrameBatch& outbox(int bus) const noexcept { return robot_.outbox(bus); }
+  void noteHeldBack(int bus) noexcept { robot_.noteHeldBack(bus); }
   const CanFrame& probe() const noexcept { return robot_.probe(); }
   GpioOutputs lines() const noexcept;
 

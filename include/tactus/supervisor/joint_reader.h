@@ -17,6 +17,7 @@ class JointReader {
   void receive(int bus, std::span<const CanFrame> frames) noexcept { robot_.receive(bus, frames); }
   void update(std::span<const Fault> bus_faults) noexcept;  ///< one a bus
   const FrameBatch& outbox(int bus) const noexcept { return robot_.outbox(bus); }
+  void noteHeldBack(int bus) noexcept { robot_.noteHeldBack(bus); }
   const CanFrame& probe() const noexcept { return robot_.probe(); }
 
   void leave() noexcept { robot_.release(); }  ///< in place of update(): lets the drives go

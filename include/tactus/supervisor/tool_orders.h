@@ -36,6 +36,9 @@ struct ToolWatch {
   double path_time_s = 0.0;  ///< the reference's, in the next cycle
   double progress = 1.0;     ///< of its clock; less than 1 where the tool is held off
   double lag_m = 0.0, lag_rad = 0.0;
+  /// To its reference, of the task's components; zero unless it is this that the reference waits
+  /// for.
+  Vector3 turn_waited_for_rad = Vector3::Zero();
   Pose X_BaseTool;  ///< of the desired configuration
   bool is_running = false;
   std::uint32_t run = 0;  ///< how often it has begun to
