@@ -476,7 +476,7 @@ INSTANTIATE_TEST_SUITE_P(
                        "simulation.obstacles[0].swing.frequency_hz: ",
                        "has less than ten cycles a turn", "at most 100 Hz"},
         BrokenOverride{"simulation.obstacles[0].swing", "{z_m: 0.01, frequency_hz: 1}",
-                       "--set simulation.obstacles[0].swing:1:8: "
+                       "--set simulation.obstacles[0].swing:1:7: "
                        "simulation.obstacles[0].swing.z_m: ",
                        "moves a vertical line along itself", "another shape"},
         BrokenOverride{"start", "[9, 0.2, 0]",

@@ -93,6 +93,15 @@ class Paths(unittest.TestCase):
                     self.assertRegex(self.said(folder, "campaign", "--all", path), rf"^--all {meant} --jobs \d+$")
                     self.assertEqual(self.said(folder, "package", "--built", path), meant)
 
+    def test_a_folder_with_other_flags_is_not_packaged(self):
+        self.program("debian/rules", "#!/bin/sh\necho export CXXFLAGS=-g1\n")
+        cache = self.root / "elsewhere" / "CMakeCache.txt"
+        folder = str(cache.parent.resolve())
+        for flags, said in (("-g1", folder),
+                            ("-g1 -O0", f"{folder}: has other flags than `debian/rules flags`, begin it anew")):
+            cache.write_text(f"CMAKE_CXX_FLAGS:STRING={flags}\n", encoding="utf-8")
+            self.assertEqual(self.said(".", "package", "--built", folder), said)
+
     def test_are_the_programs_own_where_none_is_given(self):
         self.assertEqual(self.said("elsewhere", "soak"), "")
         self.assertEqual(self.said("elsewhere", "soak", "-o"), "-o")
