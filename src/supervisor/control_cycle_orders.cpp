@@ -61,9 +61,11 @@ void ControlCycle::goOnWithTool() noexcept {
   const ToolLag lag = toolLag(task, paddedTask(output_.error));
   seen.lag_m = lag.position_m;
   seen.lag_rad = lag.rotation_rad;
-  for (int i = 0; waitsForTurn(gains_.task, lag) && i < task.size; ++i)
-    if (task.components[i] >= 3)
-      seen.turn_waited_for_rad[task.components[i] - 3] = output_.error[i];
+  if (waitsForTurn(gains_.task, lag)) {
+    for (int i = 0; i < task.size; ++i)
+      if (task.components[i] >= 3)
+        seen.turn_waited_for_rad[task.components[i] - 3] = output_.error[i];
+  }
   seen.X_BaseTool = toolPose();
   seen.run = runs_;
   seen.is_running = isRunning();
