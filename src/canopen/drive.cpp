@@ -27,6 +27,10 @@ bool isWithoutPower(DriveState state) noexcept {
          state == DriveState::kReadyToSwitchOn || state == DriveState::kFault;
 }
 
+bool isInFault(const std::optional<DriveState>& state) noexcept {
+  return state == DriveState::kFault || state == DriveState::kFaultReactionActive;
+}
+
 PowerGoal powerGoal(DriveGoal goal, bool has_fault) noexcept {
   if (has_fault || goal == DriveGoal::kQuickStop) return PowerGoal::kQuickStop;
   return goal == DriveGoal::kEnabled ? PowerGoal::kEnabled : PowerGoal::kDisabled;
@@ -185,9 +189,7 @@ void Drive::onConfigured() noexcept {
   phase_ = Phase::kConfigured;
   report_.is_configured = true;
   has_old_fault_ = true;  // until its first valid state shows otherwise
-  const bool is_in_fault =
-      state_ == DriveState::kFault || state_ == DriveState::kFaultReactionActive;
-  if (!is_in_fault) report_.emergency_code = 0;  // of before, as of a master that had gone
+  if (!isInFault(state_)) report_.emergency_code = 0;  // of before, as of a master that had gone
   reset_cycles_ = 0;
 }
 
@@ -223,8 +225,7 @@ void Drive::watchSilence() noexcept {
 }
 
 void Drive::watchFault() noexcept {
-  const bool is_in_fault =
-      state_ == DriveState::kFault || state_ == DriveState::kFaultReactionActive;
+  const bool is_in_fault = isInFault(state_);
   if (state_ && !is_in_fault) has_old_fault_ = false;
   if (!is_in_fault) return;
   const bool may_reset = goal_ == DriveGoal::kEnabled && has_old_fault_;

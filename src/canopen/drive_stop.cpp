@@ -56,7 +56,7 @@ void Drive::watchStop(DriveGoal goal) noexcept {
                        state_ == DriveState::kOperationEnabled;
   const bool is_unheard = cycles_without_feedback_ > kMaxSilentCycles || !report_.has_position;
   stop_watch_.update(goal, ignores, is_unheard, std::exchange(periods_heard_, 0), report_);
-  if (goal != DriveGoal::kQuickStop) cut_off_cycles_ = cycles_to_stop_node_ = 0;
+  if (goal != DriveGoal::kQuickStop) cut_off_cycles_ = stop_node_cycles_ = 0;
 }
 
 void Drive::cutOff(FrameBatch& out) noexcept {
@@ -72,8 +72,8 @@ bool Drive::hasLeftOperation() const noexcept {
 /// Hazard: out of operational a drive obeys no PDO, so no quick stop either, and may go on as it
 /// is. NMT stop is what its own watch (6007) reacts to.
 void Drive::stopNode(FrameBatch& out) noexcept {
-  if (cycles_to_stop_node_ == 0) out.push(nmtFrame({NmtCommand::kStop, config_.node_id}));
-  cycles_to_stop_node_ = (cycles_to_stop_node_ + 1) % kStopPeriod_cycles;
+  if (stop_node_cycles_ == 0) out.push(nmtFrame({NmtCommand::kStop, config_.node_id}));
+  stop_node_cycles_ = (stop_node_cycles_ + 1) % kStopPeriod_cycles;
 }
 
 }  // namespace tactus

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tactus/bench/base_scene.h"
 #include "tactus/bench/parallel.h"
-#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {
@@ -12,7 +12,7 @@ RunSetup planarSkin() {
   const Scene scene =
       loadScene(std::string(TACTUS_SOURCE_DIR) + "/config/scenes/whole_arm/planar3_clutter.yaml",
                 {}, SceneUse::kSimulation);
-  return {scene.controller, scene.plant, scene.period_s, scene.duration_s};
+  return setupOf(scene);
 }
 
 std::vector<ClutterRun> runAll(const std::vector<RunSetup>& setups, ClutterLaw law) {

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "support/crops9.h"
+#include "tactus/bench/base_scene.h"
 #include "tactus/bench/post_placing.h"
-#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {
@@ -19,7 +19,7 @@ RunSetup iiwa() {
   const Scene scene =
       loadScene(std::string(TACTUS_SOURCE_DIR) + "/config/scenes/robots/kuka_iiwa7_contact.yaml",
                 {}, SceneUse::kSimulation);
-  return {scene.controller, scene.plant, scene.period_s, scene.duration_s};
+  return setupOf(scene);
 }
 
 TEST(DrawnEnvironments, AreTheSameEachTimeAndWithinLimits) {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tactus/bench/base_scene.h"
 #include "tactus/bench/parallel.h"
-#include "tactus/scene/scene_loader.h"
 
 namespace tactus {
 namespace {
@@ -12,7 +12,7 @@ RunSetup skin() {
   const Scene scene = loadScene(
       std::string(TACTUS_SOURCE_DIR) + "/config/scenes/whole_arm/crops9_skin_two_links.yaml", {},
       SceneUse::kSimulation);
-  return {scene.controller, scene.plant, scene.period_s, scene.duration_s};
+  return setupOf(scene);
 }
 
 TEST(SeveralGrid, DrawsTheSameEachTimeAndOfAllKinds) {
@@ -67,7 +67,7 @@ RunSetup skinBetweenBodies() {
   const Scene scene =
       loadScene(std::string(TACTUS_SOURCE_DIR) + "/config/scenes/whole_arm/crops9_skin_rail.yaml",
                 {}, SceneUse::kSimulation);
-  return {scene.controller, scene.plant, scene.period_s, scene.duration_s};
+  return setupOf(scene);
 }
 
 /// Drives would hear a command that goes to and fro each cycle.

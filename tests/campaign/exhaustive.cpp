@@ -16,6 +16,7 @@
 #include "campaign/cases.h"
 #include "campaign/run.h"
 #include "campaign/share.h"
+#include "tactus/scene/source_hash.h"
 
 namespace tactus::campaign {
 namespace {
@@ -36,13 +37,11 @@ std::string lineOf(const Case& one, const Result& result) {
 
 constexpr const char* kStamp = "# by the program ";
 
-/// Of this program, by its bytes (FNV-1a): what another one found says nothing of it.
+/// Of this program, by its bytes: what another one found says nothing of it.
 std::string stampOfProgram() {
   std::ifstream program("/proc/self/exe", std::ios::binary);
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (std::istreambuf_iterator<char> byte(program), end; byte != end; ++byte)
-    hash = (hash ^ static_cast<unsigned char>(*byte)) * 0x100000001b3;
-  return fmt::format("{}{:016x}", kStamp, hash);
+  const std::string bytes{std::istreambuf_iterator<char>(program), {}};
+  return fmt::format("{}{:016x}", kStamp, sourceHash(bytes));
 }
 
 struct Done {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 
 #include "campaign/play.h"
+#include "tactus/scene/source_hash.h"
 
 namespace tactus::campaign {
 namespace {
@@ -77,17 +77,10 @@ Phase phaseOf(const Span& span, int phase) {
   return {std::max(0, span.begin_ms - 1 + after_ms), false};
 }
 
-/// FNV-1a: the same on every machine.
-std::uint64_t hashOf(const std::string& text) {
-  std::uint64_t hash = 0xCBF29CE484222325U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
-  return hash;
-}
-
-/// By its name alone.
+/// By its name alone, the same on every machine.
 Injection troubleOf(const Stage& stage, const InjectionKind& kind, const std::string& name,
                     int from_ms) {
-  Random random(hashOf(name));
+  Random random(sourceHash(name));
   Injection x = drawInjection(random, stage.scene, kind, from_ms);
   x.until_ms = from_ms + kTrouble_ms;
   return x;

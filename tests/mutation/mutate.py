@@ -36,7 +36,7 @@ def version(target, file):
     return hashlib.sha256((target.root / file).read_bytes()).hexdigest()[:12]
 
 
-def judged(target, file):
+def version_judged(target, file):
     """A result by other judges is none, either."""
     judges = " ".join(stage.name for stage in target.stages(file))
     return f"{version(target, file)}-{hashlib.sha256(judges.encode()).hexdigest()[:6]}"
@@ -103,7 +103,7 @@ def run(target, folder, options, listed, unnoticed=()):
         print(f"reason that fits no mutant any more: {entry['file']}: {entry['code']}: {entry['what']}")
     mutants = chosen(every, options.sample, options.seed)
     results = Results(folder / "results.txt")
-    versions = {file: judged(target, file) for file in target.files}
+    versions = {file: version_judged(target, file) for file in target.files}
 
     def known(mutant):
         return results.known.get((versions[mutant.file], mutant.name))

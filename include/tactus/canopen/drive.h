@@ -126,12 +126,12 @@ class Drive {
   bool has_to_start_ = false;              ///< it has said so since the last one
   int cycles_without_feedback_ = 0;
   int cycles_without_heartbeat_ = 0;
-  bool has_old_fault_ = false;   ///< in fault without a break since it was configured
-  int reset_cycles_ = 0;         ///< since the reset of an old fault began
-  int enabled_cycles_ = 0;       ///< in a row, counted up to where operation is settled
-  int restart_cycles_ = 0;       ///< since NMT reset node was sent; 0: it has to be
-  int cut_off_cycles_ = 0;       ///< up to silence
-  int cycles_to_stop_node_ = 0;  ///< again
+  bool has_old_fault_ = false;  ///< in fault without a break since it was configured
+  int reset_cycles_ = 0;        ///< since the reset of an old fault began
+  int enabled_cycles_ = 0;      ///< in a row, counted up to where operation is settled
+  int restart_cycles_ = 0;      ///< since NMT reset node was sent; 0: it has to be
+  int cut_off_cycles_ = 0;      ///< up to silence
+  int stop_node_cycles_ = 0;    ///< since NMT stop was sent; 0: it has to be
   std::uint32_t malformed_frames_ = 0;
 };
 
