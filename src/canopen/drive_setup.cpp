@@ -5,11 +5,6 @@
 #include "tactus/canopen/sdo_abort.h"
 
 namespace tactus {
-namespace {
-
-constexpr std::uint32_t kPdoNotValid = 0x80000000;
-
-}  // namespace
 
 DriveSetup::DriveSetup(const DriveConfig& drive, const CanopenConfig& canopen, double period_s)
     : steps_(setupSteps(drive, canopen, period_s)),
@@ -52,7 +47,7 @@ void DriveSetup::update(FrameBatch& out) noexcept {
 void DriveSetup::beginStep() noexcept {
   const SetupStep& step = steps_[step_];
   step_cycles_ = 0;
-  is_stopping_ = is_repeated_ = false;
+  is_changing_ = is_repeated_ = false;
   if (step.kind == SetupStep::Kind::kWrite)
     sdo_.download(step.entry, step.value);
   else
@@ -100,19 +95,18 @@ void DriveSetup::judgeAbort() noexcept {
 
 void DriveSetup::judgeAnswer() noexcept {
   const SetupStep& step = steps_[step_];
-  const std::uint32_t value = sdo_.value();
-  if (step.kind == SetupStep::Kind::kExpect && (value & step.mask) != step.value) {
-    if (step_cycles_ < sdo_timeout_cycles_) return sdo_.upload(step.entry);
-    fail(0);
-    failure_.is_other_value = true;
-    failure_.value = value & step.mask;
-    failure_.expected = step.value;
-    return;
+  const bool was_written = step.kind == SetupStep::Kind::kWrite || is_changing_;
+  const std::uint32_t value = sdo_.value() & step.mask;
+  if (was_written || value == step.value) return nextStep();
+  if (step.kind == SetupStep::Kind::kEnsure) {
+    is_changing_ = true;
+    return sdo_.download(step.entry, (sdo_.value() & ~step.mask) | step.value);
   }
-  const bool has_to_stop = step.kind == SetupStep::Kind::kStopPdo && !is_stopping_;
-  if (!has_to_stop || (value & kPdoNotValid) != 0) return nextStep();
-  is_stopping_ = true;
-  sdo_.download(step.entry, value | kPdoNotValid);
+  if (step_cycles_ < sdo_timeout_cycles_) return sdo_.upload(step.entry);
+  fail(0);
+  failure_.is_other_value = true;
+  failure_.value = value;
+  failure_.expected = step.value;
 }
 
 void DriveSetup::nextStep() noexcept {

@@ -62,8 +62,8 @@ void SdoClient::receive(const CanFrame& frame) noexcept {
   if (specifier != kAbort && !is_initiate) return refuse(sdo_abort::kCommandUnknown);
   if (!isOf(frame, entry_)) return;  // late, of an earlier transfer
   if (specifier == kAbort) return receiveAbort(frame);
-  if (specifier != (is_upload_ ? kUploadAnswer : kDownloadAnswer))
-    return refuse(sdo_abort::kCommandUnknown);
+  // Late, too, where one entry is read and written in turn.
+  if (specifier != (is_upload_ ? kUploadAnswer : kDownloadAnswer)) return;
   if (is_upload_) return receiveUpload(frame);
   status_ = SdoStatus::kDone;
 }

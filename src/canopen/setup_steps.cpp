@@ -23,7 +23,15 @@ SetupStep write(std::uint16_t index, std::uint8_t subindex, int size, std::uint3
   return {Kind::kWrite, {index, subindex, size}, value};
 }
 
-SetupStep stopPdo(std::uint16_t index) { return {Kind::kStopPdo, {index, 1, 4}}; }
+SetupStep ensure(std::uint16_t index, std::uint8_t subindex, int size, std::uint32_t value) {
+  return {Kind::kEnsure, {index, subindex, size}, value};
+}
+
+/// COB-id of a PDO, bit 31: not valid (CiA 301, 7.5.2.35).
+SetupStep stopPdo(std::uint16_t index) {
+  constexpr std::uint32_t kNotValid = 0x80000000;
+  return {Kind::kEnsure, {index, 1, 4}, kNotValid, kNotValid};
+}
 
 SetupStep expect(const ObjectEntry& entry, std::uint32_t value, std::uint32_t mask) {
   return {Kind::kExpect, entry, value, mask};
@@ -71,8 +79,9 @@ SetupSteps identitySteps(const DriveConfig& drive) {
 
 }  // namespace
 
+/// In milliseconds where they are whole: there are drives that know no other unit.
 std::optional<InterpolationPeriod> interpolationPeriod(double period_s) noexcept {
-  for (int exponent = 0; exponent >= -9; --exponent) {
+  for (const int exponent : {-3, 0, -1, -2, -4, -5, -6, -7, -8, -9}) {
     const double value = period_s * std::pow(10.0, -exponent);
     const double whole = std::round(value);
     if (whole >= 1.0 && whole <= 255.0 && std::abs(value - whole) < 1e-6)
@@ -124,8 +133,12 @@ SetupSteps setupSteps(const DriveConfig& drive, const CanopenConfig& canopen, do
       write(0x1800, 1, 4, kNoRemote | (cob_id::kTpdo1 + node)),
       write(0x6060, 0, 1, 9),           // cyclic synchronous velocity
       expect({0x6061, 0, 1}, 9, 0xFF),  // some drives show it only after a while
-      write(0x60C2, 1, 1, period.value),
-      write(0x60C2, 2, 1, static_cast<std::uint8_t>(period.exponent)),
+      // Offsets that a master before has left would be added to each velocity and torque.
+      ifThere(ensure(0x60B1, 0, 4, 0)),
+      ifThere(ensure(0x60B2, 0, 2, 0)),
+      // There are drives of one period, or of one unit for it, that cannot be written.
+      ensure(0x60C2, 1, 1, period.value),
+      ensure(0x60C2, 2, 1, static_cast<std::uint8_t>(period.exponent)),
   });
   // Drives that know units mostly come with turns a minute, and so fast 60FF would be.
   if (drive.has_velocity_unit) add({ifThere(expect({0x60A9, 0, 4}, kCountsPerSecond, kUnitBits))});

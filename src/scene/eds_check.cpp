@@ -15,8 +15,6 @@ namespace {
 
 using StepKind = SetupStep::Kind;
 
-constexpr std::int64_t kPdoNotValid = 0x80000000;  // bit 31 of a PDO's COB-ID
-
 [[noreturn]] void refuseObject(const SourcePosition& at, const EdsObject& object, const char* key,
                                const std::string& problem, const std::string& expectation) {
   failAt(at, object.name + "." + key, problem, "expected " + expectation);
@@ -111,10 +109,11 @@ void checkModes(const EdsFile& eds) {
 
 // Entries -----------------------------------------------------------------------------------------
 
-/// Signed where the sign counts: a mode, a power of ten, positions and velocities.
+/// Signed where the sign counts: a mode, a power of ten, positions, velocities and torques.
 bool isSigned(const ObjectEntry& entry) {
   return entry.index == 0x6060 || entry.index == 0x6061 || entry.index == 0x6064 ||
-         entry.index == 0x60FF || (entry.index == 0x60C2 && entry.subindex == 2);
+         entry.index == 0x60B1 || entry.index == 0x60B2 || entry.index == 0x60FF ||
+         (entry.index == 0x60C2 && entry.subindex == 2);
 }
 
 void checkEntryType(const EdsObject& object, const ObjectEntry& entry) {
@@ -127,20 +126,26 @@ void checkEntryType(const EdsObject& object, const ObjectEntry& entry) {
                fmt::format("a {}type of {} bit", isSigned(entry) ? "signed " : "", 8 * entry.size));
 }
 
-void checkAccess(const EdsObject& object, const SetupStep& step) {
-  if (step.kind != StepKind::kWrite && !object.isReadable())
-    refuseObject(object.access_at, object, "AccessType", "cannot be read", "ro or rw");
-  const bool has_to_write =
-      step.kind != StepKind::kExpect && step.need < SetupStep::Need::kIfWritable;
-  if (has_to_write && !object.isWritable())
-    refuseObject(object.access_at, object, "AccessType", "cannot be written", "rw");
-}
-
 std::int64_t writtenValue(const SetupStep& step) {
   const EdsType type{step.entry.size, isSigned(step.entry)};
   EdsObject as_written;
   as_written.type = type;
   return as_written.inType(step.value);
+}
+
+/// What may hold it from the beginning is perhaps never written.
+bool mayBeEnsured(const EdsObject& object, const SetupStep& step) {
+  return step.kind == StepKind::kEnsure &&
+         (!object.initial || object.ofEachNode(object.initial) == writtenValue(step));
+}
+
+void checkAccess(const EdsObject& object, const SetupStep& step) {
+  if (step.kind != StepKind::kWrite && !object.isReadable())
+    refuseObject(object.access_at, object, "AccessType", "cannot be read", "ro or rw");
+  const bool has_to_write = step.kind != StepKind::kExpect && !mayBeEnsured(object, step) &&
+                            step.need < SetupStep::Need::kIfWritable;
+  if (has_to_write && !object.isWritable())
+    refuseObject(object.access_at, object, "AccessType", "cannot be written", "rw");
 }
 
 void checkLimits(const EdsObject& object, std::int64_t needed) {
@@ -176,8 +181,7 @@ void checkStep(const EdsFile& eds, const SetupStep& step) {
                                           : "it, which the set-up needs");
   checkEntryType(object, entry);
   checkAccess(object, step);
-  if (step.kind == StepKind::kWrite) checkLimits(object, writtenValue(step));
-  if (step.kind == StepKind::kStopPdo) checkLimits(object, kPdoNotValid);
+  if (step.kind != StepKind::kExpect) checkLimits(object, writtenValue(step));
   checkConstant(object, step);
 }
 

@@ -290,6 +290,40 @@ TEST(DriveSetup, SwitchesOffTheReceivePdosThatItDoesNotUse) {
   EXPECT_EQ(rig.slave.writes.size(), 28u) << "one is off already";
 }
 
+/// A drive adds them to each setpoint: it would move as soon as it is enabled.
+TEST(DriveSetup, ClearsTheOffsetsThatAMasterBeforeHasLeft) {
+  DriveRig rig;
+  rig.slave.objects[{0x60B1, 0}] = 0xFFFFFC18;
+  rig.slave.objects[{0x60B2, 0}] = 70;
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+  EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x60B1, 0})], 0u);
+  EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x60B2, 0})], 0u);
+}
+
+TEST(DriveSetup, RefusesADriveWhoseOffsetStays) {
+  DriveRig rig;
+  rig.slave.objects[{0x60B1, 0}] = 1000;
+  rig.slave.refused_writes[{0x60B1, 0}] = 0x06010002;
+  rig.configure();
+  EXPECT_FALSE(rig.report().is_configured);
+  EXPECT_EQ(rig.report().setup_failure.index, 0x60B1);
+  EXPECT_EQ(rig.report().setup_failure.abort_code, 0x06010002u);
+}
+
+/// Of drives that know milliseconds alone, or one period, the entries cannot be written.
+TEST(DriveSetup, WritesOnlyWhatIsNotThere) {
+  DriveRig rig;
+  rig.slave.objects[{0x60C2, 1}] = 1;
+  rig.slave.objects[{0x60C2, 2}] = 0xFD;
+  rig.slave.refused_writes = {{{0x60B1, 0}, 0x06010002},
+                              {{0x60B2, 0}, 0x06010002},
+                              {{0x60C2, 1}, 0x06010002},
+                              {{0x60C2, 2}, 0x06010002}};
+  rig.configure();
+  EXPECT_TRUE(rig.report().is_configured);
+}
+
 TEST(DriveSetup, LeavesOutAQuickStopOptionThatThereIsNot) {
   DriveConfig config = test::driveConfig();
   config.has_quick_stop_option = false;

@@ -17,7 +17,9 @@ TEST(InterpolationPeriod, IsExactOrRefused) {
   EXPECT_EQ(interpolationPeriod(0.001), (InterpolationPeriod{1, -3}));
   EXPECT_EQ(interpolationPeriod(0.0005), (InterpolationPeriod{5, -4}));
   EXPECT_EQ(interpolationPeriod(0.002), (InterpolationPeriod{2, -3}));
-  EXPECT_EQ(interpolationPeriod(0.01), (InterpolationPeriod{1, -2}));
+  EXPECT_EQ(interpolationPeriod(0.01), (InterpolationPeriod{10, -3})) << "ms where they are whole";
+  EXPECT_EQ(interpolationPeriod(0.255), (InterpolationPeriod{255, -3}));
+  EXPECT_EQ(interpolationPeriod(0.26), (InterpolationPeriod{26, -2}));
   EXPECT_EQ(interpolationPeriod(0.00125), (InterpolationPeriod{125, -5}));
   EXPECT_EQ(interpolationPeriod(0.000125), (InterpolationPeriod{125, -6}));
   EXPECT_EQ(interpolationPeriod(20.0), (InterpolationPeriod{20, 0}));
@@ -76,12 +78,13 @@ int bytesOf(const ObjectEntry& entry) {
     case 0x1016:
     case 0x607F:  // max profile velocity
     case 0x60A9:
+    case 0x60B1:  // velocity offset
       return 4;
     case 0x6060:  // modes of operation, and its display
     case 0x6061:
     case 0x60C2:  // interpolation time period
       return 1;
-    default:  // heartbeat time, control word, option codes
+    default:  // heartbeat time, control word, option codes, torque offset
       return 2;
   }
 }
@@ -103,7 +106,7 @@ TEST(SetupSteps, StopTheOtherPdosThatADriveMayHave) {
     int stops = 0;
     for (const SetupStep& step : setupSteps({}, {}, 0.001)) {
       if (step.entry.index != index) continue;
-      EXPECT_EQ(step.kind, SetupStep::Kind::kStopPdo);
+      EXPECT_EQ(step.kind, SetupStep::Kind::kEnsure);
       EXPECT_GE(step.need, SetupStep::Need::kIfThere);
       ++stops;
     }
@@ -162,9 +165,11 @@ TEST(SetupSteps, LimitNoDriveWhoseJointOrProfileHasNoLimit) {
 }
 
 TEST(SetupSteps, StopEachPdoOnce) {
+  constexpr std::uint32_t kNotValid = 0x80000000;
   std::set<int> stopped;
   for (const SetupStep& step : setupSteps({}, {}, 0.001)) {
-    if (step.kind != SetupStep::Kind::kStopPdo) continue;
+    if (step.kind != SetupStep::Kind::kEnsure || step.mask != kNotValid) continue;
+    EXPECT_EQ(step.value, kNotValid);
     EXPECT_TRUE(stopped.insert(step.entry.index).second) << std::hex << step.entry.index;
   }
   EXPECT_EQ(stopped.size(), 8u);

@@ -222,6 +222,22 @@ TEST(EdsCheck, LooksAtBitRateAndCycleOfThisRobot) {
             std::string::npos);
 }
 
+/// Drives of one unit for the period, or of one period, are fit where it is the right one.
+TEST(EdsCheck, TakesAPeriodThatCannotBeWrittenWhereItIsTheOne) {
+  SheetCase sheet;
+  std::string eds = test::edsText();
+  for (const char* section : {"60C2sub1", "60C2sub2"})
+    eds = test::withEdsLine(eds, section, "AccessType", "AccessType=ro");
+  EXPECT_EQ(sheet.error(eds), "");
+  EXPECT_EQ(sheet.error(test::withEdsLine(eds, "60C2sub1", "DefaultValue", "DefaultValue=")), "");
+  const std::string in_100_us =
+      test::withEdsLine(eds, "60C2sub2", "DefaultValue", "DefaultValue=-4");
+  EXPECT_NE(sheet.error(in_100_us).find("60C2sub2.AccessType: cannot be written"),
+            std::string::npos);
+  sheet.period_s = 0.002;
+  EXPECT_NE(sheet.error(eds).find("60C2sub1.AccessType: cannot be written"), std::string::npos);
+}
+
 TEST(EdsCheck, AsksForNoMoreThanTheSheetSays) {
   std::string eds = test::edsText();
   eds = test::withEdsLine(eds, "6502", "DefaultValue", "DefaultValue=");

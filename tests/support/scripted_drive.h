@@ -32,6 +32,7 @@ class ScriptedDrive {
 
   // What a test may set.
   std::map<Entry, std::uint32_t> refused;  ///< entries whose access is aborted, with the code
+  std::map<Entry, std::uint32_t> refused_writes;
   std::set<Entry> unanswered;
   bool is_powered = true;
   bool sends_feedback = true;
@@ -98,10 +99,16 @@ class ScriptedDrive {
                {{0x1A00, 0}, 1},          {{0x1A00, 1}, 0x60410010},
                {{0x1A00, 2}, 0},          {{0x6040, 0}, 0},
                {{0x6060, 0}, 0},          {{0x6061, 0}, 0},
-               {{0x60C2, 1}, 10},         {{0x60C2, 2}, 0xFD},
+               {{0x60B1, 0}, 0},          {{0x60B2, 0}, 0},
+               {{0x60C2, 1}, 10},         {{0x60C2, 2}, 0xFE},
                {{0x605A, 0}, 2},          {{0x605E, 0}, 2},
                {{0x607F, 0}, 0xFFFFFFFF}, {{0x6007, 0}, 1},
                {{0x1016, 1}, 0},          {{0x1017, 0}, 0}};
+  }
+
+  /// Bytes of an object that is read.
+  static int sizeOf(int index) {
+    return index == 0x6061 || index == 0x60C2 ? 1 : index == 0x60B2 ? 2 : 4;
   }
 
   void command(int command) {
@@ -122,10 +129,11 @@ class ScriptedDrive {
     if (objects.count(entry) == 0) return abort(frame, 0x06020000);
     if (d[0] == 0x40) {
       const std::uint32_t v = objects[entry];
-      const int size = entry.first == 0x6061 ? 1 : 4;
-      return say(0x580, {size == 1 ? 0x4F : 0x43, d[1], d[2], d[3], int(v & 0xFF),
+      const int size = sizeOf(entry.first);
+      return say(0x580, {0x43 | (4 - size) << 2, d[1], d[2], d[3], int(v & 0xFF),
                          int(v >> 8 & 0xFF), int(v >> 16 & 0xFF), int(v >> 24)});
     }
+    if (refused_writes.count(entry) != 0) return abort(frame, refused_writes[entry]);
     const std::map<int, int> sizes{{0x2F, 1}, {0x2B, 2}, {0x27, 3}, {0x23, 4}};
     std::uint32_t value = 0;
     for (int i = 0; i < sizes.at(d[0]); ++i) value |= std::uint32_t{d[4 + i]} << 8 * i;

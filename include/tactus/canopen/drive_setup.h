@@ -34,9 +34,9 @@ std::optional<InterpolationPeriod> interpolationPeriod(double period_s) noexcept
 /// What the set-up does with an entry of the drive's object dictionary.
 struct SetupStep {
   enum class Kind : std::uint8_t {
-    kExpect,   ///< read until it holds the value in the bits of the mask, or the time is over
-    kWrite,    ///< the value
-    kStopPdo,  ///< read, and write back with bit 31 (not valid) set unless it is already
+    kExpect,  ///< read until it holds the value in the bits of the mask, or the time is over
+    kWrite,   ///< the value
+    kEnsure,  ///< read, and written back with the value in the bits of the mask unless it is there
   };
   Kind kind = Kind::kWrite;
   ObjectEntry entry;
@@ -95,7 +95,7 @@ class DriveSetup {
   std::size_t step_ = 0;
   bool is_announced_ = false;  ///< NMT pre-operational has been sent
   bool is_repeated_ = false;   ///< this step, which was not answered
-  bool is_stopping_ = false;   ///< the second half of kStopPdo
+  bool is_changing_ = false;   ///< the second half of kEnsure
   int cycles_ = 0;             ///< since start()
   int step_cycles_ = 0;
 };

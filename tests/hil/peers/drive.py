@@ -219,7 +219,8 @@ class Drive:
         if self.power.state == cia402.OPERATION_ENABLED:
             follows = self.value(0x6060) == CYCLIC_SYNCHRONOUS_VELOCITY
             largest = self.value(0x607F)
-            self.velocity = float(max(-largest, min(largest, self.value(0x60FF)))) if follows else 0.0
+            told = self.value(0x60FF) + self.value(0x60B1)
+            self.velocity = float(max(-largest, min(largest, told))) if follows else 0.0
         elif self.power.state != cia402.QUICK_STOP_ACTIVE:
             self.velocity = 0.0
 

@@ -17,7 +17,7 @@ from canopen.objectdictionary.datatypes import (
 
 CYCLIC_SYNCHRONOUS_VELOCITY = 9
 PDO_NOT_VALID = 0x80000000
-MAPPABLE = {0x603F, 0x6040, 0x6041, 0x6060, 0x6061, 0x6064, 0x606C, 0x60FF}
+MAPPABLE = {0x603F, 0x6040, 0x6041, 0x6060, 0x6061, 0x6064, 0x606C, 0x60B1, 0x60FF}
 
 # index, name, type, access, value at power-on
 VARIABLES = [
@@ -47,6 +47,8 @@ VARIABLES = [
     (0x6083, "Profile acceleration", UNSIGNED32, "rw", 10_000_000),
     (0x6084, "Profile deceleration", UNSIGNED32, "rw", 10_000_000),
     (0x6085, "Quick stop deceleration", UNSIGNED32, "rw", 10_000_000),
+    (0x60B1, "Velocity offset", INTEGER32, "rw", 0),
+    (0x60B2, "Torque offset", INTEGER16, "rw", 0),
     (0x60FF, "Target velocity", INTEGER32, "rw", 0),
     (0x6502, "Supported drive modes", UNSIGNED32, "ro", 1 << (CYCLIC_SYNCHRONOUS_VELOCITY - 1)),
 ]
