@@ -13,6 +13,7 @@ namespace number_of = moteus_register;
 constexpr std::uint8_t kWrite = 0x00;
 constexpr std::uint8_t kRead = 0x10;
 constexpr std::uint8_t kReply = 0x20;
+constexpr std::uint8_t kWriteError = 0x30, kReadError = 0x31;
 constexpr std::uint8_t kNop = 0x50;
 constexpr std::uint8_t kInt8 = 0, kInt32 = 8, kFloat = 12;
 
@@ -144,6 +145,11 @@ struct FoundRegisters {
 bool readSubframe(SubframeReader& reader, FoundRegisters& found) noexcept {
   const auto what = static_cast<std::uint8_t>(reader.bytes(1));
   if (what == kNop) return true;
+  if (what == kWriteError || what == kReadError) {  // of a register, with a number that tells why
+    reader.varuint();
+    reader.varuint();
+    return reader.isGood();
+  }
   if ((what & 0xF0) != kReply) return false;
   const std::uint32_t count = (what & 3) != 0 ? what & 3U : reader.varuint();
   const std::uint32_t first = reader.varuint();
@@ -179,7 +185,7 @@ CanFrame moteusCommandFrame(int node_id, const MoteusCommand& command) noexcept 
   writer.begin(kRead, kInt8, 1, number_of::kFault);
   if (command.asks_for_setup) {
     writer.begin(kRead, kInt8, 1, number_of::kHome);
-    writer.begin(kRead, kInt8, 1, number_of::kMapVersion);
+    writer.begin(kRead, kInt32, 1, number_of::kMapVersion);  // read as no other type
   }
   writer.pad();
   return frame;

@@ -11,10 +11,16 @@ namespace {
 // Modes and faults of github.com/mjbots/moteus, docs/protocol/registers.md.
 constexpr int kStopped = 0, kFaulted = 1, kEnablingMode = 2, kPositionMode = 10;
 constexpr int kTimeoutMode = 11, kZeroVelocityMode = 12;
-constexpr double kModes = 256.0;
+constexpr double kModes = 16.0;
 constexpr int kMotorDriverFault = 33;
 constexpr double kMapVersion = 5.0;
 constexpr double kDefaultWatchdog_s = 0.1;
+constexpr double kFastest = 50.0;  // m/s or rad/s, towards a position that is far away
+
+// Subframes: what is not done, and why.
+constexpr std::uint8_t kWriteError = 0x30, kReadError = 0x31;
+constexpr int kDone = 0, kUnknownRegister = 1, kNotWriteable = 2;
+constexpr int kInt32 = 2;
 
 int valueBytes(int type) { return type == 0 ? 1 : type == 1 ? 2 : 4; }
 
@@ -56,12 +62,31 @@ void toBytes(double value, std::uint32_t number, int type, CanFrame& frame) {
     frame.data[frame.size++] = static_cast<std::uint8_t>(bits >> 8 * i);
 }
 
+void putVaruint(std::uint32_t value, CanFrame& frame) {
+  for (; value > 0x7F; value >>= 7)
+    frame.data[frame.size++] = static_cast<std::uint8_t>(0x80 | (value & 0x7F));
+  frame.data[frame.size++] = static_cast<std::uint8_t>(value);
+}
+
+/// What does not fit into the frame any more is left out.
+void putError(std::uint8_t what, std::uint32_t number, int reason, CanFrame& frame) {
+  constexpr int kMostBytes = 1 + 5 + 1;
+  if (frame.size + kMostBytes > kMaxFdBytes) return;
+  frame.data[frame.size++] = what;
+  putVaruint(number, frame);
+  putVaruint(static_cast<std::uint32_t>(reason), frame);
+}
+
 }  // namespace
 
 MoteusSlave::MoteusSlave(const DriveConfig& config, double period_s)
     : config_(config), max_setpoint_age_ns_(std::llround(2e9 * period_s)) {}
 
+/// With the encoder of its rotor alone whole turns are gone with the power; of the output, where it
+/// turns as the rotor.
 void MoteusSlave::setPowered(bool is_on, std::int64_t) noexcept {
+  const bool forgets = config_.home == MoteusHome::kRotor && is_powered_ && !is_on;
+  if (forgets) forgotten_turns_ += std::trunc(position_turns_ - forgotten_turns_);
   is_powered_ = is_on;
   mode_ = kStopped;
   fault_ = 0;
@@ -72,7 +97,7 @@ void MoteusSlave::setPowered(bool is_on, std::int64_t) noexcept {
 
 void MoteusSlave::setTroubles(const DriveTroubles& troubles) noexcept {
   if (troubles.freezes_feedback && !troubles_.freezes_feedback)
-    frozen_ = {read(0x000), read(0x001), read(0x002)};
+    frozen_ = {*read(0x000, kInt32), *read(0x001, kInt32), *read(0x002, kInt32)};
   troubles_ = troubles;
   if (troubles.is_failing) fail(kMotorDriverFault);
 }
@@ -88,7 +113,10 @@ void MoteusSlave::receive(const QueuedFrame& item, std::int64_t t_ns) noexcept {
   reply.id = static_cast<std::uint32_t>(config_.node_id) << 8;
   reply.extended = reply.id > 0x7FF;
   reply.is_fd = true;
-  if (!obeyFrame(frame, reply)) return;
+  command_ = {};
+  const bool is_whole = obeyFrame(frame, reply);
+  applyCommand();
+  if (!is_whole) return;
   if (mode_ == kPositionMode && t_ns - item.sent_ns > max_setpoint_age_ns_) ++stale_setpoints_;
   while (reply.size != fdSize(reply.size)) reply.data[reply.size++] = 0x50;
   outbox_.push(reply);
@@ -111,11 +139,18 @@ std::int64_t MoteusSlave::nextEvent_ns() const noexcept {
 }
 
 void MoteusSlave::move(double dt_s) noexcept {
-  if (mode_ == kPositionMode) {
-    velocity_ = config_.sign * commanded_turns_per_s_ / config_.counts_per_unit;
-    return;
-  }
+  if (mode_ == kPositionMode) return follow(dt_s);
   velocity_ = std::copysign(std::max(0.0, std::abs(velocity_) - kDeceleration * dt_s), velocity_);
+}
+
+/// From where it is, or to the position that was commanded, at once.
+void MoteusSlave::follow(double dt_s) noexcept {
+  double turns_per_s = followed_.turns_per_s;
+  if (std::isfinite(followed_.turns)) {
+    turns_per_s = (followed_.turns - (position_turns_ - forgotten_turns_)) / dt_s;
+    followed_.turns += followed_.turns_per_s * dt_s;
+  }
+  velocity_ = std::clamp(config_.sign * turns_per_s / config_.counts_per_unit, -kFastest, kFastest);
 }
 
 void MoteusSlave::setPosition(double q) noexcept {
@@ -139,7 +174,8 @@ PowerState MoteusSlave::powerState() const noexcept {
   }
 }
 
-/// False for a frame that ends too soon, or that asks for something else.
+/// False for a frame that ends too soon, or that asks for something else. What has been written
+/// before counts.
 bool MoteusSlave::obeyFrame(const CanFrame& frame, CanFrame& reply) noexcept {
   int at = 0;
   const auto has = [&](int bytes) { return at + bytes <= frame.size; };
@@ -162,30 +198,75 @@ bool MoteusSlave::obeyFrame(const CanFrame& frame, CanFrame& reply) noexcept {
     if (what < 0x10) {
       for (std::uint32_t i = 0; i < count; ++i, at += valueBytes(type)) {
         if (!has(valueBytes(type))) return false;
-        write(first + i, fromBytes(&frame.data[at], first + i, type));
+        const int result = write(first + i, fromBytes(&frame.data[at], first + i, type));
+        if (result != kDone) putError(kWriteError, first + i, result, reply);
       }
       continue;
     }
-    const std::uint32_t room = kMaxFdBytes - std::min(reply.size + 4U, std::uint32_t{kMaxFdBytes});
-    if (count > room / static_cast<std::uint32_t>(valueBytes(type))) return false;
-    reply.data[reply.size++] = static_cast<std::uint8_t>(0x20 | type << 2 | (count & 3));
-    if (first > 0x7F) reply.data[reply.size++] = static_cast<std::uint8_t>(0x80 | (first & 0x7F));
-    reply.data[reply.size++] = static_cast<std::uint8_t>(first > 0x7F ? first >> 7 : first);
-    for (std::uint32_t i = 0; i < count; ++i) toBytes(read(first + i), first + i, type, reply);
+    const Answer given = answer(first, count, what, reply);
+    if (given != Answer::kWhole) return given == Answer::kError;  // and hears no more of the frame
   }
   return true;
 }
 
-void MoteusSlave::write(std::uint32_t number, double value) noexcept {
-  if (troubles_.ignores_commands) return;
-  if (number == 0x000 && std::abs(value) < kModes) command(static_cast<int>(value));
-  if (number == 0x021) commanded_turns_per_s_ = std::isfinite(value) ? value : 0.0;
-  if (number != 0x027 || (mode_ != kPositionMode && mode_ != kEnablingMode)) return;
-  const double watchdog_s = value > 0.0 ? value : kDefaultWatchdog_s;
-  expires_ns_ = now_ns_ + std::llround(1e9 * watchdog_s);
+/// All registers, or the error of the first that cannot be read.
+MoteusSlave::Answer MoteusSlave::answer(std::uint32_t first, std::uint32_t count, std::uint8_t what,
+                                        CanFrame& reply) const noexcept {
+  const int type = what >> 2 & 3;
+  constexpr int kMostHead = 1 + 5 + 5;
+  const int room = kMaxFdBytes - kMostHead - reply.size;
+  if (room < 0 || count > static_cast<std::uint32_t>(room / valueBytes(type)))
+    return Answer::kNoRoom;
+  const int start = reply.size;
+  reply.data[reply.size++] = static_cast<std::uint8_t>(0x20 | (what & 0xF));
+  if ((what & 3) == 0) putVaruint(count, reply);
+  putVaruint(first, reply);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto value = read(first + i, type);
+    if (!value) {
+      reply.size = static_cast<std::uint8_t>(start);
+      putError(kReadError, first + i, kUnknownRegister, reply);
+      return Answer::kError;
+    }
+    toBytes(*value, first + i, type, reply);
+  }
+  return Answer::kWhole;
 }
 
-void MoteusSlave::command(int mode) noexcept {
+/// The mode comes first: what a frame says before it is forgotten, and without one it is nothing.
+int MoteusSlave::write(std::uint32_t number, double value) noexcept {
+  switch (number) {
+    case 0x000:
+      if (!(value >= 0.0 && value < kModes)) return kUnknownRegister;
+      command_ = {.mode = static_cast<int>(value)};
+      return kDone;
+    case 0x020:
+      command_.turns = value;
+      return kDone;
+    case 0x021:
+      command_.turns_per_s = value;
+      return kDone;
+    case 0x027:
+      command_.watchdog_s = value;
+      return kDone;
+    default:
+      return read(number, kInt32) ? kNotWriteable : kUnknownRegister;
+  }
+}
+
+void MoteusSlave::applyCommand() noexcept {
+  if (troubles_.ignores_commands || !command_.mode) return;
+  followed_ = command_;
+  if (!std::isfinite(followed_.turns_per_s)) followed_.turns_per_s = 0.0;
+  enter(*command_.mode);
+  if (mode_ != kPositionMode && mode_ != kEnablingMode) return;
+  const double watchdog_s =
+      command_.watchdog_s == 0.0 ? kDefaultWatchdog_s : std::max(command_.watchdog_s, 0.0);
+  expires_ns_ =
+      std::isnan(command_.watchdog_s) ? kNever_ns : now_ns_ + std::llround(1e9 * watchdog_s);
+}
+
+void MoteusSlave::enter(int mode) noexcept {
   if (mode == kStopped) {
     if (troubles_.is_failing) return;
     mode_ = kStopped;
@@ -200,7 +281,8 @@ void MoteusSlave::command(int mode) noexcept {
   if (mode_ == kEnablingMode) enabled_at_ns_ = now_ns_ + kEnabling_ns;
 }
 
-double MoteusSlave::read(std::uint32_t number) const noexcept {
+/// Nothing of what there is not, or not as this type.
+std::optional<double> MoteusSlave::read(std::uint32_t number, int type) const noexcept {
   const bool is_frozen = troubles_.freezes_feedback && number <= 0x002;
   if (number == 0x001 && troubles_.tells_nonsense) return std::numeric_limits<double>::quiet_NaN();
   if (is_frozen) return frozen_[number];
@@ -208,17 +290,18 @@ double MoteusSlave::read(std::uint32_t number) const noexcept {
     case 0x000:
       return mode_;
     case 0x001:
-      return position_turns_;
+      return position_turns_ - forgotten_turns_;
     case 0x002:
       return config_.sign * config_.counts_per_unit * velocity_;
     case 0x00C:
-      return static_cast<double>(MoteusHome::kOutput);
+      return static_cast<double>(config_.home);
     case 0x00F:
       return fault_;
     case 0x102:
+      if (type != kInt32) return std::nullopt;
       return kMapVersion;
     default:
-      return 0.0;
+      return std::nullopt;
   }
 }
 

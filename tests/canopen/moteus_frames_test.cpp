@@ -43,7 +43,7 @@ TEST(MoteusFrames, AreThoseOfItsReference) {
   EXPECT_EQ(hexOf(moteusCommandFrame(5, {.kind = MoteusAsk::kZeroVelocity})),
             "01000c11001e01110f505050");
   EXPECT_EQ(hexOf(moteusCommandFrame(5, {.kind = MoteusAsk::kStop})), "01000011001e01110f505050");
-  EXPECT_EQ(hexOf(moteusCommandFrame(5, {.asks_for_setup = true})), "11001e01110f110c11820250");
+  EXPECT_EQ(hexOf(moteusCommandFrame(5, {.asks_for_setup = true})), "11001e01110f110c19820250");
   EXPECT_EQ(hexOf(moteusCommandFrame(5, {})), "11001e01110f");
 }
 
@@ -74,6 +74,16 @@ TEST(MoteusFrames, AReplyIsReadInAnyType) {
   EXPECT_EQ(unknown->mode, 10);
   EXPECT_TRUE(std::isnan(unknown->position)) << "the most negative integer";
   EXPECT_NEAR(unknown->velocity, 21474.83647, 1e-9);
+}
+
+/// 31 82 02 01: a controller that cannot read register 0x102 so; the rest counts all the same.
+TEST(MoteusFrames, ARegisterThatCouldNotBeReadIsLeftOut) {
+  const auto reply = decodeMoteusReply(replyOf(3, "21000a2e010000803f000020c0210f0031820201"), 3);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->mode, 10);
+  EXPECT_FALSE(reply->map);
+  EXPECT_TRUE(decodeMoteusReply(replyOf(3, "21000a2e010000803f000020c0210f00300f02"), 3));
+  EXPECT_FALSE(decodeMoteusReply(replyOf(3, "21000a2e010000803f000020c0210f003182"), 3));
 }
 
 TEST(MoteusFrames, NegativeNumbersHaveTheirSignInAnyType) {
@@ -114,7 +124,7 @@ TEST(MoteusFrames, NothingElseIsAReply) {
         "20ffffffffffff", "2100002e010000000000000000210f00ff",
         // without position, without velocity, a subframe of another kind, numbers of 36 bits
         "2100002d0200000000210f00", "2100002d0100000000210f00",
-        "2100002e010000000000000000210f00310000", "2100002e010000000000000000210f0020808080808000",
+        "2100002e010000000000000000210f00320000", "2100002e010000000000000000210f0020808080808000",
         "2100002e010000000000000000210f002080808080800000"})
     EXPECT_FALSE(decodeMoteusReply(replyOf(2, bad), 2)) << bad;
   CanFrame frame = replyOf(2, good);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "tactus/canopen/moteus_frames.h"
 
@@ -33,6 +34,11 @@ class MoteusOfNode3 : public testing::Test {
     slave_.outbox().clear();
     EXPECT_TRUE(reply);
     return reply.value_or(MoteusReply{});
+  }
+  /// A reply is of what was before the command.
+  MoteusReply after(const MoteusCommand& command) {
+    ask(command);
+    return ask({});
   }
   MoteusReply run(float velocity = 0.1F) {
     return ask({.kind = MoteusCommand::Kind::kVelocity, .velocity = velocity, .watchdog_s = 0.05F});
@@ -77,7 +83,8 @@ TEST_F(MoteusOfNode3, TellsWhereItIsAndWhatItIs) {
 }
 
 TEST_F(MoteusOfNode3, FollowsAVelocityOnceItIsEnabled) {
-  EXPECT_EQ(run().mode, 2);
+  EXPECT_EQ(run().mode, 0);
+  EXPECT_EQ(slave_.mode(), 2);
   EXPECT_EQ(slave_.powerState(), PowerState::kSwitchedOn);
   wait(4);
   EXPECT_EQ(run().mode, 10);
@@ -97,8 +104,9 @@ TEST_F(MoteusOfNode3, StopsByItselfWithoutCommandsAndOnlyStopLeadsOn) {
   wait(50);
   EXPECT_EQ(slave_.velocity(), 0.0);
   EXPECT_EQ(run().mode, 11);
-  EXPECT_EQ(ask({.kind = MoteusCommand::Kind::kStop}).mode, 0);
-  EXPECT_EQ(run().mode, 2);
+  EXPECT_EQ(after({.kind = MoteusCommand::Kind::kStop}).mode, 0);
+  run();
+  EXPECT_EQ(slave_.mode(), 2);
 }
 
 TEST_F(MoteusOfNode3, AFaultIsClearedByStoppingOnceItsCauseHasGone) {
@@ -106,10 +114,10 @@ TEST_F(MoteusOfNode3, AFaultIsClearedByStoppingOnceItsCauseHasGone) {
   troubles.is_failing = true;
   slave_.setTroubles(troubles);
   EXPECT_EQ(run().fault, 33);
-  EXPECT_EQ(ask({.kind = MoteusCommand::Kind::kStop}).mode, 1);
+  EXPECT_EQ(after({.kind = MoteusCommand::Kind::kStop}).mode, 1);
   slave_.setTroubles({});
   EXPECT_EQ(ask({}).mode, 1);
-  EXPECT_EQ(ask({.kind = MoteusCommand::Kind::kStop}).mode, 0);
+  EXPECT_EQ(after({.kind = MoteusCommand::Kind::kStop}).mode, 0);
   EXPECT_EQ(ask({}).fault, 0);
 }
 
@@ -124,6 +132,109 @@ TEST_F(MoteusOfNode3, HearsNobodyElse) {
   cut.size = 5;
   slave_.receive({cut, t_ns_}, t_ns_);
   EXPECT_TRUE(slave_.outbox().empty());
+}
+
+/// Bytes of mjbots' docs/protocol/can.md and of fw/moteus_controller.cc, not of our encoder.
+class MoteusBytes : public MoteusOfNode3 {
+ protected:
+  std::vector<int> hear(const std::vector<int>& bytes) {
+    CanFrame frame = moteusCommandFrame(3, {});
+    frame.size = 0;
+    for (const int byte : bytes) frame.data[frame.size++] = static_cast<std::uint8_t>(byte);
+    slave_.receive({frame, t_ns_}, t_ns_);
+    std::vector<int> said;
+    if (!slave_.outbox().empty()) {
+      const CanFrame& reply = *slave_.outbox().begin();
+      said.assign(reply.data.begin(), reply.data.begin() + reply.size);
+    }
+    slave_.outbox().clear();
+    while (!said.empty() && said.back() == 0x50) said.pop_back();
+    return said;
+  }
+  void enable() {
+    run(0.1F);
+    wait(4);
+    run(0.1F);
+    wait(1);
+    ASSERT_NEAR(slave_.velocity(), -0.4, 1e-6);
+  }
+};
+
+TEST_F(MoteusBytes, MoreThanThreeRegistersHaveTheirNumber) {
+  EXPECT_EQ(hear({0x14, 0x04, 0x00, 0x11, 0x0F}), (std::vector<int>{0x31, 0x03, 1}))
+      << "003 is none of what is here";
+  slave_.setPosition(2.5);  // -0.5 turns
+  EXPECT_EQ(hear({0x14, 0x03, 0x00}), (std::vector<int>{0x24, 0x03, 0x00, 0, 0, 0x78, 0xEC, 0, 0}));
+}
+
+TEST_F(MoteusBytes, TheMapOfRegistersIsReadAs32BitsOnly) {
+  EXPECT_EQ(hear({0x19, 0x82, 0x02}), (std::vector<int>{0x29, 0x82, 0x02, 5, 0, 0, 0}));
+  for (const int type : {0x11, 0x15, 0x1D})
+    EXPECT_EQ(hear({type, 0x82, 0x02}), (std::vector<int>{0x31, 0x82, 0x02, 1})) << type;
+}
+
+TEST_F(MoteusBytes, WhatItDoesNotHaveIsAnError) {
+  EXPECT_EQ(hear({0x11, 0x7E}), (std::vector<int>{0x31, 0x7E, 1}));
+  EXPECT_EQ(hear({0x01, 0x7E, 0}), (std::vector<int>{0x30, 0x7E, 1}));
+  EXPECT_EQ(hear({0x01, 0x0F, 0}), (std::vector<int>{0x30, 0x0F, 2}));
+  EXPECT_EQ(hear({0x01, 0x00, 16}), (std::vector<int>{0x30, 0x00, 1})) << "there are 16 modes";
+}
+
+TEST_F(MoteusBytes, WithoutAModeAFrameCommandsNothing) {
+  enable();
+  for (int ms = 0; ms < 60; ++ms) {
+    hear({0x0D, 0x21, 0, 0, 0, 0x41, 0x0D, 0x27, 0, 0, 0x80, 0x3F});  // 8 turns/s, 1 s
+    wait(1);
+  }
+  EXPECT_EQ(slave_.mode(), 11) << "nor does it feed the watchdog";
+}
+
+TEST_F(MoteusBytes, WhatIsNotWrittenWithAModeIsZero) {
+  enable();
+  hear({0x01, 0x00, 10, 0x0D, 0x20, 0, 0, 0xC0, 0x7F});  // position NaN
+  wait(1);
+  EXPECT_EQ(slave_.velocity(), 0.0) << "the velocity of before";
+  wait(98);
+  EXPECT_EQ(slave_.mode(), 10);
+  wait(2);
+  EXPECT_EQ(slave_.mode(), 11) << "after 0.1 s, as it is configured";
+}
+
+TEST_F(MoteusBytes, GoesAtOnceToAPositionThatIsNotNan) {
+  enable();
+  slave_.setPosition(2.5);  // -0.5 turns
+  hear({0x01, 0x00, 10});
+  wait(1);
+  EXPECT_LT(slave_.velocity(), -1.0) << "to 0";
+}
+
+TEST_F(MoteusBytes, AWatchdogOfNanIsNone) {
+  enable();
+  hear({0x01, 0x00, 10, 0x0E, 0x20, 0, 0, 0xC0, 0x7F, 0, 0, 0, 0, 0x0D, 0x27, 0, 0, 0xC0, 0x7F});
+  wait(5000);
+  EXPECT_EQ(slave_.mode(), 10);
+}
+
+TEST(MoteusSlave, ByItsRotorAloneItForgetsWholeTurns) {
+  DriveConfig config;
+  config.kind = DriveKind::kMoteus;
+  config.node_id = 3;
+  config.counts_per_unit = 1.0;
+  config.home = MoteusHome::kRotor;
+  MoteusSlave slave(config, 0.001);
+  slave.setPowered(true, 0);
+  slave.setPosition(5.7);
+  const auto positionOf = [&slave] {
+    slave.receive({moteusCommandFrame(3, {.asks_for_setup = true}), 0}, 0);
+    const auto reply = decodeMoteusReply(*slave.outbox().begin(), 3);
+    slave.outbox().clear();
+    EXPECT_EQ(reply->home, 1);
+    return reply->position;
+  };
+  EXPECT_NEAR(positionOf(), 5.7, 1e-6);
+  slave.setPowered(false, 0);
+  slave.setPowered(true, 0);
+  EXPECT_NEAR(positionOf(), 0.7, 1e-6);
 }
 
 }  // namespace

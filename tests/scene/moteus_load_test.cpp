@@ -42,7 +42,7 @@ TEST(MoteusLoad, IsInTheLoadOfItsBusWithoutSyncAndHeartbeat) {
   const HardwareConfig hardware = moteusFiles().load().hardware.value();
   const BusLoad load = busLoads(hardware, 0.001)[0];
   ASSERT_EQ(load.terms.size(), 2u);
-  const FdBits command = worstCaseFdBits(32, true), reply = worstCaseFdBits(24, true);
+  const FdBits command = worstCaseFdBits(32, true), reply = worstCaseFdBits(32, true);
   EXPECT_DOUBLE_EQ(load.bitsPerSecond() * 0.001, 2 * (command.arbitration + reply.arbitration) +
                                                      2 * (command.data + reply.data) / 5.0);
   EXPECT_LT(load.share(), kMaxBusLoad);

@@ -39,7 +39,7 @@ inline constexpr std::uint16_t kMapVersion = 0x102;
 
 /// Bytes on the bus of the longest command and the longest reply.
 inline constexpr int kMoteusCommandBytes = 32;
-inline constexpr int kMoteusReplyBytes = 24;
+inline constexpr int kMoteusReplyBytes = 32;
 
 /// What is sent to a controller in a cycle; each asks it to reply.
 struct MoteusCommand {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "tactus/canopen/can_frame.h"
 #include "tactus/canopen/hardware_config.h"
@@ -13,7 +14,8 @@ namespace tactus {
 
 /// A moteus controller as its bus sees it, apart from the master's code: registers that are written
 /// and read by subframes, the modes that the master uses, and the watchdog of position mode. In
-/// that it follows the velocity at once, whatever position is commanded; otherwise it slows down.
+/// that it follows the velocity at once, and jumps to a position that is commanded; otherwise it
+/// slows down.
 /// Times in ns since the plant was switched on.
 class MoteusSlave {
  public:
@@ -41,10 +43,24 @@ class MoteusSlave {
   int mode() const noexcept { return mode_; }
 
  private:
-  void write(std::uint32_t number, double value) noexcept;
-  void command(int mode) noexcept;
-  double read(std::uint32_t number) const noexcept;
+  /// What a frame commands, with the numbers that it has where they are not written.
+  struct Command {
+    std::optional<int> mode;
+    double turns = 0.0;  ///< not finite: from where it is
+    double turns_per_s = 0.0;
+    double watchdog_s = 0.0;  ///< NaN: none
+  };
+
   bool obeyFrame(const CanFrame& frame, CanFrame& reply) noexcept;
+  enum class Answer : std::uint8_t { kWhole, kError, kNoRoom };
+
+  Answer answer(std::uint32_t first, std::uint32_t count, std::uint8_t what,
+                CanFrame& reply) const noexcept;
+  int write(std::uint32_t number, double value) noexcept;
+  std::optional<double> read(std::uint32_t number, int type) const noexcept;
+  void applyCommand() noexcept;
+  void enter(int mode) noexcept;
+  void follow(double dt_s) noexcept;
   void fail(int code) noexcept;
 
   DriveConfig config_;
@@ -53,8 +69,9 @@ class MoteusSlave {
   int mode_ = 0;
   int fault_ = 0;
   double position_turns_ = 0.0;
-  double velocity_ = 0.0;  ///< m/s or rad/s
-  double commanded_turns_per_s_ = 0.0;
+  double velocity_ = 0.0;         ///< m/s or rad/s
+  double forgotten_turns_ = 0.0;  ///< while the power was off
+  Command command_, followed_;
   std::int64_t enabled_at_ns_ = kNever_ns;
   std::int64_t expires_ns_ = kNever_ns;
   std::int64_t now_ns_ = 0;
