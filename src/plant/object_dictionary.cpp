@@ -53,16 +53,20 @@ constexpr auto kObjects = std::to_array<ObjectDescription>({
     {0x1A00, 6, 4, kRw, kNever, 0},            //
     {0x1A00, 7, 4, kRw, kNever, 0},            //
     {0x1A00, 8, 4, kRw, kNever, 0},            //
+    {0x6007, 0, 2, kRw, kNever, 0},            // abort connection: goes on unless it is told
     {0x603F, 0, 2, kRo, kTransmitted, 0},      // error code
     {0x6040, 0, 2, kRw, kReceived, 0},         // control word
     {0x6041, 0, 2, kRo, kTransmitted, 0},      // status word
     {0x605A, 0, 2, kRw, kNever, 2},            // quick stop: ramp, then switch on disabled
+    {0x605E, 0, 2, kRw, kNever, 2},            // fault reaction: a ramp
     {0x6060, 0, 1, kRw, kReceived, 0},         // mode of operation
     {0x6061, 0, 1, kRo, kTransmitted, 0},      // mode of operation, display
     {0x6064, 0, 4, kRo, kTransmitted, 0},      // position, counts
     {0x606C, 0, 4, kRo, kTransmitted, 0},      // velocity, counts/s
     {0x607F, 0, 4, kRw, kNever, 0xFFFF'FFFF},  // largest speed in the mode, counts/s
     {0x6085, 0, 4, kRw, kNever, 10'000'000},   // quick stop deceleration, counts/s^2
+    {0x60B1, 0, 4, kRw, kReceived, 0},         // velocity offset, counts/s
+    {0x60B2, 0, 2, kRw, kReceived, 0},         // torque offset: no axis here has torque
     {0x60C2, 0, 1, kRo, kNever, 2},            // interpolation time
     {0x60C2, 1, 1, kRw, kNever, 10},           // value
     {0x60C2, 2, 1, kRw, kNever, 0xFD},         // power of ten, signed: ms

@@ -71,7 +71,10 @@ AbortCode checkRange(const ObjectDescription& object, std::uint32_t value) {
     case 0x1016:
       return allowed(value >> 24 == 0 && ((value >> 16) & 0xFF) <= 127, AbortCode::kValueRange);
     case 0x605A:
+    case 0x605E:
       return allowed(value == 2, AbortCode::kValueRange);
+    case 0x6007:
+      return allowed(value <= 3, AbortCode::kValueRange);
     case 0x6060:  // none, cyclic synchronous velocity
       return allowed(value == 0 || value == 9, AbortCode::kValueRange);
     case 0x6085:
@@ -88,6 +91,9 @@ AbortCode checkRange(const ObjectDescription& object, std::uint32_t value) {
 
 AbortCode checkWrite(const ObjectDictionary& objects, const ObjectDescription& object,
                      std::uint32_t value) noexcept {
+  const bool is_locked =
+      object.index == 0x1005 || (object.index >= 0x1400 && object.index < 0x1C00);
+  if (is_locked && objects.isCommunicationLocked()) return AbortCode::kDeviceState;
   switch (object.index) {
     case 0x1400:
     case 0x1800:

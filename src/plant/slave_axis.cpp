@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::uint32_t kVelocityMode = 9;
 constexpr std::uint16_t kVoltageBit = 1U << 4;
+constexpr std::uint16_t kQuickStopBit = 1U << 5;
 constexpr std::uint16_t kRemoteBit = 1U << 9;
 constexpr std::uint16_t kFollowsBit = 1U << 12;
 
@@ -16,10 +17,20 @@ std::uint32_t toCounts(double counts) {
       static_cast<std::int32_t>(std::clamp(std::round(counts), -2147483648.0, 2147483647.0)));
 }
 
-/// In counts/s: 60FF within 607F.
+/// In counts/s: 60FF and its offset 60B1, within 607F.
 double followedVelocity(const ObjectDictionary& objects) noexcept {
   const double largest = objects.get(0x607F);
-  return std::clamp<double>(objects.getSigned(0x60FF), -largest, largest);
+  const double offset = objects.getSigned(0x60B1);
+  const double told = objects.getSigned(0x60FF) + offset;
+  return std::clamp(told, -largest, largest);
+}
+
+/// Bit 5 is anything in these states; half of the drives set it.
+bool tellsMoreThanItsState(int node_id, PowerState state) noexcept {
+  const bool means_nothing =
+      state == PowerState::kSwitchOnDisabled || state == PowerState::kFault ||
+      state == PowerState::kFaultReactionActive || state == PowerState::kNotReadyToSwitchOn;
+  return means_nothing && node_id % 2 == 0;
 }
 
 }  // namespace
@@ -79,6 +90,7 @@ void SlaveAxis::showStatus(ObjectDictionary& objects) const noexcept {
   std::uint16_t word = stateBits(state_);
   if (is_powered_) word |= kVoltageBit | kRemoteBit;
   if (follows(objects)) word |= kFollowsBit;
+  if (tellsMoreThanItsState(config_.node_id, state_)) word |= kQuickStopBit;
   objects.set(0x6041, 0, word);
   objects.set(0x6061, 0, objects.get(0x6060));
 }

@@ -15,6 +15,7 @@ constexpr std::uint16_t kOverCurrent = 0x2310;
 constexpr std::uint16_t kCommunication = 0x8100;
 constexpr std::uint16_t kHeartbeatLost = 0x8130;
 constexpr std::uint16_t kPdoTooShort = 0x8210;
+constexpr std::uint16_t kSyncLength = 0x8240;
 constexpr std::uint16_t kRpdoLost = 0x8250;
 constexpr std::uint16_t kSyncLost = 0x8700;
 
@@ -58,7 +59,7 @@ void SlaveDrive::receive(const QueuedFrame& item, std::int64_t t_ns) noexcept {
   if (nmt_ == NodeState::kOff || nmt_ == NodeState::kInitialising) return;
   const std::uint32_t master = (objects_.get(0x1016, 1) >> 16) & 0x7F;
   if (frame.id == 0) onNmt(frame, t_ns);
-  if (frame.id == objects_.get(0x1005)) onSync(t_ns);
+  if (frame.id == objects_.get(0x1005)) onSync(frame, t_ns);
   if (frame.id == idFrom(0x600)) onSdo(frame, t_ns);
   if (frame.id == pdoId(objects_, kReceivePdo)) onRpdo(item, t_ns);
   if (frame.id == 0x700 + master && frame.size == 1 && masterTimeout_ns() > 0)
@@ -74,7 +75,7 @@ void SlaveDrive::update(std::int64_t t_ns) noexcept {
   }
   if (t_ns >= master_deadline_ns_) {
     master_deadline_ns_ = kNever_ns;
-    fail(kHeartbeatLost);
+    abortConnection(kHeartbeatLost);
     if (nmt_ == NodeState::kOperational) enter(NodeState::kPreOperational);  // default of 1029
   }
   if (t_ns >= syncDeadline_ns()) fail(kSyncLost);
@@ -122,10 +123,17 @@ void SlaveDrive::onNmt(const CanFrame& frame, std::int64_t t_ns) noexcept {
 void SlaveDrive::enter(NodeState state) noexcept {
   if (nmt_ == NodeState::kOperational && state != nmt_) {
     has_latched_rpdo_ = false;
-    if (axis_.state() == PowerState::kOperationEnabled) fail(kCommunication);
+    if (axis_.state() == PowerState::kOperationEnabled) abortConnection(kCommunication);
   }
   if (nmt_ != NodeState::kOperational) sent_status_ = kNoStatus;
   nmt_ = state;
+  objects_.lockCommunication(state == NodeState::kOperational);
+}
+
+/// Object 6007: nothing, or else; all of it is a fault here.
+void SlaveDrive::abortConnection(std::uint16_t error_code) noexcept {
+  if (objects_.get(0x6007) != 0) return fail(error_code);
+  sendEmergency(error_code);
 }
 
 void SlaveDrive::restart(std::uint16_t last_index, std::int64_t t_ns) noexcept {
@@ -176,7 +184,9 @@ void SlaveDrive::onRpdo(const QueuedFrame& item, std::int64_t t_ns) noexcept {
   has_latched_rpdo_ = true;
 }
 
-void SlaveDrive::onSync(std::int64_t t_ns) noexcept {
+/// Without object 1019 it has no data (CiA 301, 7.2.5.3).
+void SlaveDrive::onSync(const CanFrame& frame, std::int64_t t_ns) noexcept {
+  if (frame.size != 0) return sendEmergency(kSyncLength);
   last_sync_ns_ = t_ns;
   if (nmt_ != NodeState::kOperational) return;
   sendTpdoAtSync();  // what was sampled at the SYNC, before the setpoint takes effect

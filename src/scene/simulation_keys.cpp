@@ -98,7 +98,7 @@ Table<TroubleSection> troubleKeys() {
                   integer("id", within(0, 0x7FF),
                           "of the frames, or node id of the drive; absent or 0: all of the bus",
                           &Config::id),
-                  number("delay_s", "s", above(0, 10), "how late frames come, with delay only",
+                  number("delay_s", "s", above(0, 0.25), "how late frames come, with delay only",
                          &Config::delay_s),
               });
 }

@@ -318,9 +318,9 @@ TEST_F(PlantInTrouble, ThePowerOfABusIsCutAndReturns) {
 
 TEST_F(PlantInTrouble, WithoutPowerTheModuleSaysNothingAndKeepsNothing) {
   startWith({trouble(Kind::kPowerCut, 3, 0)});
-  runUntil(0.101);
+  runUntil(0.102);
   master_->forget();
-  runUntil(0.1995);
+  runUntil(0.199);
   for (const CanFrame& frame : master_->heard(3)) EXPECT_EQ(frame.kind, FrameKind::kError);
   runUntil(0.3);
   EXPECT_NEAR(master_->timesHeard(3, 0x100), 25, 1) << "only those since then";

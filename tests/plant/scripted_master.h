@@ -163,6 +163,7 @@ class ScriptedMaster {
     map(0x1800, 0x1A00, 0x180 + node, 0x6041'0010, 0x6064'0020);
     write(drive, 0x1016, 1, 0x007F'003C, 4);
     write(drive, 0x1017, 0, 20, 2);
+    write(drive, 0x6007, 0, 3, 2);
     write(drive, 0x6060, 0, 9, 1);
     write(drive, 0x60C2, 1, 1, 1);
     write(drive, 0x6085, 0, static_cast<std::uint32_t>(10.0 * drive.counts_per_unit), 4);

@@ -75,6 +75,12 @@ class DriveOfNode5 : public testing::Test {
     ASSERT_EQ(lastSaid(0x585)->data[0], 0x60)
         << std::hex << index << ' ' << number(*lastSaid(0x585), 4, 4);
   }
+  /// Of a PDO, in the only state in which it may be.
+  void change(int index, int subindex, std::uint32_t value, int size) {
+    hear(canFrame(0, {128, 5}));
+    write(index, subindex, value, size);
+    hear(canFrame(0, {1, 5}));
+  }
   void map(int communication, int mapping, std::uint32_t id, std::uint32_t first,
            std::uint32_t second) {
     write(communication, 1, 0x8000'0000U | id, 4);
@@ -92,6 +98,7 @@ class DriveOfNode5 : public testing::Test {
     write(0x6060, 0, 9, 1);
     write(0x60C2, 1, 1, 1);
     write(0x6085, 0, 5000, 4);
+    write(0x6007, 0, 3, 2);
     hear(canFrame(0, {1, 5}));
   }
   /// A period: RPDO, SYNC, and the drive moves.
@@ -149,7 +156,7 @@ TEST_F(DriveOfNode5, ObeysNmtForItselfAndForAll) {
 TEST_F(DriveOfNode5, ResetsGiveBackTheFactoryMapping) {
   configure();
   write(0x6085, 0, 777, 4);
-  write(0x1400, 5, 60, 2);
+  change(0x1400, 5, 60, 2);
   hear(canFrame(0, {130, 5}));
   wait(60);
   EXPECT_EQ(drive_.objects().get(0x1400, 5), 0u);
@@ -235,9 +242,10 @@ TEST_F(DriveOfNode5, IgnoresShortSetpointsAndComplains) {
 
 TEST_F(DriveOfNode5, AnInvalidPdoIsNeitherHeardNorSent) {
   configure();
-  enable();
-  write(0x1400, 1, 0x8000'0205, 4);
-  write(0x1800, 1, 0x8000'0185, 4);
+  change(0x1400, 1, 0x8000'0205, 4);
+  change(0x1800, 1, 0x8000'0185, 4);
+  for (const std::uint32_t word : {0x06U, 0x07U, 0x0FU}) write(0x6040, 0, word, 2);
+  ASSERT_EQ(drive_.powerState(), PowerState::kOperationEnabled);
   said_.clear();
   cycle(0x0F, 700);
   EXPECT_EQ(drive_.velocity(), 0.0);
@@ -286,6 +294,18 @@ TEST_F(DriveOfNode5, FollowsNoSetpointFasterThanItsLimit) {
   }
 }
 
+TEST_F(DriveOfNode5, AddsAnOffsetThatItWasLeftWith) {
+  configure();
+  write(0x607F, 0, 700, 4);
+  write(0x60B1, 0, 200, 4);
+  enable();
+  EXPECT_EQ(drive_.velocity(), -0.2) << "enabled with a setpoint of 0";
+  for (const int counts : {300, -300, 600}) {
+    cycle(0x0F, counts);
+    EXPECT_NEAR(drive_.velocity(), -0.001 * std::min(counts + 200, 700), 1e-12) << counts;
+  }
+}
+
 TEST_F(DriveOfNode5, StopsQuicklyByItsOwnRampWhateverTheSetpointSays) {
   configure();
   enable();
@@ -316,6 +336,44 @@ TEST_F(DriveOfNode5, ComesToRestWhenDisabled) {
     for (int i = 0; i < 50; ++i) cycle(word, -1000);
     EXPECT_EQ(drive_.velocity(), 0.0);
   }
+}
+
+/// As many drives leave the factory: a master that does not write 6007 has no watch.
+TEST_F(DriveOfNode5, GoesOnWithoutTheMasterWhereNothingElseIsChosen) {
+  configure();
+  write(0x6007, 0, 0, 2);
+  write(0x1016, 1, 0x007F'003C, 4);
+  enable();
+  hear(canFrame(0x77F, {5}));
+  for (int i = 0; i < 100; ++i) cycle(0x0F, 500);
+  EXPECT_GT(timesSaid(0x85), 0);
+  EXPECT_EQ(drive_.powerState(), PowerState::kOperationEnabled);
+  EXPECT_EQ(drive_.velocity(), -0.5);
+}
+
+TEST_F(DriveOfNode5, LetsNobodyChangeItsPdosWhileItIsOperational) {
+  configure();
+  for (const int index : {0x1400, 0x1600, 0x1800, 0x1A00, 0x1005}) {
+    hear(canFrame(0x605, {0x2F, index & 0xFF, index >> 8, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(lastSaid(0x585)->data[0], 0x80) << std::hex << index;
+  }
+  hear(canFrame(0x605, {0x2F, 0x00, 0x16, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(number(*lastSaid(0x585), 4, 4), 0x0800'0022u);
+  hear(canFrame(0, {128, 5}));
+  map(0x1400, 0x1600, 0x205, 0x6040'0010, 0x60FF'0020);
+}
+
+TEST_F(DriveOfNode5, TakesNoSyncWithData) {
+  configure();
+  enable();
+  const int before = timesSaid(0x185);
+  for (int size = 1; size <= 8; ++size) {
+    CanFrame sync = canFrame(0x80, {});
+    sync.size = static_cast<std::uint8_t>(size);
+    hear(sync);
+    EXPECT_EQ(number(*lastSaid(0x85), 0, 2), 0x8240u);
+  }
+  EXPECT_EQ(timesSaid(0x185), before);
 }
 
 TEST_F(DriveOfNode5, MissesTheMastersHeartbeat) {
@@ -377,7 +435,7 @@ TEST_F(DriveOfNode5, MissesSync) {
 
 TEST_F(DriveOfNode5, MissesSetpointsWhileSyncAndHeartbeatGoOn) {
   configure();
-  write(0x1400, 5, 20, 2);
+  change(0x1400, 5, 20, 2);
   enable();
   for (int i = 0; i < 100; ++i) cycle(0x0F, 500);
   ASSERT_EQ(drive_.powerState(), PowerState::kOperationEnabled);
@@ -402,14 +460,14 @@ TEST_F(DriveOfNode5, MissesSetpointsWhileSyncAndHeartbeatGoOn) {
 
 TEST_F(DriveOfNode5, HasNoDeadlineForSetpointsUnlessItIsToldOne) {
   configure();
-  write(0x1400, 5, 20, 2);
+  change(0x1400, 5, 20, 2);
   for (int i = 0; i < 100; ++i) {
     hear(canFrame(0x80, {}));
     wait(1);
   }
   EXPECT_EQ(timesSaid(0x85), 0) << "it is disabled";
+  change(0x1400, 5, 0, 2);
   enable();
-  write(0x1400, 5, 0, 2);
   for (int i = 0; i < 100; ++i) {
     hear(canFrame(0x80, {}));
     wait(1);
@@ -421,7 +479,7 @@ TEST_F(DriveOfNode5, HasNoDeadlineForSetpointsUnlessItIsToldOne) {
 TEST_F(DriveOfNode5, EnabledBySdoItWaitsForSetpointsAsLongAsAnyOther) {
   configure();
   wait(1000);
-  write(0x1400, 5, 20, 2);
+  change(0x1400, 5, 20, 2);
   for (const std::uint32_t word : {0x06U, 0x07U, 0x0FU}) write(0x6040, 0, word, 2);
   const auto stays = [&](int ms) {
     for (int i = 0; i < ms; ++i) {

@@ -38,7 +38,7 @@ TEST(TroubleLoad, SpellsEveryKind) {
   const std::string time = ", from_s: 1, until_s: 2";
   const std::string bus = time + ", interface: can0";
   EXPECT_EQ(load("kind: drop, id: 1" + bus).kind, Kind::kDrop);
-  EXPECT_EQ(load("kind: delay, delay_s: 1" + bus).kind, Kind::kDelay);
+  EXPECT_EQ(load("kind: delay, delay_s: 0.25" + bus).kind, Kind::kDelay);
   EXPECT_EQ(load("kind: reorder" + bus).kind, Kind::kReorder);
   EXPECT_EQ(load("kind: corrupt" + bus).kind, Kind::kCorrupt);
   EXPECT_EQ(load("kind: duplicate" + bus).kind, Kind::kDuplicate);
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
                       "one of can0, can1"},
         BrokenTrouble{"kind: drop, from_s: 1, until_s: 2, interface: can0, id: 0x800",
                       "64: simulation.troubles[0].id", "out of range", "from 0 to 2047"},
-        BrokenTrouble{"kind: drop, from_s: 1, until_s: 2, interface: can0, delay_s: 1",
+        BrokenTrouble{"kind: drop, from_s: 1, until_s: 2, interface: can0, delay_s: 0.1",
                       "69: simulation.troubles[0].delay_s", "says nothing with drop",
                       "no such key"},
         BrokenTrouble{"kind: delay, from_s: 1, until_s: 2, interface: can0",

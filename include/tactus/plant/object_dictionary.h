@@ -60,10 +60,15 @@ class ObjectDictionary {
   AbortCode write(std::uint16_t index, std::uint8_t subindex, std::uint32_t value,
                   int size) noexcept;
 
+  /// While the node is operational many drives let nobody change SYNC and PDOs.
+  void lockCommunication(bool is_locked) noexcept { is_communication_locked_ = is_locked; }
+  bool isCommunicationLocked() const noexcept { return is_communication_locked_; }
+
  private:
   std::uint32_t initialValue(const ObjectDescription& object) const noexcept;
 
   int node_id_;
+  bool is_communication_locked_ = false;
   std::optional<std::uint32_t> vendor_id_, product_code_;
   std::array<std::uint32_t, 64> values_{};
 };

@@ -29,7 +29,7 @@ struct PlantCounters {
 /// many bits as it has, the lowest id goes first, queues are short. Knows no socket and no clock:
 /// time is an argument, in ns since the plant was switched on.
 ///
-/// The world moves in steps of the period. Its phase follows the other side: a step comes 0.8
+/// The world moves in steps of the period. Its phase follows the other side: a step comes 0.5
 /// periods after the first SYNC (and after the first one that follows a long silence), so that a
 /// sample arrives before the other side wakes next. Obstacles and troubles count their time from
 /// the moment the first drive was enabled.

@@ -67,13 +67,14 @@ class SlaveDrive {
   void onNmt(const CanFrame& frame, std::int64_t t_ns) noexcept;
   void onSdo(const CanFrame& frame, std::int64_t t_ns) noexcept;
   void onRpdo(const QueuedFrame& item, std::int64_t t_ns) noexcept;
-  void onSync(std::int64_t t_ns) noexcept;
+  void onSync(const CanFrame& frame, std::int64_t t_ns) noexcept;
   void restart(std::uint16_t last_index, std::int64_t t_ns) noexcept;
   void finishBoot() noexcept;
   void enter(NodeState state) noexcept;
   void applyRpdo(const QueuedFrame& item, std::int64_t t_ns) noexcept;
   void obey(std::int64_t t_ns) noexcept;
   void fail(std::uint16_t error_code) noexcept;
+  void abortConnection(std::uint16_t error_code) noexcept;
   std::int64_t masterTimeout_ns() const noexcept;
   std::int64_t heartbeatPeriod_ns() const noexcept;
   bool watchesMotion() const noexcept;

@@ -41,7 +41,8 @@ class TroubleScript {
 /// late, twice, in wrong order or with wrong bits.
 class FrameTroubles {
  public:
-  static constexpr std::size_t kCapacity = 256;
+  /// All that fits on a bus of CAN FD within the longest delay that a scene may have.
+  static constexpr std::size_t kCapacity = 4096;
 
   explicit FrameTroubles(int bus);
 
