@@ -13,7 +13,7 @@ from collections import Counter
 import candump_log
 from machine import REPOSITORY, Build, summary
 
-# The robot's limits, which are those of its URDF and robot_with_lines.yaml.
+# The robot's limits: those of its URDF and of guest/daemon.sh.
 MAX_SPEED, MAX_ACCELERATION, PERIOD_S = 5.0, 200.0, 0.001  # m or rad, and s
 ROUNDING = 2  # counts per second
 MODE = re.compile(r"tactusd: (boot|ready|enabling|running|retreating|holding|stopping|fault|off)(?:: (\w+).*)?")

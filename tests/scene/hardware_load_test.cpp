@@ -224,7 +224,7 @@ TEST(ShippedRobot, HasThreeDrivesABusAndTheModuleOnTheFourth) {
   EXPECT_FALSE(hardware.gpio) << "a trial on vcan has no lines";
 }
 
-TEST(ShippedRobot, WithLinesDiffersInItsLinesOnly) {
+TEST(ShippedRobot, WithLinesHasTheSameDrivesAndModules) {
   const std::string scene = shipped("scenes/scenario1_multi_space.yaml");
   const HardwareConfig plain = loadScene(scene, {}).hardware.value();
   const HardwareConfig lines =

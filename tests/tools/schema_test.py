@@ -183,8 +183,7 @@ class Case(unittest.TestCase):
                   "profile": str(CONFIG / "profiles/zeroerr_edriver.yaml")}  # fmt: skip
         robot["drives"] |= sheets
         robot["drives"]["joints"][0] |= sheets
-        robot["dynamics"] = load((crops9 / "robot.yaml").read_text())["dynamics"] | {
-            "servo_bandwidth_hz": 40, "servo_integral_hz": 8}  # fmt: skip
+        robot["dynamics"] |= {"servo_bandwidth_hz": 40, "servo_integral_hz": 8}
         robot["gravity_m_per_s2"] = [0, 0, -9.81]
         robot |= {"module_lost": "stop", "module_lost_speed_share": 0.25}
         robot["tactile_module"]["cover"] = {
