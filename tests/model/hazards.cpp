@@ -95,6 +95,14 @@ constexpr auto kHazards = std::to_array<Hazard>({
      "`CommissionTrouble.SignIsJudgedBeforeAnyJog`, `ArmCheck.WarnsOfSizesThatNoRobotHas`",
      "`tactus commission`, before", "short, slow motions of one joint", "",
      "all, for a file that nobody commissioned", "`robot.yaml.commission.json`"},
+    {kStrays, "two CAN interfaces change places, and their joints with them", Fault::kNone,
+     "`ControlCycleBoot.NamesTheDriveThatDoesNotAnswer`, "
+     "`ControlCycleBoot.RefusesAnArmThatIsNotAtTheStart`",
+     "no answer, where a node id is on one bus alone; else joints that are not at the start",
+     "nothing is switched on", "before motion",
+     "ids that repeat, of joints that are alike at the start or of a scene that begins wherever "
+     "the arm is",
+     "`drive_setup_refused` (16), `not_at_start` (17)"},
     {kStrays, "the law computes nonsense", Fault::kCommandNotFinite,
      "`ApproachLimit.StaysFiniteWhateverTheSensorSays`, `Mode.AnswersEveryFaultByItsRow`"},
     {kStrays, "the computer is too slow, or something else takes it", Fault::kOverrun,

@@ -38,6 +38,11 @@ class Networkd(unittest.TestCase):
             self.assertEqual(value(f"40-v{name}.netdev", "NetDev", "Name"), f"v{name}")
             self.assertEqual(value(f"40-v{name}.netdev", "NetDev", "Kind"), "vcan")
 
+    def test_the_queue_is_set_before_udev_names_adapters_on_usb(self):
+        """The first .link that fits is all that an interface gets; and one of the user's own is to be it."""
+        (link,) = NETWORKD.glob("*.link")
+        self.assertTrue("20-" < link.name < "73-usb-net-by-mac.link", link.name)
+
     def test_and_the_way_back_removes_them_all(self):
         made = {value(file.name, "NetDev", "Name") for file in NETWORKD.glob("*.netdev")}
         text = (ROOT / "debian/tactusd.README.Debian").read_text(encoding="utf-8")
