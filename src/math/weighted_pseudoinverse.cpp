@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "tactus/math/pair.h"
@@ -64,14 +65,23 @@ void WeightedPseudoinverse::factorise(const TaskJacobian& J,
 void WeightedPseudoinverse::factorise(const ScaledJacobian& J_scaled, int joints, int m) noexcept {
   joints_ = joints;
   m_ = m;
-  withPairs(joints, [&](auto pairs) { orthogonalise<pairs>(J_scaled); });
+  withPairs(joints, [&](auto pairs) {
+    const double longest_squared = orthogonalise<pairs>(J_scaled, 0.0);
+    if (longest_squared > 0.0) orthogonalise<pairs>(J_scaled, longest_squared);
+  });
   chooseDamping();
 }
 
 /// Modified Gram-Schmidt, each column orthogonalised twice ("twice is enough"): Q is orthonormal to
 /// machine precision whatever the condition of J.
+///
+/// A column that is rounding from the start, as of a component that the arm cannot move, counts as
+/// a direction beside itself alone, and one that another rounding turns in the next cycle. Returns
+/// the squared length of the longest column if there is such a one, else 0: with it once more.
 template <int kPairs>
-void WeightedPseudoinverse::orthogonalise(const ScaledJacobian& J_scaled) noexcept {
+double WeightedPseudoinverse::orthogonalise(const ScaledJacobian& J_scaled,
+                                            double longest_squared) noexcept {
+  double longest = 0.0, shortest = std::numeric_limits<double>::infinity();
   for (int j = 0; j < m_; ++j) {
     Lanes<kPairs> column = J_scaled.col(j).head<2 * kPairs>();
     double explained = 0.0;  // squared length of what the earlier columns take away
@@ -86,11 +96,15 @@ void WeightedPseudoinverse::orthogonalise(const ScaledJacobian& J_scaled) noexce
       explained += R_[k][j] * R_[k][j];
     }
     const double rest_squared = dotOf<kPairs>(column.data(), column.data());
-    const bool independent = rest_squared > kRankTolerance * kRankTolerance * explained;
+    const bool independent =
+        rest_squared > kRankTolerance * kRankTolerance * std::max(explained, longest_squared);
+    longest = std::max(longest, explained + rest_squared);
+    shortest = independent ? std::min(shortest, rest_squared) : shortest;
     R_[j][j] = independent ? std::sqrt(rest_squared) : 0.0;
     inv_diagonal_[j] = independent ? 1.0 / R_[j][j] : 0.0;
     Q_.col(j).head<2 * kPairs>() = inv_diagonal_[j] * column;
   }
+  return shortest <= kRankTolerance * kRankTolerance * longest ? longest : 0.0;
 }
 
 /// The singular values of R are those of J W^-1/2. 1 / |R^-1|_F is a lower bound of the smallest

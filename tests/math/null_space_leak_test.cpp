@@ -5,6 +5,7 @@
 #include "support/expanded_pseudoinverse.h"
 #include "support/random_jacobian.h"
 #include "support/random_robot.h"
+#include "tactus/math/rotation.h"
 
 /// Null-space motion must not reach the task in any pose, singular ones included.
 namespace tactus {
@@ -120,6 +121,33 @@ TEST(Pseudoinverse, HandsANotFiniteTargetOn) {
   TaskVector w = TaskVector::Zero(pose.m);
   w[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(factors.expand(factors.solve(w)).allFinite());
+}
+
+/// A planar arm whose joint frames are rolled: that it cannot leave its plane is a row of rounding,
+/// which counts as no direction, or the null space would be another one in each cycle.
+TEST(NullSpaceLeak, AComponentThatTheArmCannotMoveTakesNothingOfIt) {
+  test::Random random(74);
+  for (int run = 0; run < 200; ++run) {
+    const int n = random.integer(4, 9);
+    std::vector<Joint> joints(n);
+    double roll = 0.0;
+    for (Joint& joint : joints) {
+      joint.X_ParentJoint = {rotationMatrix(random.uniform(-1.0, 1.0) * Vector3::UnitX()),
+                             0.3 * Vector3::UnitX()};
+      roll += rotationVector(joint.X_ParentJoint.R_AB)[0];
+      joint.axis = rotationMatrix(-roll * Vector3::UnitX()) * Vector3::UnitZ();
+    }
+    const SerialChain chain(joints, {n - 1, {Matrix3::Identity(), 0.2 * Vector3::UnitX()}});
+    const JointVector q = random.vector(n, -1.0, 1.0);
+    const auto projector = [&](const JointVector& at) {
+      constexpr int kPosition[] = {0, 1, 2};
+      const TaskJacobian J = test::tipJacobian(chain, at, kPosition, 3);
+      return Eigen::MatrixXd(test::expandPseudoinverse(J, JointVector::Ones(n)).N);
+    };
+    const Eigen::MatrixXd N = projector(q);
+    ASSERT_NEAR(N.trace(), n - 2, 1e-9) << run;
+    ASSERT_LT((projector(q + 1e-6 * JointVector::Ones(n)) - N).norm(), 1e-3) << run;
+  }
 }
 
 }  // namespace

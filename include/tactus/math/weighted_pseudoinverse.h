@@ -48,7 +48,7 @@ class WeightedPseudoinverse {
 
  private:
   template <int kPairs>
-  void orthogonalise(const ScaledJacobian& J_scaled) noexcept;
+  double orthogonalise(const ScaledJacobian& J_scaled, double longest_squared) noexcept;
   void chooseDamping() noexcept;
 
   int joints_ = 0;
