@@ -77,6 +77,14 @@ NearBody* placeFor(double distance_m, double reach_m, NearBodies& near) noexcept
   return place;
 }
 
+/// A point of an axis, and what of the other one is nearest to it.
+NearBody bodyAt(const Segment& axis, double position_m, const Segment& other, double radii_m,
+                int index) noexcept {
+  const Vector3 p_Axis = axis.p_Start + position_m * axis.direction;
+  const ClosestPoints closest = closestPoints(other, p_Axis);
+  return {index, closest.distance_m - radii_m, -closest.normal, p_Axis};
+}
+
 }  // namespace
 
 BodyDistances::BodyDistances(const SerialChain& chain, const ClearanceConfig& config)
@@ -141,6 +149,21 @@ double BodyDistances::distance_m(const ChainPose& pose, int index) const noexcep
   const CapsuleAtWall& wall = walls_[index - pairs];
   const Capsule& capsule = capsules_[wall.capsule];
   return closestPoints(place(capsule, pose), wall.half_space).distance_m - capsule.radius_m;
+}
+
+NearStretch BodyDistances::stretch(const ChainPose& pose, const NearBody& near) const noexcept {
+  constexpr double kNotParallel = 0.2;  ///< sine of the angle
+  if (near.index >= static_cast<int>(pairs_.size())) return {0.0, {}};
+  const CapsulesApart& pair = pairs_[near.index];
+  const Segment axis = place(capsules_[pair.capsule], pose);
+  const Segment other = place(capsules_[pair.other], pose);
+  const double sine = axis.direction.cross(other.direction).norm() / kNotParallel;
+  if (!(sine < 1.0)) return {0.0, {}};
+  const Stretch beside = stretchBeside(axis, other);
+  const double share = (1.0 - sine * sine) * (1.0 - sine * sine);
+  return {share,
+          {bodyAt(axis, beside.from_m, other, pair.radii_m, near.index),
+           bodyAt(axis, beside.to_m, other, pair.radii_m, near.index)}};
 }
 
 void BodyDistances::placeAll(const ChainPose& pose, Placed& placed) const noexcept {

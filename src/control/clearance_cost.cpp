@@ -11,9 +11,16 @@ ScaledVector clearanceCost(const ClearanceAvoidance& avoid, const BodyDistances&
   // Of bodies that there is no room for nothing may be missed once they come or go.
   const double reach_m = std::min(avoid.distance_m, near.beyond_m);
   ScaledVector sum = ScaledVector::Zero();
+  const auto add = [&](double share, const NearBody& body) {
+    const double lacking_m = reach_m - body.distance_m;
+    if (lacking_m > 0.0) sum -= share * lacking_m * distances.gradient(pose, body);
+  };
   for (int i = 0; i < near.size; ++i) {
-    const double lacking_m = reach_m - near.body[i].distance_m;
-    if (lacking_m > 0.0) sum -= lacking_m * distances.gradient(pose, near.body[i]);
+    if (near.body[i].distance_m >= reach_m) continue;
+    const NearStretch stretch = distances.stretch(pose, near.body[i]);
+    add(1.0 - stretch.share, near.body[i]);
+    if (stretch.share == 0.0) continue;
+    for (const NearBody& end : stretch.end) add(0.5 * stretch.share, end);
   }
   return avoid.gain_per_s / (kLever_m * kLever_m) * sum.cwiseProduct(inv_sqrt_weights);
 }

@@ -51,14 +51,10 @@ struct Positions {
 
 /// The middle of the stretch where parallels are beside each other.
 Positions middleOfParallels(const Segment& a, const Straight& b, double cosine) noexcept {
-  const double sign = cosine < 0.0 ? -1.0 : 1.0;
-  const double start = a.direction.dot(b.p - a.p_Start);
-  const double one = start + sign * b.from_m;
-  const double other = start + sign * b.to_m;
-  const double low = std::clamp(std::min(one, other), 0.0, a.length_m);
-  const double high = std::clamp(std::max(one, other), 0.0, a.length_m);
-  const double s = 0.5 * (low + high);
-  return {s, std::clamp(sign * (s - start), b.from_m, b.to_m)};
+  const Stretch beside = stretchBeside(a, b);
+  const double s = 0.5 * (beside.from_m + beside.to_m);
+  const double t = (cosine < 0.0 ? -1.0 : 1.0) * (s - a.direction.dot(b.p - a.p_Start));
+  return {s, std::clamp(t, b.from_m, b.to_m)};
 }
 
 [[gnu::always_inline]] inline ClosestPoints closestTo(const Straight& straight,
@@ -77,7 +73,24 @@ Positions middleOfParallels(const Segment& a, const Straight& b, double cosine) 
   return closest;
 }
 
+Straight straightOf(const Segment& segment) noexcept {
+  return {segment.p_Start, segment.direction, 0.0, segment.length_m};
+}
+
 }  // namespace
+
+Stretch stretchBeside(const Segment& segment, const Straight& straight) noexcept {
+  const double sign = segment.direction.dot(straight.direction) < 0.0 ? -1.0 : 1.0;
+  const double start = segment.direction.dot(straight.p - segment.p_Start);
+  const double one = start + sign * straight.from_m;
+  const double other = start + sign * straight.to_m;
+  return {std::clamp(std::min(one, other), 0.0, segment.length_m),
+          std::clamp(std::max(one, other), 0.0, segment.length_m)};
+}
+
+Stretch stretchBeside(const Segment& segment, const Segment& other) noexcept {
+  return stretchBeside(segment, straightOf(other));
+}
 
 ClosestPoints closestPoints(const Segment& segment, const Vector3& point) noexcept {
   const double along = segment.direction.dot(point - segment.p_Start);
@@ -86,7 +99,7 @@ ClosestPoints closestPoints(const Segment& segment, const Vector3& point) noexce
 }
 
 ClosestPoints closestPoints(const Segment& segment, const Segment& other) noexcept {
-  return closestTo({other.p_Start, other.direction, 0.0, other.length_m}, segment);
+  return closestTo(straightOf(other), segment);
 }
 
 ClosestPoints closestPoints(const Segment& segment, const Straight& straight) noexcept {

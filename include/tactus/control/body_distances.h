@@ -20,6 +20,13 @@ struct NearBody {
   Vector3 p_Body;     ///< the point of its axis that is nearest
 };
 
+/// Bodies that are nearly parallel are near all along: at both ends of the stretch where one is
+/// beside the other, more than at the nearest point, which goes from end to end within no motion.
+struct NearStretch {
+  double share;  ///< of the ends; 0 from some 11 degrees on, 1: parallel, between smooth
+  std::array<NearBody, 2> end;
+};
+
 /// Those joints alone, from the first one to the one before the end, change a distance.
 struct MovingJoints {
   int begin, end;
@@ -46,6 +53,9 @@ class BodyDistances {
   void findNear(const ChainPose& pose, double reach_m, NearBodies& near) const noexcept;
 
   MovingJoints movingJoints(const NearBody& near) const noexcept;
+
+  /// Of a wall, both of whose ends are near bodies already: a share of 0.
+  NearStretch stretch(const ChainPose& pose, const NearBody& near) const noexcept;
 
   /// Of its distance, m/m or m/rad, not scaled.
   ScaledVector gradient(const ChainPose& pose, const NearBody& near) const noexcept;

@@ -37,6 +37,15 @@ struct ClosestPoints {
   bool is_beside;  ///< both points lie between the ends, so that the normal is across both
 };
 
+/// Of a segment that is nearly parallel to another one, from where to where it is beside it: as far
+/// as the ends of the other, seen along it. One point where it is not.
+struct Stretch {
+  double from_m, to_m;
+};
+
+Stretch stretchBeside(const Segment& segment, const Straight& straight) noexcept;
+Stretch stretchBeside(const Segment& segment, const Segment& other) noexcept;
+
 /// Where several pairs of points are equally near, as with parallel lines, the middle one.
 ClosestPoints closestPoints(const Segment& segment, const Vector3& point) noexcept;
 ClosestPoints closestPoints(const Segment& segment, const Segment& other) noexcept;
