@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 
 #include "tactus/daemon/request_refusal.h"
@@ -69,9 +68,9 @@ void aim(const TaskConfig& task, const Json& request, const Pose& from, Pose& X_
           "0");
   }
   // The tool goes the shorter way round.
-  if (is_relative && turn.norm() > std::numbers::pi)
-    refuseRequest(fmt::format("rotate_rad turns by {:.4g} rad", turn.norm()),
-                  "at most half a turn");
+  if (is_relative && turn.norm() > kMostTurn_rad)
+    refuseRequest(fmt::format("rotate_rad turns by {:.16g} rad", turn.norm()),
+                  "less than half a turn, at most 3.14159265");
   const Matrix3 R = rotationMatrix(turn);
   X_BaseTool.R_AB = is_relative ? Matrix3(R * from.R_AB) : R;
 }

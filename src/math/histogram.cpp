@@ -12,8 +12,10 @@ std::int64_t Histogram::highestIn_ns(int bucket) noexcept {
 }
 
 std::int64_t Histogram::percentile_ns(double percent) const noexcept {
+  // 0.999 of 1000 is a little above 999 in doubles.
+  constexpr double kRounding = 1.0 - 1e-15;
   const double rank =
-      std::ceil(std::clamp(percent, 0.0, 100.0) / 100.0 * static_cast<double>(count_));
+      std::ceil(std::clamp(percent, 0.0, 100.0) / 100.0 * kRounding * static_cast<double>(count_));
   const std::uint64_t wanted = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(rank));
   std::uint64_t seen = 0;
   for (int i = 0; i < kBuckets; ++i) {

@@ -180,7 +180,9 @@ ToolMotion ToolMotion::stop(double t_s, const ToolMotionLimits& limits) const no
 }
 
 ToolMotion::Way ToolMotion::wayAt(int first, double t_s) const noexcept {
-  const double t = t_s >= end_s() ? duration_s_ : std::max(0.0, t_s - plan_.start_s);
+  // A time that is NaN stays one.
+  const double since_s = t_s - plan_.start_s;
+  const double t = t_s >= end_s() ? duration_s_ : since_s < 0.0 ? 0.0 : since_s;
   Way way;
   for (int i = 0; i < 3; ++i) {
     const AxisState state = axes_[first + i].at(t);

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "tactus/math/rotation.h"
 
 namespace tactus {
 namespace {
@@ -61,9 +62,9 @@ void checkReach(const CheckedScene& c, const Waypoint& waypoint, const std::stri
 void checkWaypoint(const CheckedScene& c, const Waypoint& waypoint, const std::string& path) {
   checkReach(c, waypoint, path);
   const double angle = waypoint.rotation_vector_rad.norm();
-  if (angle > std::numbers::pi) {
-    c.fail(path + ".rotation_vector_rad", fmt::format("turns by {:.9g} rad", angle),
-           "at most half a turn, 3.14159265 rad");
+  if (angle > kMostTurn_rad) {
+    c.fail(path + ".rotation_vector_rad", fmt::format("turns by {:.16g} rad", angle),
+           "less than half a turn, at most 3.14159265 rad: that has no sense of rotation");
   }
   if (angle > 0.0 && !c.scene.task.hasRotation()) {
     c.fail(path + ".rotation_vector_rad", "the task does not control the orientation",

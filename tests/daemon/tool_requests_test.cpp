@@ -172,6 +172,8 @@ Json turned(const std::string& components, const Json& rotate_rad, bool is_relat
 TEST(TurningToolRequests, RefuseARelativeTurnThatWouldGoTheOtherWayRound) {
   const std::string all = "[x, y, z, rx, ry, rz]";
   EXPECT_EQ(turned(all, {0.0, 0.0, 3.1}, true).at("done"), true);
+  EXPECT_EQ(turned(all, {0.0, 0.0, 3.14159265}, true).at("done"), true);
+  EXPECT_EQ(turned(all, {0.0, 0.0, 3.141592653589793}, true).at("done"), false) << "to which side";
   const Json far = turned(all, {0.0, 0.0, 3.5}, true);
   EXPECT_EQ(far.at("done"), false);
   EXPECT_NE(far.value("error", "").find("half a turn"), std::string::npos) << far;

@@ -10,11 +10,11 @@
 namespace tactus {
 namespace {
 
-constexpr double kPercents[] = {0.0, 0.1, 1.0, 25.0, 50.0, 90.0, 99.0, 99.9, 99.999, 100.0};
+constexpr std::size_t kPerMyriads[] = {0, 10, 100, 700, 2500, 5000, 5500, 9000, 9900, 9990, 10000};
 
-std::int64_t exactPercentile(const std::vector<std::int64_t>& sorted, double percent) {
-  const double rank = std::ceil(percent / 100.0 * static_cast<double>(sorted.size()));
-  return sorted[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
+std::int64_t exactPercentile(const std::vector<std::int64_t>& sorted, std::size_t per_myriad) {
+  const std::size_t rank = (per_myriad * sorted.size() + 9999) / 10000;
+  return sorted[std::max<std::size_t>(1, rank) - 1];
 }
 
 void expectCloseToSorting(std::vector<std::int64_t> values) {
@@ -24,8 +24,9 @@ void expectCloseToSorting(std::vector<std::int64_t> values) {
   EXPECT_EQ(histogram.count(), values.size());
   EXPECT_EQ(histogram.min_ns(), values.front());
   EXPECT_EQ(histogram.max_ns(), values.back());
-  for (const double percent : kPercents) {
-    const std::int64_t exact = exactPercentile(values, percent);
+  for (const std::size_t per_myriad : kPerMyriads) {
+    const std::int64_t exact = exactPercentile(values, per_myriad);
+    const double percent = static_cast<double>(per_myriad) / 100.0;
     EXPECT_GE(histogram.percentile_ns(percent), exact) << percent;
     EXPECT_LE(histogram.percentile_ns(percent) - exact, exact / 16) << percent;
   }
@@ -42,6 +43,15 @@ TEST(Histogram, agreesWithSortingUpToASixteenth) {
     }
     expectCloseToSorting(values);
     ASSERT_FALSE(HasFailure()) << "run " << run;
+  }
+}
+
+/// 0.999 times 1000 is a little above 999 in doubles.
+TEST(Histogram, takesNoRankTooManyWhereItIsWhole) {
+  for (int thousands = 1; thousands <= 300; ++thousands) {
+    Histogram histogram;
+    for (int i = 0; i < 1000 * thousands; ++i) histogram.add(i < 999 * thousands ? 1 : 1'000'000);
+    EXPECT_EQ(histogram.percentile_ns(99.9), 1) << thousands;
   }
 }
 

@@ -269,6 +269,9 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenText{"speed_m_per_s: 0.05", "rotation_vector_rad: [0, 3, 3]",
                    "scene.yaml:7:62: task.trajectory.line.rotation_vector_rad: ", "turns by",
                    "half a turn"},
+        BrokenText{"speed_m_per_s: 0.05", "rotation_vector_rad: [0, 3.141592653589793, 0]",
+                   "scene.yaml:7:62: task.trajectory.line.rotation_vector_rad: ", "turns by",
+                   "no sense of rotation"},
         BrokenText{"speed_m_per_s: 0.05", "rotation_vector_rad: [0, 1, 0]",
                    "scene.yaml:7:62: task.trajectory.line.rotation_vector_rad: ",
                    "does not control the orientation", "rx, ry or rz among task.components"}));

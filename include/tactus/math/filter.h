@@ -34,7 +34,7 @@ class KnownLagShare {
 };
 
 /// Of the rate: below it a filter of doubles, whose sum of coefficients is (2 pi cutoff / rate)^3,
-/// no longer shows a constant as it is; here to 4e-7.
+/// no longer shows a constant as it is; here to 4e-6.
 inline constexpr double kLeastCutoff = 1e-4;
 
 /// 3rd-order Butterworth low pass by the bilinear transform with prewarping, direct form II

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <numbers>
+
 #include "tactus/math/types.h"
 
 namespace tactus {
+
+/// Of a turn that is asked for: closer to half a turn rounding decides which way round it goes.
+inline constexpr double kMostTurn_rad = std::numbers::pi - 1e-9;
 
 /// Rotation by |v| rad about v / |v|. Own sine, see sin_cos.h.
 Matrix3 rotationMatrix(const Vector3& rotation_vector) noexcept;
