@@ -25,6 +25,14 @@ constexpr double kLargestEntry = 1e3;  ///< of a calibration, as robot.yaml take
   failAt(beginOf(file.path), "records", problem, "expected " + expectation);
 }
 
+/// Why the pushes do not tell a row.
+std::string untoldText(int row) {
+  const char* const name = kWrenchRows[static_cast<std::size_t>(row)].name;
+  if (row != 2 && row != 3) return fmt::format("the pushes hardly tell {}", name);
+  return fmt::format("the pushes along {} are all at one place along the cover and hardly tell {}",
+                     row == 2 ? "z" : "y", name);
+}
+
 void judgeProblem(const PushFile& file, const CalibrationFit& fit) {
   switch (fit.problem) {
     case CalibrationProblem::kNone:
@@ -34,12 +42,12 @@ void judgeProblem(const PushFile& file, const CalibrationFit& fit) {
                    fmt::format("{} or more: along y and along z, each near both ends of the cover",
                                fit.rows));
     case CalibrationProblem::kPushesAlike:
-      refusePushes(file,
-                   fmt::format("the pushes hardly tell {}: condition {:.3g}",
-                               kWrenchRows[fit.weakest_row].name, fit.pushes_condition),
-                   fmt::format("at most {:g}: pushes along y and along z, each near both ends{}",
-                               kMaxPushesCondition,
-                               fit.rows == 5 ? ", with moments about x that differ" : ""));
+      refusePushes(
+          file,
+          fmt::format("{}: condition {:.3g}", untoldText(fit.weakest_row), fit.pushes_condition),
+          fmt::format("at most {:g}: pushes along y and along z, each near both ends{}",
+                      kMaxPushesCondition,
+                      fit.rows == 5 ? ", with moments about x that differ" : ""));
     case CalibrationProblem::kChannelsAlike:
       refusePushes(file,
                    fmt::format("the channels say the same of different pushes: condition {:.3g}",

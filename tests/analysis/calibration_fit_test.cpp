@@ -199,10 +199,16 @@ TEST(CalibrationFit, RefusesPushesThatDoNotTellEachRow) {
   EXPECT_EQ(problemOf({}, &row), CalibrationProblem::kTooFew);
   EXPECT_EQ(problemOf({0, 2, 8}, &row), CalibrationProblem::kTooFew);
   EXPECT_EQ(problemOf({0, 1, 4, 5, 8, 9}, &row), CalibrationProblem::kPushesAlike);
-  EXPECT_TRUE(row == 1 || row == 2) << "F_z or M_y: nothing along z";
+  EXPECT_EQ(row, 1) << "F_z: nothing along z";
   EXPECT_EQ(problemOf({2, 3, 6, 7, 10, 11}, &row), CalibrationProblem::kPushesAlike);
-  EXPECT_TRUE(row == 0 || row == 3) << "F_y or M_z: nothing along y";
-  EXPECT_EQ(problemOf({0, 1, 2, 3}, &row), CalibrationProblem::kPushesAlike) << "one place";
+  EXPECT_EQ(row, 0) << "F_y: nothing along y";
+  for (const int first : {0, 4, 8}) {
+    const std::vector<int> at_one_place = {first, first + 1, first + 2, first + 3};
+    EXPECT_EQ(problemOf(at_one_place, &row), CalibrationProblem::kPushesAlike) << first;
+    EXPECT_TRUE(row == 2 || row == 3) << "a moment, also beyond the middle: " << row;
+  }
+  EXPECT_EQ(problemOf({0, 4, 8, 10, 11}, &row), CalibrationProblem::kPushesAlike);
+  EXPECT_EQ(row, 2) << "M_y: along z at the far end alone";
   EXPECT_EQ(problemOf({0, 2, 8, 10}, &row), CalibrationProblem::kNone);
   EXPECT_EQ(problemOf({0, 2, 8, 11}, &row), CalibrationProblem::kNone);
 }

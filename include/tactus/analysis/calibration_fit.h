@@ -43,7 +43,9 @@ struct CalibrationFit {
   int rows = 4;  ///< 5 if a push has a moment about x
   /// Of the pushes, each by its size and moments by l and r: largest to smallest singular value.
   double pushes_condition = kNoLimit;
-  int weakest_row = 0;                   ///< of F_y, F_z, M_y, M_z, M_x, that they tell least
+  /// Of F_y, F_z, M_y, M_z, M_x, that they tell least; M_y, M_z: where F_z, F_y is told, but at
+  /// nearly one place.
+  int weakest_row = 0;
   double channels_condition = kNoLimit;  ///< of the counts, likewise
   Eigen::Matrix<double, 5, 8> calibration = Eigen::Matrix<double, 5, 8>::Zero();
   std::vector<PushResidual> residuals;  ///< one a push
