@@ -30,15 +30,20 @@ constexpr int kLooksInVain = 20;
 constexpr double kNearer = 0.99;
 
 struct MoveOptions {
-  std::string to, rotate, waypoints;
+  std::optional<std::string> to, rotate;
+  std::string waypoints;
   bool is_relative = false, to_posture = false;
   std::optional<double> speed_m_per_s, speed_rad_per_s;
   bool waits = false;
   bool json = false;
 };
 
-/// "0.9,-,0.25": a dash stays as it is.
+/// "0.9,-,0.25": a dash stays as it is. An empty text, as of a variable that is not set, is
+/// refused, as the arm would move by the rest of the order.
 Json vectorOf(const char* option, const std::string& text) {
+  if (text.empty())
+    throw InputError(
+        fmt::format("{}: is empty, expected three numbers, such as 0.9,-,0.25", option));
   Json vector = Json::array();
   std::size_t start = 0;
   while (start <= text.size()) {
@@ -63,8 +68,8 @@ Json vectorOf(const char* option, const std::string& text) {
 
 Json moveRequest(const MoveOptions& options) {
   Json request = {{"do", "move"}};
-  if (!options.to.empty()) request["to_m"] = vectorOf("--to", options.to);
-  if (!options.rotate.empty()) request["rotate_rad"] = vectorOf("--rotate", options.rotate);
+  if (options.to) request["to_m"] = vectorOf("--to", *options.to);
+  if (options.rotate) request["rotate_rad"] = vectorOf("--rotate", *options.rotate);
   if (options.is_relative) request["relative"] = true;
   if (options.to_posture) request["to_posture"] = true;
   if (options.speed_m_per_s) request["speed_m_per_s"] = *options.speed_m_per_s;
@@ -180,10 +185,15 @@ CLI::App* addOrder(CLI::App& app, const char* name, const char* help, MoveOption
 
 void addMoveCommand(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<MoveOptions>();
-  CLI::App* command =
+  CLI::App* const command =
       addOrder(app, "move", "Tell the tool of the running daemon where to go", *options);
-  command->add_option("--to", options->to, "X,Y,Z in m, base frame; - for one that stays");
-  command->add_option("--rotate", options->rotate, "RX,RY,RZ in rad: axis times angle, base frame");
+  // CLI11 would take an empty text for an absent one.
+  command->add_option_function<std::string>(
+      "--to", [options](const std::string& text) { options->to = text; },
+      "X,Y,Z in m, base frame; - for one that stays");
+  command->add_option_function<std::string>(
+      "--rotate", [options](const std::string& text) { options->rotate = text; },
+      "RX,RY,RZ in rad: axis times angle, base frame");
   command->add_flag("--relative", options->is_relative, "Both from where the tool is");
   command->add_flag("--to-posture", options->to_posture,
                     "To where it is in redundancy.posture; with --wait until all joints are there");
