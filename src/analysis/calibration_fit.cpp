@@ -168,6 +168,12 @@ void leaveOut(const std::vector<KnownPush>& pushes, const CalibratedModule& modu
   }
 }
 
+/// Of a push that nothing checks it is -1.
+double shareOff(const CalibrationFit& fit, int push) noexcept {
+  const auto& left_out = fit.left_out[static_cast<std::size_t>(push)];
+  return left_out ? left_out->share : -1.0;
+}
+
 }  // namespace
 
 Wrench5 wrenchOf(const KnownPush& push) noexcept {
@@ -175,16 +181,17 @@ Wrench5 wrenchOf(const KnownPush& push) noexcept {
                   push.position_m * push.force_y_N, push.moment_x_Nm}};
 }
 
-int wrongPush(const CalibrationFit& fit) noexcept {
-  const auto shareOf = [&](int push) {
-    const auto& left_out = fit.left_out[static_cast<std::size_t>(push)];
-    return left_out ? left_out->share : 0.0;
-  };
-  int farthest = fit.worst;
+int farthestPush(const CalibrationFit& fit) noexcept {
+  int farthest = -1;
   for (int i = 0; i < std::ssize(fit.left_out); ++i)
-    if (farthest < 0 || shareOf(i) > shareOf(farthest)) farthest = i;
-  if (farthest < 0 || !(shareOf(farthest) > kMaxLeftOutShare)) return -1;
-  return fit.worst >= 0 && shareOf(fit.worst) > kMaxLeftOutShare ? fit.worst : farthest;
+    if (shareOff(fit, i) > (farthest < 0 ? -1.0 : shareOff(fit, farthest))) farthest = i;
+  return farthest;
+}
+
+int wrongPush(const CalibrationFit& fit) noexcept {
+  const int farthest = farthestPush(fit);
+  if (farthest < 0 || !(shareOff(fit, farthest) > kMaxLeftOutShare)) return -1;
+  return shareOff(fit, fit.worst) > kMaxLeftOutShare ? fit.worst : farthest;
 }
 
 double pushesCondition(const std::vector<KnownPush>& pushes, const CalibratedModule& module,

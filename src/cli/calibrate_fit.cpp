@@ -109,12 +109,37 @@ std::string residualText(const PushResidual& residual) {
   return fmt::format("{:.3g} N, {}", residual.force_N, placeText(residual.position_m));
 }
 
+/// Of the pushes that no other ones tell: a slip of the pen would not show.
+std::vector<int> uncheckedLines(const PushFile& file, const CalibrationFit& fit) {
+  std::vector<int> lines;
+  for (std::size_t i = 0; i < file.pushes.size(); ++i)
+    if (!fit.left_out[i]) lines.push_back(file.pushes[i].at.line);
+  return lines;
+}
+
+std::string uncheckedText(const std::vector<int>& lines) {
+  return lines.size() == 1 ? fmt::format("line {} is checked by nothing", lines.front())
+                           : fmt::format("lines {} are checked by nothing", fmt::join(lines, ", "));
+}
+
+void judgeUnchecked(const PushFile& file, const CalibrationFit& fit) {
+  const std::vector<int> lines = uncheckedLines(file, fit);
+  if (!lines.empty())
+    refusePushes(file, uncheckedText(lines) + ", so nothing is written",
+                 "one more push of each of these kinds");
+}
+
 std::string worstText(const PushFile& file, const CalibrationFit& fit) {
-  if (fit.worst < 0) return "worst      nothing checks the pushes: one more of each kind would\n";
-  const auto worst = static_cast<std::size_t>(fit.worst);
-  return fmt::format("worst      line {}: {:.1f} % off what the others say, refused above {:g} %\n",
-                     file.pushes[worst].at.line, 100.0 * fit.left_out[worst]->share,
-                     100.0 * kMaxLeftOutShare);
+  std::string text;
+  if (const int push = farthestPush(fit); push >= 0) {
+    const auto worst = static_cast<std::size_t>(push);
+    text = fmt::format(
+        "worst      line {}: {:.1f} % off what the others say, refused above {:g} %\n",
+        file.pushes[worst].at.line, 100.0 * fit.left_out[worst]->share, 100.0 * kMaxLeftOutShare);
+  }
+  const std::vector<int> lines = uncheckedLines(file, fit);
+  if (!lines.empty()) text += "unchecked  " + uncheckedText(lines) + ": one more of each\n";
+  return text;
 }
 
 Json residualJson(const PushResidual& residual) {
@@ -211,8 +236,9 @@ Json fitJson(const PushFile& file, const SceneModule& module, const CalibrationF
     calibration.push_back(std::vector<double>(entries.data(), entries.data() + 8));
     noise[fmt::format("{}_{}", kWrenchRows[row].name, kWrenchRows[row].unit)] = fit.noise[row];
   }
+  const int farthest = farthestPush(fit);
   const Json worst =
-      fit.worst < 0 ? Json() : Json(file.pushes[static_cast<std::size_t>(fit.worst)].at.line);
+      farthest < 0 ? Json() : Json(file.pushes[static_cast<std::size_t>(farthest)].at.line);
   return {{"tactile_module", module.link},
           {"counts_per_N", module.shape.counts_per_N},
           {"calibration", calibration},
@@ -220,11 +246,13 @@ Json fitJson(const PushFile& file, const SceneModule& module, const CalibrationF
           {"channels_condition", fit.channels_condition},
           {"noise", noise},
           {"worst_line", worst},
+          {"unchecked_lines", uncheckedLines(file, fit)},
           {"pushes", pushes}};
 }
 
-std::string writeCalibration(const Scene& scene, const SceneModule& module,
+std::string writeCalibration(const Scene& scene, const SceneModule& module, const PushFile& file,
                              const CalibrationFit& fit) {
+  judgeUnchecked(file, fit);
   const SourceFile& robot = scene.sources[scene.scene_sources];
   const YamlNode root = parseYaml(robot);
   const std::string key = moduleKey(root, module.index) + ".calibration";

@@ -148,7 +148,7 @@ void fitFile(const CalibrateOptions& options) {
   const Scene scene = calibratedScene(options.files.back(), options, SceneUse::kSimulation);
   const SceneModule module = sceneModule(scene, file);
   const CalibrationFit found = fitPushes(file, module.shape);
-  const std::string written = options.writes ? writeCalibration(scene, module, found) : "";
+  const std::string written = options.writes ? writeCalibration(scene, module, file, found) : "";
   if (options.json) {
     Json json = fitJson(file, module, found);
     json["written"] = written.empty() ? Json() : Json(written);

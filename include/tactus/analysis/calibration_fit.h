@@ -49,7 +49,8 @@ struct CalibrationFit {
   double channels_condition = kNoLimit;  ///< of the counts, likewise
   Eigen::Matrix<double, 5, 8> calibration = Eigen::Matrix<double, 5, 8>::Zero();
   std::vector<PushResidual> residuals;  ///< one a push
-  /// By the calibration of all other pushes; absent where these are too few or too alike.
+  /// By the calibration of all other pushes; absent where these are too few or too alike: nothing
+  /// checks such a push.
   std::vector<std::optional<PushResidual>> left_out;
   Wrench5 noise = Wrench5::Zero();  ///< sigma of each row, N and Nm, of the channels without load
   int worst = -1;                   ///< the push whose absence makes the others agree best
@@ -70,6 +71,9 @@ inline constexpr double kMaxLeftOutShare = 0.15;
 /// Young 1936; Golub and Van Loan, Matrix Computations, 5.5). sigma: of the counts without load.
 CalibrationFit fitCalibration(const std::vector<KnownPush>& pushes, const CalibratedModule& module,
                               const ChannelVector& sigma);
+
+/// The push that is off the others by the largest share; -1: none can be judged.
+int farthestPush(const CalibrationFit& fit) noexcept;
 
 /// The push that is wrong, if any is off the others by more than kMaxLeftOutShare: the worst, or,
 /// if that is not, the one that is off most. -1: none.

@@ -29,8 +29,9 @@ std::string fitText(const PushFile& file, const SceneModule& module, const Calib
 Json fitJson(const PushFile& file, const SceneModule& module, const CalibrationFit& fit);
 
 /// Writes the calibration into the scene's robot.yaml, all else of which stays; returns its path.
-/// Throws InputError where it has no room for it, and RunError.
-std::string writeCalibration(const Scene& scene, const SceneModule& module,
+/// Throws InputError where nothing checks one of the pushes, or it has no room for it, and
+/// RunError.
+std::string writeCalibration(const Scene& scene, const SceneModule& module, const PushFile& file,
                              const CalibrationFit& fit);
 
 }  // namespace tactus
