@@ -1,19 +1,17 @@
 #include "tactus/cli/plant_run.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <system_error>
 #include <vector>
 
+#include "tactus/cli/e_stop_file.h"
 #include "tactus/io/can_socket.h"
 #include "tactus/io/kernel_frame.h"
 #include "tactus/io/raw_can_socket.h"
@@ -59,34 +57,6 @@ void becomeRealTime(std::FILE* notes) {
     fmt::print(notes, "goes on without {}: {}; to grant it: {}\n", refusal.what,
                refusal.why_it_matters, refusal.how_to_grant);
 }
-
-/// The e-stop line for whoever moves the real one: a file that holds 1 or 0, or a FIFO.
-class EmergencyStopFile {
- public:
-  explicit EmergencyStopFile(const std::string& path) {
-    if (path.empty()) return;
-    // For reading too: a FIFO can then be opened before its reader.
-    descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0644);
-    if (descriptor_ < 0)
-      throw std::system_error(errno, std::system_category(),
-                              path + ": the file for the e-stop can't be opened");
-    write(false);
-  }
-  ~EmergencyStopFile() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  EmergencyStopFile(const EmergencyStopFile&) = delete;
-  EmergencyStopFile& operator=(const EmergencyStopFile&) = delete;
-
-  bool write(bool is_pressed) noexcept {
-    if (descriptor_ < 0) return true;
-    lseek(descriptor_, 0, SEEK_SET);  // a FIFO has no start, and needs none
-    return ::write(descriptor_, is_pressed ? "1\n" : "0\n", 2) == 2;
-  }
-
- private:
-  int descriptor_ = -1;
-};
 
 /// Carries frames between the plant and the interfaces, as time goes by.
 class PlantPump {

@@ -20,7 +20,8 @@ struct PlantRunResult {
 /// or SIGINT. Says on `notes` when it is ready, what it goes without, and when the e-stop moves;
 /// e_stop_file (none if empty) then holds, or as a FIFO gets, a line 1 or 0. Throws
 /// std::system_error for an interface or file that can't be opened, an interface that is down, and
-/// one that is removed meanwhile; std::runtime_error for one that another plant plays on.
+/// one that is removed meanwhile; std::runtime_error for one that another plant plays on, and for a
+/// file that holds something else.
 PlantRunResult runPlant(const Scene& scene, const std::string& e_stop_file, std::FILE* notes);
 
 }  // namespace tactus
