@@ -34,16 +34,26 @@ int loudestModule(const Capture& capture, int modules) {
   return loudest;
 }
 
+bool isFelt(const CycleRecord& record, int module) {
+  return record.force_sensor_N[module] > record.gains.force.contact_threshold_N;
+}
+
 /// The first cycle that is shown in which F_sen passes F_th on its way up; null: it does not.
 const CycleRecord* feltCycle(const Capture& capture, int module) {
-  const auto is_felt = [module](const CycleRecord& record) {
-    return record.force_sensor_N[module] > record.gains.force.contact_threshold_N;
-  };
   for (std::size_t i = 1; i < capture.records.size(); ++i)
-    if (capture.records[i].t_s >= capture.from_s && is_felt(capture.records[i]) &&
-        !is_felt(capture.records[i - 1]))
+    if (capture.records[i].t_s >= capture.from_s && isFelt(capture.records[i], module) &&
+        !isFelt(capture.records[i - 1], module))
       return &capture.records[i];
   return nullptr;
+}
+
+/// Why there is no feltCycle().
+const char* whyNotFelt(const Capture& capture, int module) {
+  const auto first = std::ranges::find_if(
+      capture.records, [&](const CycleRecord& record) { return record.t_s >= capture.from_s; });
+  const bool was_felt = first != capture.records.end() && isFelt(*first, module);
+  return was_felt ? "F_sen was above F_th before what is shown (--pre)"
+                  : "F_sen does not pass F_th";
 }
 
 const CycleRecord& triggerCycle(const Capture& capture) {
@@ -79,14 +89,15 @@ ScopeCurve aligned(const std::vector<PredictedForce>& forces, double threshold_N
   return curve;
 }
 
-void predict(const Scene& scene, int module, const CycleRecord* felt, ScopeTrace& trace) {
+void predict(const Scene& scene, const Capture& capture, int module, const CycleRecord* felt,
+             ScopeTrace& trace) {
   const std::optional<PredictedTouch> known =
       predictedTouch(scene.controller, scene.plant, scene.period_s, module,
                      felt ? felt->gains : scene.controller.gains);
   if (!known) {
     trace.why_not_predicted = "the scene's law or its rates have no such loop";
   } else if (!felt) {
-    trace.why_not_predicted = "F_sen does not pass F_th";
+    trace.why_not_predicted = whyNotFelt(capture, module);
   } else if (!trace.touch.is_known) {
     trace.why_not_predicted = "force and way do not tell c_e";
   } else if (trace.touch.speed_m_per_s < kLeastSpeed_m_per_s) {
@@ -141,7 +152,7 @@ ScopeTrace scopeTrace(const Scene& scene, const TriggerCondition& condition,
     trace.peak_N = std::max(trace.peak_N, record.force_sensor_N[module]);
   }
   if (felt) trace.touch = fitOf(scene, capture, module, felt->t_s);
-  predict(scene, module, felt, trace);
+  predict(scene, capture, module, felt, trace);
   return trace;
 }
 

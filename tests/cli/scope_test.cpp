@@ -151,8 +151,18 @@ TEST(Scope, PredictsTheTouchesOfScenes) {
 }
 
 TEST(Scope, SaysWhyThereIsNoPrediction) {
-  EXPECT_NE(ScopedRun("scenario1_joint_space").traces()[0].at("why_not_predicted"), "");
-  EXPECT_NE(ScopedRun("scenario1_acceleration").traces()[0].at("why_not_predicted"), "");
+  const auto whyOf = [](const ScopedRun& run, const std::vector<std::string>& options = {}) {
+    return run.traces(options)[0].at("why_not_predicted").get<std::string>();
+  };
+  const std::string no_loop = "the scene's law or its rates have no such loop";
+  EXPECT_EQ(whyOf(ScopedRun("scenario1_joint_space")), no_loop);
+  EXPECT_EQ(whyOf(ScopedRun("scenario1_acceleration")), no_loop);
+  const ScopedRun run("scenario3_tactus");
+  EXPECT_EQ(whyOf(run, {"--trigger", "force_N > 2", "--pre", "0"}),
+            "F_sen was above F_th before what is shown (--pre)");
+  EXPECT_EQ(whyOf(run, {"--trigger", "force_N > 2", "--pre", "1"}), "");
+  EXPECT_EQ(whyOf(ScopedRun("scenario3_tactus", {{"simulation.duration_s", "1"}}), {"--auto"}),
+            "F_sen does not pass F_th");
 }
 
 TEST(Scope, FitsTheScreenAndHasNoColourForAFile) {
