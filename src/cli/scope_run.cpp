@@ -81,7 +81,7 @@ class Scope {
       return options_.is_single;
     }
     const bool is_late = record.t_s > shown_s_ + options_.pre_s + options_.post_s;
-    if (is_live_ && options_.is_auto && is_late) showNewest();
+    if (is_live_ && options_.is_auto && is_late && !ring_.isWaiting()) showNewest();
     return false;
   }
 
@@ -119,6 +119,7 @@ class Scope {
     view_.traces.push_back(scopeTrace(scene_, view_.condition, capture));
     while (view_.traces.size() > static_cast<std::size_t>(options_.keep)) view_.traces.pop_front();
     shown_s_ = capture.records.back().t_s;
+    unprinted_ = std::min(unprinted_ + 1, view_.traces.size());
     has_new_ = true;
   }
 
@@ -156,13 +157,13 @@ class Scope {
     std::fputs(text.c_str(), stdout);
   }
 
+  /// Of a run that is followed each trace once, the newest last.
   void printJson() {
+    const std::size_t printed = options_.follows ? view_.traces.size() - unprinted_ : 0;
     Json all = Json::array();
-    for (const ScopeTrace& trace : view_.traces) {
-      if (options_.follows && trace.trigger_s <= printed_s_) continue;
-      all.push_back(scopeJson(trace));
-      printed_s_ = trace.trigger_s;
-    }
+    for (std::size_t i = printed; i < view_.traces.size(); ++i)
+      all.push_back(scopeJson(view_.traces[i]));
+    unprinted_ = 0;
     if (!options_.follows) std::fputs(jsonText(all).c_str(), stdout);
     for (const Json& trace : all)
       if (options_.follows) std::fputs((trace.dump() + "\n").c_str(), stdout);
@@ -198,7 +199,7 @@ class Scope {
   ScopeView view_;
   bool is_live_ = false, has_new_ = false;
   double live_s_ = kNoLimit, shown_s_ = 0.0;
-  double printed_s_ = -kNoLimit;  ///< the newest of those that are followed and printed
+  std::size_t unprinted_ = 0;  ///< of the traces the newest
 };
 
 Scope makeScope(const ScopeOptions& options) {

@@ -57,6 +57,7 @@ class Scope(unittest.TestCase):
             "both": cls.start("--trigger", FIRST, *followed),
             "late": cls.start("--single", "--trigger", FIRST, *followed),
             "auto": cls.start("--auto", "--trigger", "force_N > 1e6", *followed),
+            "fires": cls.start("--auto", "--pre", "0", "--trigger", SECOND, *followed),
             "daemon": cls.start("--trigger", SECOND, "--json", RUNTIME_DIRECTORY=str(cls.live)),
         }
         single = cls.start("--single", "--trigger", SECOND, "-o", cls.live / "page.html", *followed)
@@ -78,8 +79,8 @@ class Scope(unittest.TestCase):
             assert program.returncode == 0, name
         return {name: [json.loads(line) for line in text.splitlines()] for name, text in shown.items()}
 
-    def whole(self, trigger):
-        done = subprocess.run([TACTUS, "scope", "--post", "0.5", "--trigger", trigger, "--json", self.log],
+    def whole(self, trigger, *options):
+        done = subprocess.run([TACTUS, "scope", "--post", "0.5", "--trigger", trigger, "--json", *options, self.log],
                               check=True, capture_output=True, text=True)  # fmt: skip
         return json.loads(done.stdout)
 
@@ -101,6 +102,18 @@ class Scope(unittest.TestCase):
         for trace in self.shown["auto"]:
             self.assertFalse(trace["is_triggered"])
             self.assertEqual(trace["force"]["t_s"][-1], 0.0)
+
+    def test_auto_shows_the_trigger_too(self):
+        """Pictures are as long as what comes behind a trigger: one would fall into it."""
+        shown = self.shown["fires"]
+        expected = self.whole(SECOND, "--pre", "0")
+        self.assertEqual([trace for trace in shown if trace["is_triggered"]], expected)
+        self.assertEqual(len(expected), 1)
+        self.assertGreater(len(shown), 2)
+        times = [trace["trigger_s"] for trace in shown]
+        self.assertEqual(times, sorted(set(times)))
+        at = expected[0]["trigger_s"]
+        self.assertFalse([time_s for time_s in times if at < time_s < at + 0.5])
 
     def test_page_is_well_formed(self):
         page = (self.live / "page.html").read_text()

@@ -32,6 +32,8 @@ class CaptureRing {
   std::optional<Capture> add(const CycleRecord& record);
   /// At the end of a run: the one that has had its trigger, but not all of its time.
   std::optional<Capture> unfinished() const;
+  /// Whether there was a trigger, and what comes behind it is not there yet.
+  bool isWaiting() const noexcept { return trigger_s_.has_value(); }
   /// What there is now, without a trigger.
   Capture newest() const;
 
