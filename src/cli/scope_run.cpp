@@ -7,12 +7,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <istream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "tactus/cli/scope_page.h"
@@ -133,7 +131,7 @@ class Scope {
 
   void show() {
     has_new_ = false;
-    if (!options_.output.empty()) write();
+    if (!options_.output.empty()) writeWhole(options_.output, scopePage(view_));
     if (options_.json) {
       printJson();
     } else {
@@ -167,29 +165,6 @@ class Scope {
     if (!options_.follows) std::fputs(jsonText(all).c_str(), stdout);
     for (const Json& trace : all)
       if (options_.follows) std::fputs((trace.dump() + "\n").c_str(), stdout);
-  }
-
-  /// Who reads the page meanwhile has the one before. What is no file, as a pipe or a device, is
-  /// written to, and not replaced.
-  void write() const {
-    std::error_code error;
-    const std::filesystem::file_status there = std::filesystem::status(options_.output, error);
-    if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
-      OutputFile file(options_.output);
-      file.append(scopePage(view_));
-      return file.close();
-    }
-    const std::string part = options_.output + ".part";
-    OutputFile file(part);
-    try {
-      file.append(scopePage(view_));
-      file.flush();
-      file.rename(part, options_.output);
-    } catch (...) {
-      std::remove(part.c_str());
-      throw;
-    }
-    file.close();
   }
 
   const ScopeOptions& options_;

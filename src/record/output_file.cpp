@@ -175,6 +175,20 @@ void replaceWithoutCopy(const std::string& path, const std::string& text) {
   Successor(path, text).takePlace();
 }
 
+void writeWhole(const std::string& path, const std::string& text) {
+  std::error_code ignored;  // of what is not there yet
+  if (std::filesystem::is_regular_file(path, ignored)) return replaceWithoutCopy(path, text);
+  const bool is_new = !std::filesystem::exists(path, ignored);
+  OutputFile file(path);
+  try {
+    file.append(text);
+    file.close();
+  } catch (...) {
+    if (is_new) std::filesystem::remove(path, ignored);
+    throw;
+  }
+}
+
 void refuseOverwriting(const std::string& input, const std::string& output) {
   std::error_code ignored;  // of an output that does not exist yet
   if (std::filesystem::equivalent(input, output, ignored)) {

@@ -219,7 +219,8 @@ TEST(Scope, FollowedIsTheSame) {
             0);
   EXPECT_EQ(Json::parse(output), run.traces({"--keep", "1"})[0]);
   EXPECT_TRUE(folder.has("scope.html"));
-  EXPECT_FALSE(folder.has("scope.html.part"));
+  const std::filesystem::directory_iterator files(folder.path()), end;
+  EXPECT_EQ(std::distance(files, end), 3) << "log, summary and page";
 }
 
 TEST(Scope, WritesAPageThatNeedsNothingElse) {
@@ -262,6 +263,23 @@ TEST(Scope, WritesToADeviceAndDoesNotReplaceIt) {
   EXPECT_THROW(test::runCommand(addScopeCommand, {"scope", run.log.path(), "-o", full}, output),
                RunError);
   EXPECT_TRUE(std::filesystem::is_symlink(full));
+}
+
+/// Whose that file is nobody knows: it may be the log itself.
+TEST(Scope, TakesNobodyElsesNameForItsPage) {
+  const ScopedRun run("scenario3_tactus");
+  const test::RunFolder folder;
+  const std::string page = folder.path() + "/page.html", log = page + ".part";
+  std::filesystem::copy_file(run.log.path(), log);
+  std::filesystem::create_symlink("real.html", folder.path() + "/link.html");
+  std::ofstream(folder.path() + "/real.html") << "old";
+  std::string output;
+  for (const std::string& path : {page, page, folder.path() + "/link.html"})
+    EXPECT_EQ(test::runCommand(addScopeCommand, {"scope", log, "-o", path}, output), 0);
+  EXPECT_EQ(folder.content("page.html.part"), run.log.content());
+  EXPECT_NE(folder.content("page.html").find("<svg"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path() + "/link.html"));
+  EXPECT_NE(folder.content("real.html").find("<svg"), std::string::npos);
 }
 
 TEST(Scope, RefusesToOverwriteItsLog) {

@@ -97,6 +97,21 @@ TEST_F(ReplacedFile, LinkStaysALink) {
   EXPECT_EQ(namesIn(folder_), (std::set<std::string>{"link.yaml", "scene.yaml", "scene.yaml~"}));
 }
 
+TEST_F(ReplacedFile, IsWrittenAsAWholeWhateverIsThere) {
+  const fs::path link = folder_ / "link.yaml", fresh = folder_ / "fresh.yaml";
+  const fs::path dangling = folder_ / "dangling.yaml";
+  fs::create_symlink("scene.yaml", link);
+  fs::create_symlink("later.yaml", dangling);
+  for (const fs::path& path : {link, fresh, dangling}) writeWhole(path.string(), "new");
+  EXPECT_TRUE(fs::is_symlink(link) && fs::is_symlink(dangling));
+  EXPECT_EQ(contentOf(path_) + contentOf(fresh) + contentOf(folder_ / "later.yaml"), "newnewnew");
+  EXPECT_EQ(namesIn(folder_), (std::set<std::string>{"dangling.yaml", "fresh.yaml", "later.yaml",
+                                                     "link.yaml", "scene.yaml"}));
+  EXPECT_EQ(fs::status(fresh).permissions(), fs::status(path_).permissions());
+  EXPECT_THROW(writeWhole((folder_ / "none" / "x").string(), "new"), std::runtime_error);
+  EXPECT_THROW(writeWhole("/dev/full", "new"), RunError);
+}
+
 TEST_F(ReplacedFile, WhatTheCheckThrowsLeavesAllAsItWas) {
   const auto refuse = [](const std::string&) { throw std::runtime_error("no"); };
   EXPECT_THROW(replaceFile(path_.string(), "new", refuse), std::runtime_error);

@@ -69,6 +69,10 @@ void replaceFile(const std::string& path, const std::string& text,
 /// The same, but what it was is kept nowhere, and a copy beside stays as it is.
 void replaceWithoutCopy(const std::string& path, const std::string& text);
 
+/// As replaceWithoutCopy(): who reads the file meanwhile has the one before. Creates it where there
+/// is none; what is no file, as a pipe or a device, is written to.
+void writeWhole(const std::string& path, const std::string& text);
+
 /// Throws InputError if writing to `output` would destroy the file `input`.
 void refuseOverwriting(const std::string& input, const std::string& output);
 
