@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdint>
 #include <istream>
 #include <memory>
 #include <stdexcept>
@@ -53,6 +54,31 @@ void send(const CycleRecord& record, const std::vector<RecordColumn>& columns,
   socket.send(json + "}");
 }
 
+/// Which cycles are sent, so that they are `rate_hz` in the mean, also where that is no whole part
+/// of the cycles a second.
+class StreamPace {
+ public:
+  explicit StreamPace(double rate_hz) : rate_hz_(rate_hz) {}
+
+  /// Behind a gap it does not catch up.
+  bool isDue(double t_s) {
+    constexpr double kRounding_s = 1e-9;  // of the times of the log
+    if (t_s < next_s() - kRounding_s) return false;
+    ++sent_;
+    if (t_s >= next_s()) {
+      start_s_ = t_s;
+      sent_ = 1;
+    }
+    return true;
+  }
+
+ private:
+  double next_s() const { return start_s_ + static_cast<double>(sent_) / rate_hz_; }
+
+  double rate_hz_, start_s_ = -kNoLimit;
+  std::int64_t sent_ = 0;  ///< since start_s_
+};
+
 /// One file of the log; true: it goes on in another one. is_live: all is to be sent, also what the
 /// next file holds already.
 bool streamFile(const StreamOptions& options, const std::string& path, const DatagramSocket& socket,
@@ -62,12 +88,10 @@ bool streamFile(const StreamOptions& options, const std::string& path, const Dat
   UlogReader reader(in, path);
   const std::vector<RecordColumn> columns = recordColumns(reader.description().shape);
   CycleRecord record;
-  double next_s = 0.0;
+  StreamPace pace(options.rate_hz);
   while (reader.next(record)) {
     is_live = is_live || file.isLive();
-    if (!is_live || record.t_s < next_s) continue;
-    next_s = record.t_s + 1.0 / options.rate_hz - 1e-9;
-    send(record, columns, socket);
+    if (is_live && pace.isDue(record.t_s)) send(record, columns, socket);
   }
   is_live = is_live || file.isLive();
   return file.goesOn();

@@ -14,6 +14,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 import xml.etree.ElementTree
@@ -30,6 +31,40 @@ def tactus(*arguments):
     return subprocess.run([TACTUS, *arguments], check=True, capture_output=True, text=True).stdout
 
 
+class Receiver:
+    """All datagrams, as they come: the kernel's buffer does not hold those of seconds."""
+
+    def __init__(self):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 22)
+        self.socket.bind(("127.0.0.1", 0))
+        self.socket.settimeout(0.2)
+        self.datagrams = []
+        self.is_over = False
+        self.thread = threading.Thread(target=self.receive, daemon=True)
+        self.thread.start()
+
+    def receive(self):
+        while True:
+            is_over = self.is_over
+            try:
+                self.datagrams.append(self.socket.recv(65536))
+            except TimeoutError:
+                if is_over:
+                    return
+
+    def all(self):
+        """Once nobody sends any more."""
+        self.is_over = True
+        self.thread.join()
+        self.socket.close()
+        return self.datagrams
+
+
+def times_of(datagrams):
+    return sorted({json.loads(datagram)["timestamp"] for datagram in datagrams})
+
+
 class Stream(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -43,7 +78,7 @@ class Stream(unittest.TestCase):
         cls.contacts = json.loads(tactus("contacts", next(folder.glob("*/run.ulg")), "--json"))
         cls.live = folder / "live"
         cls.live.mkdir()
-        cls.received, cls.followed = cls.stream_while_it_grows()
+        cls.received, cls.followed, cls.often = cls.stream_while_it_grows()
 
     @classmethod
     def tearDownClass(cls):
@@ -54,19 +89,16 @@ class Stream(unittest.TestCase):
         path = cls.live / "run.ulg"
         half = len(cls.log) // 2
         path.write_bytes(cls.log[:half])
-        receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        receiver.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 22)
-        receiver.bind(("127.0.0.1", 0))
-        receiver.settimeout(60)
-        port = receiver.getsockname()[1]
-        stream = subprocess.Popen(
-            [TACTUS, "stream", "--plotjuggler", f"127.0.0.1:{port}", "--rate", "50", path])
+        receiver, often = Receiver(), Receiver()
+        stream, often_stream = (
+            subprocess.Popen([TACTUS, "stream", "--plotjuggler", f"127.0.0.1:{to.socket.getsockname()[1]}",
+                              "--rate", rate, path])
+            for to, rate in ((receiver, "50"), (often, "300")))  # fmt: skip
         follow = subprocess.Popen([TACTUS, "contacts", "--follow", "--json", path], text=True,
                                   stdout=subprocess.PIPE)  # fmt: skip
-        for program in (stream, follow):
+        for program in (stream, often_stream, follow):
             cls.addClassCleanup(program.kill)
             wait_until_read(program, path)
-        received = []
         with open(path, "ab") as file:
             at = half
             # Cut anywhere, also within a cycle; the first pieces only show that all was read.
@@ -76,16 +108,9 @@ class Stream(unittest.TestCase):
                 at += 40007
                 time.sleep(0.02)
         (cls.live / "summary.json").write_text("{}")
-        assert stream.wait(60) == 0
-        receiver.settimeout(0)
-        while True:
-            try:
-                received.append(receiver.recv(65536))
-            except BlockingIOError:
-                break
-        receiver.close()
+        assert (stream.wait(60), often_stream.wait(60)) == (0, 0)
         followed, _ = follow.communicate(timeout=60)
-        return received, [json.loads(line) for line in followed.splitlines()]
+        return receiver.all(), [json.loads(line) for line in followed.splitlines()], often.all()
 
     def test_is_json_with_finite_numbers_alone(self):
         self.assertGreater(len(self.received), 50)
@@ -103,6 +128,14 @@ class Stream(unittest.TestCase):
         self.assertEqual(times, sorted(set(times)))
         steps = [b - a for a, b in zip(times, times[1:])]
         self.assertAlmostEqual(min(steps), 0.02, places=6)
+
+    def test_rate_holds_in_the_mean(self):
+        """300 Hz of 1000: three or four cycles apart, and in the end as many as asked for."""
+        times = times_of(self.often)
+        self.assertGreater(times[-1] - times[0], 1.0)
+        self.assertEqual(len(times), 1 + math.floor(300.0 * (times[-1] - times[0]) + 1e-6))
+        steps = {round(1000.0 * (b - a)) for a, b in zip(times, times[1:])}
+        self.assertEqual(steps, {3, 4})
 
     def test_has_the_numbers_of_the_csv(self):
         for datagram in self.received:
