@@ -188,8 +188,10 @@ void addCalibrateCommand(CLI::App& app, int& exit_code) {
   command->add_option("files", options->files, "SCENE, or for fit PUSHES.yaml SCENE")->required();
   command->add_option("-o,--output", options->output,
                       "record: file of the pushes; one that is there is continued");
-  command->add_option("--module", options->module,
-                      "show, record: which of several tactile modules, from 0");
+  command
+      ->add_option("--module", options->module,
+                   "show, record: which of several tactile modules, from 0")
+      ->check(CLI::Range(0, kMaxTactileModules - 1).description(""));
   command->add_option("--duration", options->duration_s, "show: seconds; else until it is stopped")
       ->check(numberWithin(1.0, 1e6));
   CLI::Option* const set =

@@ -222,7 +222,7 @@ void addIdentifyCommand(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
   command->add_option("--module", options->module, "Which of several tactile modules, from 0")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, kMaxTactileModules - 1).description(""));
   command->add_flag("--json", options->json, "Print JSON");
   command->callback([options, &exit_code] {
     identifyCover(*options);

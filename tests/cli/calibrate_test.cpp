@@ -118,6 +118,13 @@ TEST_F(CalibrateTest, OfSeveralModulesOnlyTheOneThatWasPushedIsWritten) {
   test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);
   record(module, scriptOf(random, false));
   EXPECT_THROW(fit({"--module", "0"}), CLI::ValidationError) << "the file says which";
+  std::string output;
+  const auto show = [&](const char* index) {
+    return test::runCommand(addCalibrateCommand,
+                            {"calibrate", "show", path("scene.yaml"), "--module", index}, output);
+  };
+  EXPECT_THROW(show("-1"), CLI::ValidationError);
+  EXPECT_THROW(show("8"), CLI::ValidationError) << "more than there may be";
   EXPECT_EQ(fit({"--write"})["tactile_module"], "link4");
   const std::vector<SimulatedModuleConfig> after = modules();
   ASSERT_EQ(after.size(), 3u);

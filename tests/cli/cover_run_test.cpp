@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -136,6 +137,8 @@ TEST_F(CoverRunTest, WhatASceneDoesNotTellIsRefused) {
   expectRefusal({kCoverScene, "--set", mass + "0.4", "--set", "simulation.duration_s=3"},
                 "too short");
   expectRefusal({kCoverScene, "--set", mass + "0.4", "--module", "1"}, "no tactile module 1");
+  EXPECT_THROW(identified({kCoverScene, "--module", "-1"}), CLI::ValidationError);
+  EXPECT_THROW(identified({kCoverScene, "--module", "8"}), CLI::ValidationError);
   expectRefusal({kCoverScene, "--set", mass + "60"}, "the run ends by tactile_saturated");
   expectRefusal({kCoverScene, "--set", mass}, "simulation.tactile_module.cover.mass_kg");
   expectRefusal({std::string(kCoverScene) + "/none.yaml"}, "none.yaml");
