@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tactus/cli/commission_text.h"
 #include "tactus/cli/push_file.h"
 #include "tactus/cli/wrench_rows.h"
 #include "tactus/record/run_error.h"
@@ -135,11 +136,26 @@ class Recording {
 };
 
 /// A second enter while a push is measured, say, would be the next answer, and an empty one ends.
+/// What is answered has no blanks about it.
 bool ask(const RecordSession& session, const std::string& question, std::string& answer) {
   if (session.forget_typed) session.forget_typed();
   fmt::print(session.out, "{}", question);
   std::fflush(session.out);
-  return session.answer(answer);
+  const bool is_answered = session.answer(answer);
+  if (is_answered) answer = trimmedLine(answer);
+  return is_answered;
+}
+
+/// Waits for enter alone, or for `other` where there is such an answer: what was typed for the next
+/// question, say, shall not begin to measure. False: there are no more answers.
+bool askForEnter(const RecordSession& session, const std::string& question,
+                 const std::string& other, std::string& answer) {
+  while (ask(session, question, answer)) {
+    if (answer.empty() || answer == other) return true;
+    fmt::print(session.out, "{} is no answer, expected enter{}\n", inQuotes(answer),
+               other.empty() ? "" : " or " + other);
+  }
+  return false;
 }
 
 /// False: there are no more answers.
@@ -148,7 +164,7 @@ bool takeZero(const RecordSession& session, Recording& recording) {
   const std::string question = fmt::format(
       "zero of {}: hands off, then enter, and keep off for {:g} s: ", escaped(session.link),
       kZero_s);
-  while (ask(session, question, answer)) {
+  while (askForEnter(session, question, "", answer)) {
     const ChannelWindow window = listen(session.frames, session.module, kZero_s);
     if (const auto defect = window.defect()) {
       fmt::print(session.out, "refused: {}\n", defectText(*defect));
@@ -175,8 +191,8 @@ bool takePush(const RecordSession& session, const KnownPush& push, Recording& re
   std::string answer;
   const std::string question =
       fmt::format("hold it, then enter, and hold it for {:g} s (s: skip it): ", kHeld_s);
-  if (!ask(session, question, answer)) return false;
-  if (answer == "s") return true;
+  if (!askForEnter(session, question, "s", answer)) return false;
+  if (!answer.empty()) return true;
   const ChannelWindow window = listen(session.frames, session.module, kHeld_s);
   const std::string problem = pushProblem(window, recording.zero());
   if (!problem.empty()) {

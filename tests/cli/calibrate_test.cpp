@@ -200,6 +200,31 @@ TEST_F(CalibrateTest, WhatWasTypedBeforeAQuestionIsNoAnswer) {
                   .ends_with("ended; module link4, " + path("pushes.yaml") + ": no push yet\n"));
 }
 
+/// What was meant for the next question shall not be measured as a push.
+TEST_F(CalibrateTest, EnterAloneBeginsToMeasure) {
+  test::Random random(52);
+  test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);
+  const Wrench5 load = wrenchOf({4.0, 0.0, 0.1});
+  const std::string said = record(module, {{"y"},
+                                           {" "},
+                                           {"4 +y 0.1"},
+                                           {"S", load},
+                                           {"4 +z 0.1", load},
+                                           {"\t\r", load},
+                                           {"4 +z 0.2"},
+                                           {" s\r", load},
+                                           {"  "}});
+  const PushFile file = readPushFile(path("pushes.yaml"));
+  ASSERT_EQ(file.pushes.size(), 1u);
+  EXPECT_EQ(file.pushes[0].push.position_m, 0.1);
+  EXPECT_EQ(file.pushes[0].push.force_y_N, 4.0);
+  const std::string content = folder_.content("pushes.yaml");
+  EXPECT_EQ(content.find("zero:"), content.rfind("zero:"));
+  EXPECT_NE(said.find("'y' is no answer, expected enter\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("'S' is no answer, expected enter or s\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("ended; module link4"), std::string::npos) << said;
+}
+
 TEST_F(CalibrateTest, AWrongEntryIsNamedByItsLine) {
   test::Random random(45);
   test::VirtualModule module(test::channelsWith(test::hiddenCalibration(random), 4), 0.005, 0x100);
