@@ -197,7 +197,8 @@ Json toJson(const Identified& found) {
 }
 
 void identifyCover(const IdentifyOptions& options) {
-  const bool is_scene = std::filesystem::path(options.path).extension() == ".yaml";
+  const std::filesystem::path extension = std::filesystem::path(options.path).extension();
+  const bool is_scene = extension == ".yaml" || extension == ".yml";
   const Identified found = is_scene ? fitScene(options) : fitLog(options);
   judge(options, found);
   fmt::print("{}", options.json ? jsonText(toJson(found)) : toText(found));
@@ -218,7 +219,8 @@ void addIdentifyCommand(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "run", options->path,
-          "Log of a run (run.ulg), or a scene (*.yaml), which is simulated without obstacles")
+          "Log of a run (run.ulg), or a scene (*.yaml, *.yml), which is simulated without "
+          "obstacles")
       ->required();
   command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
   command->add_option("--module", options->module, "Which of several tactile modules, from 0")

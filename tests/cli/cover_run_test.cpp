@@ -2,9 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "support/command_run.h"
+#include "support/run_folder.h"
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/cli/commands.h"
@@ -146,6 +148,14 @@ TEST_F(CoverRunTest, WhatASceneDoesNotTellIsRefused) {
   expectRefusal({scenes + "free_motion.yaml"}, "no tactile module is read");
   expectRefusal({log_.path(), "--set", mass + "0.4"},
                 "--set:1:1: -: a log says what its scene was");
+}
+
+TEST_F(CoverRunTest, ASceneMayHaveTheOtherNameOfYaml) {
+  const test::RunFolder folder;
+  const std::string scene = folder.path() + "/scene.yml";
+  std::ofstream(scene) << "extends: " << kCoverScene << "\n";
+  const std::string mass = "simulation.tactile_module.cover.mass_kg=0.4";
+  EXPECT_EQ(identified({scene, "--set", mass}), identified({kCoverScene, "--set", mass}));
 }
 
 TEST_F(CoverRunTest, ARunWithACompensatedCoverReplaysToTheBit) {
