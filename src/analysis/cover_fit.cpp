@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "tactus/math/butterworth_step.h"
 
@@ -102,10 +103,12 @@ CoverFit::Unknowns CoverFit::solve(const Normal& normal, double& squares) {
 
 CoverEstimate CoverFit::estimate() const {
   CoverEstimate estimate;
-  estimate.blocks = static_cast<int>(blocks_.size());
+  const bool has_rest = !blocks_.empty() && block_s_ < 0.5 * kBlock_s;
+  const auto used = std::span(blocks_).first(blocks_.size() - (has_rest ? 1 : 0));
+  estimate.blocks = static_cast<int>(used.size());
   if (estimate.blocks < kMinBlocks) return estimate;
   Normal all;
-  for (const Normal& block : blocks_) all.add(block, 1.0);
+  for (const Normal& block : used) all.add(block, 1.0);
   const Vector3 variance = (all.sum_of_squares - all.sum.cwiseAbs2() / all.samples) / all.samples;
   estimate.change_along = std::sqrt(std::max(0.0, variance.x()));
   estimate.change_across = std::sqrt(std::max(0.0, variance.y() + variance.z()));
@@ -119,7 +122,7 @@ CoverEstimate CoverFit::estimate() const {
   std::vector<Four> without;
   Four mean = Four::Zero();
   const double count = estimate.blocks;
-  for (const Normal& block : blocks_) {
+  for (const Normal& block : used) {
     Normal rest = all;
     rest.add(block, -1.0);
     without.push_back(massAndCenter(solve(rest, squares)));

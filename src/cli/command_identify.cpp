@@ -32,6 +32,7 @@ struct IdentifyOptions {
 /// Of g - a in the module's frame, m/s^2: as it tilts by some two degrees.
 constexpr double kMinChange = 0.3;
 constexpr double kMaxRelativeDeviation = 0.1;
+constexpr double kMaxCenterDeviation = 0.05;  ///< by the module's length
 /// What is faster, or more in all, is no channel that drifts: a contact that begins looks like it.
 constexpr double kMaxDrift_N_per_s = 0.02;
 constexpr double kMaxDrift_N = 0.3;
@@ -45,7 +46,7 @@ constexpr double kMaxDrift_N = 0.3;
 struct Identified {
   CoverEstimate estimate;
   std::string link;
-  double threshold_N = 0.0;
+  double threshold_N = 0.0, length_m = 0.0;
   std::optional<CoverConfig> simulated;  ///< where it is known
 };
 
@@ -71,7 +72,8 @@ Identified fit(const IdentifyOptions& options, const Scene& scene, const Run& ru
     fit.add(input.q_measured, input.tactile[options.module], step_s);
   });
   return {fit.estimate(), scene.module_links[options.module],
-          config.gains.force.contact_threshold_N, std::nullopt};
+          config.gains.force.contact_threshold_N, config.tactile_modules[options.module].length_m,
+          std::nullopt};
 }
 
 Scene loadLogged(const IdentifyOptions& options, const LogDescription& description) {
@@ -116,6 +118,28 @@ Identified fitScene(const IdentifyOptions& options) {
   return found;
 }
 
+void judgeDeviations(const IdentifyOptions& options, const Identified& found) {
+  const Fitted& mass = found.estimate.mass_kg;
+  // Readings that are all zero are a mass of 0 +- 0.
+  if (!(mass.value > 0.0 && mass.deviation <= kMaxRelativeDeviation * mass.value))
+    refuse(options, fmt::format("the mass is {:.3g} +- {:.2g} kg", mass.value, mass.deviation),
+           fmt::format("a deviation of at most {} of it: a heavier cover, a longer log, or one "
+                       "without contact",
+                       kMaxRelativeDeviation));
+  const double most_m = kMaxCenterDeviation * found.length_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Fitted& center = found.estimate.center_m[axis];
+    if (center.deviation <= most_m) continue;
+    refuse(
+        options,
+        fmt::format("the centre's {} is {:.4f} +- {:.2g} m", "xyz"[axis], center.value,
+                    center.deviation),
+        fmt::format("a deviation of at most {:.2g} m, {:g} of the module's length: a longer log, "
+                    "or a motion that tilts it more along its axis",
+                    most_m, kMaxCenterDeviation));
+  }
+}
+
 /// What the run does not tell, or not of a cover alone.
 void judge(const IdentifyOptions& options, const Identified& found) {
   const CoverEstimate& estimate = found.estimate;
@@ -142,13 +166,7 @@ void judge(const IdentifyOptions& options, const Identified& found) {
            fmt::format("no contact, a motion to and fro, and at most {:.3g} N/s: a module that is "
                        "warm",
                        most_N_per_s));
-  const Fitted& mass = estimate.mass_kg;
-  // Readings that are all zero are a mass of 0 +- 0.
-  if (!(mass.value > 0.0 && mass.deviation <= kMaxRelativeDeviation * mass.value))
-    refuse(options, fmt::format("the mass is {:.3g} +- {:.2g} kg", mass.value, mass.deviation),
-           fmt::format("a deviation of at most {} of it: a heavier cover, a longer log, or one "
-                       "without contact",
-                       kMaxRelativeDeviation));
+  judgeDeviations(options, found);
 }
 
 std::string toText(const Identified& found) {
@@ -217,10 +235,9 @@ void addIdentifyCommand(CLI::App& app, int& exit_code) {
       ->required()
       ->check(CLI::IsMember({"cover"}));
   command
-      ->add_option(
-          "run", options->path,
-          "Log of a run (run.ulg), or a scene (*.yaml, *.yml), which is simulated without "
-          "obstacles")
+      ->add_option("run", options->path,
+                   "Log of a run (run.ulg), or a scene (*.yaml, *.yml), which is simulated without "
+                   "obstacles")
       ->required();
   command->add_option("--set", options->settings, kSetHelp)->allow_extra_args(false);
   command->add_option("--module", options->module, "Which of several tactile modules, from 0")

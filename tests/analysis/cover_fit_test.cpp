@@ -148,6 +148,17 @@ TEST(CoverFit, AContactShowsInTheDrift) {
     EXPECT_GT(fitRun({.cover = cover, .noise_N = 0.05, .touch_N = touch_N}).drift_N_per_s, 0.03);
 }
 
+TEST(CoverFit, ALastPartIsASecondFromHalfOfOneOn) {
+  const auto blocksOf = [](double duration_s) {
+    return fitRun({.cover = {0.4, Vector3(0.2, 0.0, 0.0)}, .duration_s = duration_s}).blocks;
+  };
+  EXPECT_EQ(blocksOf(4.01), 4);
+  EXPECT_EQ(blocksOf(4.4), 4);
+  EXPECT_EQ(blocksOf(4.6), 5);
+  EXPECT_EQ(blocksOf(5.0), 5);
+  EXPECT_EQ(blocksOf(5.01), 5);
+}
+
 TEST(CoverFit, OfTooShortARunItSaysNothing) {
   const CoverEstimate estimate =
       fitRun({.cover = {0.4, Vector3(0.2, 0.0, 0.0)}, .duration_s = 2.0});

@@ -158,6 +158,20 @@ TEST_F(CoverRunTest, ASceneMayHaveTheOtherNameOfYaml) {
   EXPECT_EQ(identified({scene, "--set", mass}), identified({kCoverScene, "--set", mass}));
 }
 
+TEST_F(CoverRunTest, ACentreThatIsHardlyToldIsRefused) {
+  const std::string mass = "simulation.tactile_module.cover.mass_kg=0.4";
+  const auto withNoiseOf = [&](const char* noise_N) {
+    const std::string noise = std::string("simulation.tactile_module.noise_N=") + noise_N;
+    return identified({kCoverScene, "--set", mass, "--set", noise});
+  };
+  EXPECT_NE(withNoiseOf("0.05").find("\nmass      0.4"), std::string::npos) << withNoiseOf("0.05");
+  const std::string refused = withNoiseOf("0.5");
+  EXPECT_NE(refused.find("cover: the centre's x is 0.2"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("a deviation of at most 0.019 m, 0.05 of the module's length"),
+            std::string::npos)
+      << refused;
+}
+
 TEST_F(CoverRunTest, ARunWithACompensatedCoverReplaysToTheBit) {
   for (const char* behind_gears : {"false", "true"}) {
     logRun("scenario3_tactus", {{"robot.tactile_module.cover.mass_kg", "0.4"},

@@ -14,7 +14,9 @@ struct Fitted {
 
 /// What a log without contact says of a cover.
 struct CoverEstimate {
-  int blocks = 0;  ///< seconds that were used; the rest is zero with fewer than kMinBlocks
+  /// Seconds that were used, of a last part half of one or more; all else is zero with fewer than
+  /// kMinBlocks.
+  int blocks = 0;
   Fitted mass_kg;
   Fitted center_m[3];     ///< in the module's frame
   double residual_N = 0;  ///< root mean square, of one component of the force
