@@ -200,6 +200,19 @@ double pushesCondition(const std::vector<KnownPush>& pushes, const CalibratedMod
   return loadsCondition(equationsOf(pushes, module).W, rowsOf(pushes), module, weakest_row);
 }
 
+int uncheckedPushes(const std::vector<KnownPush>& pushes, const CalibratedModule& module) {
+  const int rows = rowsOf(pushes);
+  int unchecked = 0;
+  for (std::size_t i = 0; i < pushes.size(); ++i) {
+    const std::vector<KnownPush> rest = without(pushes, i);
+    const bool is_told =
+        std::ssize(rest) >= rows &&
+        loadsCondition(equationsOf(rest, module).W, rows, module, nullptr) <= kMaxPushesCondition;
+    unchecked += is_told ? 0 : 1;
+  }
+  return unchecked;
+}
+
 CalibrationFit fitCalibration(const std::vector<KnownPush>& pushes, const CalibratedModule& module,
                               const ChannelVector& sigma) {
   CalibrationFit fit;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include "support/hidden_calibration.h"
@@ -239,6 +240,22 @@ TEST(CalibrationFit, AFewestPushesLeaveNothingToCheckThem) {
   EXPECT_EQ(fit.problem, CalibrationProblem::kNone);
   EXPECT_EQ(fit.worst, -1);
   for (const auto& left_out : fit.left_out) EXPECT_FALSE(left_out);
+  EXPECT_EQ(uncheckedPushes(pushes, kCalibrated), 4);
+}
+
+TEST(CalibrationFit, PushesTellBeforehandWhichNothingWillCheck) {
+  test::Random random(30);
+  const HiddenRows C = hiddenCalibration(random);
+  for (int i = 0; i < 100; ++i) {
+    std::vector<KnownPush> pushes;
+    for (const KnownPush& push : pushesOf(random, C, {}))
+      if (random.chance(0.6)) pushes.push_back(push);
+    if (random.chance(0.3) && !pushes.empty()) pushes[0].moment_x_Nm = 0.2;
+    const CalibrationFit fit = fitCalibration(pushes, kCalibrated, ChannelVector::Zero());
+    if (fit.problem != CalibrationProblem::kNone) continue;
+    const auto absent = std::ranges::count_if(fit.left_out, [](const auto& one) { return !one; });
+    EXPECT_EQ(uncheckedPushes(pushes, kCalibrated), absent);
+  }
 }
 
 TEST(CalibrationFit, NoiseOfARowIsWhatTheChannelsMakeOfIt) {

@@ -83,4 +83,8 @@ int wrongPush(const CalibrationFit& fit) noexcept;
 double pushesCondition(const std::vector<KnownPush>& pushes, const CalibratedModule& module,
                        int* weakest_row = nullptr);
 
+/// Likewise: how many there are without which the others do not tell each row, so that nothing
+/// checks them.
+int uncheckedPushes(const std::vector<KnownPush>& pushes, const CalibratedModule& module);
+
 }  // namespace tactus
