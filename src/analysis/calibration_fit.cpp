@@ -191,7 +191,7 @@ int farthestPush(const CalibrationFit& fit) noexcept {
 int wrongPush(const CalibrationFit& fit) noexcept {
   const int farthest = farthestPush(fit);
   if (farthest < 0 || !(shareOff(fit, farthest) > kMaxLeftOutShare)) return -1;
-  return shareOff(fit, fit.worst) > kMaxLeftOutShare ? fit.worst : farthest;
+  return fit.worst >= 0 && shareOff(fit, fit.worst) > kMaxLeftOutShare ? fit.worst : farthest;
 }
 
 double pushesCondition(const std::vector<KnownPush>& pushes, const CalibratedModule& module,
