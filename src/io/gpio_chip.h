@@ -36,7 +36,8 @@ class GpioChip {
   virtual int lineCount() = 0;
   /// Who holds this line; nullopt: nobody.
   virtual std::optional<std::string> user(int line) = 0;
-  /// levels: what outputs begin with. nullptr, and errno: not to be had.
+  /// levels: what outputs begin with, and to where the chip pulls an input that nothing drives, if
+  /// it can; of several inputs all alike. nullptr, and errno: not to be had.
   virtual std::unique_ptr<GpioRequest> request(const std::vector<int>& lines,
                                                GpioDirection direction,
                                                std::span<const bool> levels) = 0;

@@ -83,7 +83,10 @@ class ChipV1 final : public GpioChip {
       gpiod_line_bulk_add(&bulk, line);
       values[i] = levels[i];
     }
-    const gpiod_line_request_config config{kGpioConsumer, requestType(direction), 0};
+    const int pull =
+        levels[0] ? GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP : GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN;
+    const gpiod_line_request_config config{kGpioConsumer, requestType(direction),
+                                           direction == GpioDirection::kOutput ? 0 : pull};
     if (gpiod_line_request_bulk(&bulk, &config, values.data()) != 0) return nullptr;
     int events = -1;
     if (direction == GpioDirection::kInputWithEdges) {

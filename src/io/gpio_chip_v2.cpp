@@ -38,6 +38,8 @@ void setDirection(gpiod_line_settings* settings, GpioDirection direction, bool l
     return;
   }
   gpiod_line_settings_set_direction(settings, GPIOD_LINE_DIRECTION_INPUT);
+  gpiod_line_settings_set_bias(settings,
+                               level ? GPIOD_LINE_BIAS_PULL_UP : GPIOD_LINE_BIAS_PULL_DOWN);
   if (direction == GpioDirection::kInputWithEdges)
     gpiod_line_settings_set_edge_detection(settings, GPIOD_LINE_EDGE_BOTH);
 }

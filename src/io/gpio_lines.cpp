@@ -21,7 +21,8 @@ class LineGroup {
     numbers_.push_back(line.line);
   }
 
-  /// Outputs begin with their variables' levels. False: errno tells why.
+  /// Outputs begin with their variables' levels; an input whose wire is gone shall read as its
+  /// variable is now. False: errno tells why.
   bool request(GpioChip& chip, GpioDirection direction) {
     if (numbers_.empty()) return true;
     const Levels levels = levelsToWrite();
@@ -92,9 +93,9 @@ struct GpioLines::Lines {
   std::string name;
   std::unique_ptr<GpioChip> chip;  ///< outlives what was requested of it
   LineGroup stop;                  ///< alone, as a line with events needs a request of its own
-  LineGroup inputs;
+  LineGroup inputs;                ///< the others
   LineGroup outputs;
-  bool sees_edges = false;  ///< false: the e-stop is among the inputs, if there is one
+  bool sees_edges = false;
   bool is_stop_pressed = false;
   bool is_enabled = true;
   bool is_brake_released = false;
@@ -105,6 +106,8 @@ struct GpioLines::Lines {
 
 GpioLines::Lines::Lines(const GpioConfig& config, double period_s)
     : name(config.chip), chip(openGpioChip(config.chip)) {
+  is_stop_pressed = config.e_stop.has_value();  // as they read without their wires
+  is_enabled = !config.enable.has_value();
   if (config.e_stop) requestEmergencyStop(*config.e_stop);
   add(inputs, config.enable, is_enabled);
   add(outputs, config.brake, is_brake_released);
@@ -136,9 +139,7 @@ void GpioLines::Lines::add(LineGroup& group, const std::optional<GpioLineConfig>
 void GpioLines::Lines::requestEmergencyStop(const GpioLineConfig& line) {
   add(stop, line, is_stop_pressed);
   sees_edges = stop.request(*chip, GpioDirection::kInputWithEdges);
-  if (sees_edges) return;
-  stop = LineGroup();
-  add(inputs, line, is_stop_pressed);
+  if (!sees_edges) request(stop, GpioDirection::kInput);
 }
 
 void GpioLines::Lines::request(LineGroup& group, GpioDirection direction) {

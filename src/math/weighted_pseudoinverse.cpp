@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 #include "tactus/math/pair.h"
@@ -13,6 +12,9 @@ namespace {
 /// A column that loses more than this against its own length when the earlier ones are taken out of
 /// it depends on them: what is left is rounding noise, and no direction.
 constexpr double kRankTolerance = 1e-14;
+
+constexpr double kThresholdSquared =
+    WeightedPseudoinverse::kDampingThreshold * WeightedPseudoinverse::kDampingThreshold;
 
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
                                   kMaxTaskSize, kMaxTaskSize>;
@@ -65,26 +67,36 @@ void WeightedPseudoinverse::factorise(const TaskJacobian& J,
 void WeightedPseudoinverse::factorise(const ScaledJacobian& J_scaled, int joints, int m) noexcept {
   joints_ = joints;
   m_ = m;
-  withPairs(joints, [&](auto pairs) {
-    const double longest_squared = orthogonalise<pairs>(J_scaled, 0.0);
-    if (longest_squared > 0.0) orthogonalise<pairs>(J_scaled, longest_squared);
-  });
+  withPairs(joints, [&](auto pairs) { orthogonalise<pairs>(J_scaled, 0.0); });
+  damping_squared_ = 0.0;
+  if (isFarFromSingular()) return;
+  double longest_squared = 0.0;
+  for (int j = 0; j < m; ++j)
+    longest_squared = std::max(longest_squared, J_scaled.col(j).head(joints).squaredNorm());
+  if (hasNoise(longest_squared))
+    withPairs(joints, [&](auto pairs) { orthogonalise<pairs>(J_scaled, longest_squared); });
   chooseDamping();
 }
 
-/// Modified Gram-Schmidt, each column orthogonalised twice ("twice is enough"): Q is orthonormal to
-/// machine precision whatever the condition of J.
-///
 /// A column that is rounding from the start, as of a component that the arm cannot move, counts as
-/// a direction beside itself alone, and one that another rounding turns in the next cycle. Returns
-/// the squared length of the longest column if there is such a one, else 0: with it once more.
+/// a direction beside itself alone, and one that another rounding turns in the next cycle.
+bool WeightedPseudoinverse::hasNoise(double longest_squared) const noexcept {
+  const double least = kRankTolerance * std::sqrt(longest_squared);
+  bool has_noise = false;
+  for (int j = 0; j < m_; ++j) has_noise |= R_[j][j] > 0.0 && R_[j][j] <= least;
+  return has_noise;
+}
+
+/// Modified Gram-Schmidt, each column orthogonalised twice ("twice is enough"): Q is orthonormal to
+/// machine precision whatever the condition of J. longest_squared: what is nothing beside a column
+/// of this squared length is no direction, either.
 template <int kPairs>
-double WeightedPseudoinverse::orthogonalise(const ScaledJacobian& J_scaled,
-                                            double longest_squared) noexcept {
-  double longest = 0.0, shortest = std::numeric_limits<double>::infinity();
+void WeightedPseudoinverse::orthogonalise(const ScaledJacobian& J_scaled,
+                                          double longest_squared) noexcept {
   for (int j = 0; j < m_; ++j) {
     Lanes<kPairs> column = J_scaled.col(j).head<2 * kPairs>();
-    double explained = 0.0;  // squared length of what the earlier columns take away
+    double explained =
+        longest_squared;  // and the squared length of what the earlier ones take away
     for (int k = 0; k < j; ++k) {
       R_[k][j] = dotOf<kPairs>(Q_.col(k).data(), column.data());
       column -= R_[k][j] * Q_.col(k).head<2 * kPairs>();
@@ -96,21 +108,16 @@ double WeightedPseudoinverse::orthogonalise(const ScaledJacobian& J_scaled,
       explained += R_[k][j] * R_[k][j];
     }
     const double rest_squared = dotOf<kPairs>(column.data(), column.data());
-    const bool independent =
-        rest_squared > kRankTolerance * kRankTolerance * std::max(explained, longest_squared);
-    longest = std::max(longest, explained + rest_squared);
-    shortest = independent ? std::min(shortest, rest_squared) : shortest;
+    const bool independent = rest_squared > kRankTolerance * kRankTolerance * explained;
     R_[j][j] = independent ? std::sqrt(rest_squared) : 0.0;
     inv_diagonal_[j] = independent ? 1.0 / R_[j][j] : 0.0;
     Q_.col(j).head<2 * kPairs>() = inv_diagonal_[j] * column;
   }
-  return shortest <= kRankTolerance * kRankTolerance * longest ? longest : 0.0;
 }
 
 /// The singular values of R are those of J W^-1/2. 1 / |R^-1|_F is a lower bound of the smallest
 /// one that costs next to nothing; only where it can't rule damping out are they computed.
-void WeightedPseudoinverse::chooseDamping() noexcept {
-  damping_squared_ = 0.0;
+bool WeightedPseudoinverse::isFarFromSingular() const noexcept {
   double inverse_norm_squared = 0.0;
   bool full_rank = true;
   for (int column = 0; column < m_; ++column) {
@@ -123,9 +130,10 @@ void WeightedPseudoinverse::chooseDamping() noexcept {
       inverse_norm_squared += x[row] * x[row];
     }
   }
-  constexpr double kThresholdSquared = kDampingThreshold * kDampingThreshold;
-  if (full_rank && inverse_norm_squared * kThresholdSquared <= 1.0) return;
+  return full_rank && inverse_norm_squared * kThresholdSquared <= 1.0;
+}
 
+void WeightedPseudoinverse::chooseDamping() noexcept {
   SmallMatrix L = SmallMatrix::Zero(m_, m_);  // J W^-1/2 = L Q^T
   for (int row = 0; row < m_; ++row)
     for (int column = row; column < m_; ++column) L(column, row) = R_[row][column];

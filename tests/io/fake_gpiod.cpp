@@ -21,6 +21,11 @@ void drive(unsigned line, int level) {
   if (fake_chip.lines[line].requested == Requested::kEdges) fake_chip.events.push_back(level);
 }
 
+void unplug(unsigned line) {
+  const int pull = fake_chip.lines[line].pull;
+  if (pull != 0) drive(line, pull > 0);
+}
+
 bool openFakeChip(const char* name) {
   errno = ENOENT;
   if (!fake_chip.is_present || std::strcmp(name, "gpiochip0") != 0) return false;

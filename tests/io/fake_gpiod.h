@@ -14,6 +14,7 @@ struct FakeLine {
   int level = 0;
   Requested requested = Requested::kNo;
   bool is_taken = false;  ///< by the kernel
+  int pull = 0;           ///< 1: up, -1: down, if nothing drives it
 };
 
 struct FakeChip {
@@ -36,6 +37,8 @@ FakeChip& resetFakeChip();
 
 /// Drives an input from outside, with the edge that it makes.
 void drive(unsigned line, int level);
+/// Its wire comes off.
+void unplug(unsigned line);
 
 // For the functions of libgpiod:
 

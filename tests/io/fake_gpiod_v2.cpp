@@ -20,6 +20,7 @@ struct gpiod_line_info {
 struct gpiod_line_settings {
   Requested as = Requested::kInput;
   int level = 0;
+  int pull = 0;
 };
 struct gpiod_line_config {
   std::vector<std::pair<unsigned, gpiod_line_settings>> lines;
@@ -71,6 +72,10 @@ int gpiod_line_settings_set_direction(gpiod_line_settings* settings,
   settings->as = direction == GPIOD_LINE_DIRECTION_OUTPUT ? Requested::kOutput : Requested::kInput;
   return 0;
 }
+int gpiod_line_settings_set_bias(gpiod_line_settings* settings, gpiod_line_bias bias) {
+  settings->pull = bias == GPIOD_LINE_BIAS_PULL_UP ? 1 : bias == GPIOD_LINE_BIAS_PULL_DOWN ? -1 : 0;
+  return 0;
+}
 int gpiod_line_settings_set_edge_detection(gpiod_line_settings* settings, gpiod_line_edge edge) {
   if (edge == GPIOD_LINE_EDGE_BOTH) settings->as = Requested::kEdges;
   return 0;
@@ -104,6 +109,7 @@ gpiod_line_request* gpiod_chip_request_lines(gpiod_chip*, gpiod_request_config*,
       errno = problem;
       return nullptr;
     }
+    fake_chip.lines[offset].pull = settings.pull;
     request->lines.push_back(offset);
   }
   return request;

@@ -143,6 +143,28 @@ TEST(GpioLines, WithoutEventsThePulseIsMissedAndALevelIsNot) {
   EXPECT_TRUE(lines.read().emergency_stop);
 }
 
+/// Where the chip has resistors of its own.
+TEST(GpioLines, AWireThatComesOffStopsTheArm) {
+  for (const bool has_events : {true, false}) {
+    for (int low = 0; low < 4; ++low) {
+      resetFakeChip().has_events = has_events;
+      GpioConfig config = allLines();
+      config.e_stop->active_low = (low & 1) != 0;
+      config.enable->active_low = (low & 2) != 0;
+      drive(1, config.e_stop->active_low);
+      drive(2, !config.enable->active_low);
+      GpioLines lines(config, kPeriod_s);
+      EXPECT_FALSE(lines.read().emergency_stop);
+      EXPECT_TRUE(lines.read().enable);
+      test::unplug(1);
+      EXPECT_TRUE(lines.read().emergency_stop) << low;
+      test::unplug(2);
+      EXPECT_FALSE(lines.read().enable) << low;
+      EXPECT_EQ(fake_chip.lines[3].pull, 0) << "an output";
+    }
+  }
+}
+
 TEST(GpioLines, ReleaseAloneIsNoPress) {
   for (const bool is_active_low : {false, true}) {
     resetFakeChip();
@@ -190,7 +212,7 @@ TEST(GpioLines, TakesAsManySystemCallsAsItSaysAndNoHeap) {
       const test::AllocationGuard guard;
       lines.read();
     }
-    EXPECT_EQ(fake_chip.calls, has_events ? 3 : 1);
+    EXPECT_EQ(fake_chip.calls, has_events ? 3 : 2);
     fake_chip.calls = 0;
     {
       const test::AllocationGuard guard;

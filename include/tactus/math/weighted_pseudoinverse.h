@@ -48,7 +48,9 @@ class WeightedPseudoinverse {
 
  private:
   template <int kPairs>
-  double orthogonalise(const ScaledJacobian& J_scaled, double longest_squared) noexcept;
+  void orthogonalise(const ScaledJacobian& J_scaled, double longest_squared) noexcept;
+  bool isFarFromSingular() const noexcept;
+  bool hasNoise(double longest_squared) const noexcept;
   void chooseDamping() noexcept;
 
   int joints_ = 0;
