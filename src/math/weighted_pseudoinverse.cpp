@@ -69,12 +69,15 @@ void WeightedPseudoinverse::factorise(const ScaledJacobian& J_scaled, int joints
   m_ = m;
   withPairs(joints, [&](auto pairs) { orthogonalise<pairs>(J_scaled, 0.0); });
   damping_squared_ = 0.0;
-  if (isFarFromSingular()) return;
+  if (!isFarFromSingular()) judgeNearSingular(J_scaled);
+}
+
+void WeightedPseudoinverse::judgeNearSingular(const ScaledJacobian& J_scaled) noexcept {
   double longest_squared = 0.0;
-  for (int j = 0; j < m; ++j)
-    longest_squared = std::max(longest_squared, J_scaled.col(j).head(joints).squaredNorm());
+  for (int j = 0; j < m_; ++j)
+    longest_squared = std::max(longest_squared, J_scaled.col(j).head(joints_).squaredNorm());
   if (hasNoise(longest_squared))
-    withPairs(joints, [&](auto pairs) { orthogonalise<pairs>(J_scaled, longest_squared); });
+    withPairs(joints_, [&](auto pairs) { orthogonalise<pairs>(J_scaled, longest_squared); });
   chooseDamping();
 }
 
@@ -91,8 +94,8 @@ bool WeightedPseudoinverse::hasNoise(double longest_squared) const noexcept {
 /// machine precision whatever the condition of J. longest_squared: what is nothing beside a column
 /// of this squared length is no direction, either.
 template <int kPairs>
-void WeightedPseudoinverse::orthogonalise(const ScaledJacobian& J_scaled,
-                                          double longest_squared) noexcept {
+[[gnu::always_inline]] inline void WeightedPseudoinverse::orthogonalise(
+    const ScaledJacobian& J_scaled, double longest_squared) noexcept {
   for (int j = 0; j < m_; ++j) {
     Lanes<kPairs> column = J_scaled.col(j).head<2 * kPairs>();
     double explained =

@@ -50,6 +50,7 @@ class WeightedPseudoinverse {
   template <int kPairs>
   void orthogonalise(const ScaledJacobian& J_scaled, double longest_squared) noexcept;
   bool isFarFromSingular() const noexcept;
+  [[gnu::noinline]] void judgeNearSingular(const ScaledJacobian& J_scaled) noexcept;
   bool hasNoise(double longest_squared) const noexcept;
   void chooseDamping() noexcept;
 
