@@ -127,8 +127,9 @@ std::optional<BusDelivery> PlantBus::step() noexcept {
   return delivery;
 }
 
+/// Once, as drivers tell it: who misses that knows it by its frames alone.
 std::optional<BusDelivery> PlantBus::report(std::int64_t t_ns) noexcept {
-  next_report_ns_ = is_other_side_off_ ? t_ns + kBetweenErrors_ns : kNever_ns;
+  next_report_ns_ = kNever_ns;
   return BusDelivery{kController, {is_other_side_off_ ? busOffError() : busRestartedError(), t_ns}};
 }
 
