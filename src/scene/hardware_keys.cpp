@@ -36,7 +36,8 @@ Table<CanopenConfig> canopenKeys() {
              "of daemon and drives, whole milliseconds", &Config::heartbeat_period_s),
       number("heartbeat_timeout_s", "s", within(0.001, kMaxHeartbeat_s),
              "silence after which the other side is taken for dead, and a drive "
-             "with object 1400:05 misses its setpoints, whole milliseconds",
+             "with object 1400:05 misses its setpoints, whole milliseconds; at least twice "
+             "heartbeat_period_s",
              &Config::heartbeat_timeout_s),
       number("sdo_timeout_s", "s", within(0.001, 10),
              "for a drive to answer while it is configured", &Config::sdo_timeout_s),

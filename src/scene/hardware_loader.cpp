@@ -52,10 +52,12 @@ void checkHeartbeat(const LoadingRobot& l) {
   };
   checkMilliseconds("can.heartbeat_period_s", canopen.heartbeat_period_s);
   checkMilliseconds("can.heartbeat_timeout_s", canopen.heartbeat_timeout_s);
-  if (canopen.heartbeat_timeout_s <= canopen.heartbeat_period_s) {
-    l.fail("can.heartbeat_timeout_s",
-           fmt::format("{} s is not above the period", canopen.heartbeat_timeout_s),
-           fmt::format("more than heartbeat_period_s = {}", canopen.heartbeat_period_s));
+  const double least_s = 2.0 * canopen.heartbeat_period_s;
+  if (canopen.heartbeat_timeout_s < least_s - 1e-3 * kTolerance) {
+    l.fail(
+        "can.heartbeat_timeout_s",
+        fmt::format("{} s has no room for a heartbeat that is late", canopen.heartbeat_timeout_s),
+        fmt::format("at least twice heartbeat_period_s, {:g}", least_s));
   }
 }
 
