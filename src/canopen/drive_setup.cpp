@@ -85,6 +85,8 @@ void DriveSetup::judgeAbort() noexcept {
   const std::uint32_t code = sdo_.abortCode();
   const bool is_missing = code == sdo_abort::kObjectMissing || code == sdo_abort::kSubindexMissing;
   const bool is_read_only = code == sdo_abort::kReadOnly || code == sdo_abort::kAccessUnsupported;
+  const bool is_write_only = code == sdo_abort::kWriteOnly || code == sdo_abort::kAccessUnsupported;
+  if (is_write_only && canWriteUnread()) return write(steps_[step_].value);
   using Need = SetupStep::Need;
   const Need least = is_missing     ? Need::kIfThere
                      : is_read_only ? Need::kIfWritable
@@ -93,15 +95,24 @@ void DriveSetup::judgeAbort() noexcept {
   nextStep();
 }
 
+/// Nothing of what was there is to be kept.
+bool DriveSetup::canWriteUnread() const noexcept {
+  const SetupStep& step = steps_[step_];
+  return step.kind == SetupStep::Kind::kEnsure && step.mask == ~std::uint32_t{0} && !is_changing_;
+}
+
+/// The second half of kEnsure.
+void DriveSetup::write(std::uint32_t value) noexcept {
+  is_changing_ = true;
+  sdo_.download(steps_[step_].entry, value);
+}
+
 void DriveSetup::judgeAnswer() noexcept {
   const SetupStep& step = steps_[step_];
   const bool was_written = step.kind == SetupStep::Kind::kWrite || is_changing_;
   const std::uint32_t value = sdo_.value() & step.mask;
   if (was_written || value == step.value) return nextStep();
-  if (step.kind == SetupStep::Kind::kEnsure) {
-    is_changing_ = true;
-    return sdo_.download(step.entry, (sdo_.value() & ~step.mask) | step.value);
-  }
+  if (step.kind == SetupStep::Kind::kEnsure) return write((sdo_.value() & ~step.mask) | step.value);
   if (step_cycles_ < sdo_timeout_cycles_) return sdo_.upload(step.entry);
   fail(0);
   failure_.is_other_value = true;

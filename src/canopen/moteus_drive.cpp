@@ -127,8 +127,10 @@ void MoteusDrive::refuseSetup() noexcept {
                static_cast<std::uint32_t>(value),
                static_cast<std::uint32_t>(expected)};
   };
-  if (last_ && last_->map != kMoteusMap)
-    blame(moteus_register::kMapVersion, last_->map.value_or(0), kMoteusMap);
+  if (last_ && !last_->map)
+    failure = {moteus_register::kMapVersion, 0, 0};
+  else if (last_ && last_->map != kMoteusMap)
+    blame(moteus_register::kMapVersion, *last_->map, kMoteusMap);
   else if (last_ && !isHome())
     blame(moteus_register::kHome, last_->home.value_or(0), static_cast<std::int32_t>(config_.home));
   else if (last_ && last_->fault != 0)

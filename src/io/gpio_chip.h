@@ -1,5 +1,7 @@
 #pragma once
 
+#include <errno.h>
+
 #include <memory>
 #include <optional>
 #include <span>
@@ -42,6 +44,13 @@ class GpioChip {
                                                GpioDirection direction,
                                                std::span<const bool> levels) = 0;
 };
+
+/// After a request of inputs that has failed, whether it may succeed without a pull: most drivers
+/// pass over one that they do not have, some refuse it.
+inline bool mayLackPull(GpioDirection direction) noexcept {
+  const bool is_unknown = errno == EINVAL || errno == ENOTSUP || errno == EOPNOTSUPP;
+  return direction != GpioDirection::kOutput && is_unknown;
+}
 
 /// "gpiochip0". nullptr, and errno: cannot be opened.
 std::unique_ptr<GpioChip> findGpioChip(const std::string& name);

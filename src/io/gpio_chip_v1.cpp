@@ -85,9 +85,14 @@ class ChipV1 final : public GpioChip {
     }
     const int pull =
         levels[0] ? GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP : GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN;
-    const gpiod_line_request_config config{kGpioConsumer, requestType(direction),
-                                           direction == GpioDirection::kOutput ? 0 : pull};
-    if (gpiod_line_request_bulk(&bulk, &config, values.data()) != 0) return nullptr;
+    gpiod_line_request_config config{kGpioConsumer, requestType(direction),
+                                     direction == GpioDirection::kOutput ? 0 : pull};
+    bool is_requested = gpiod_line_request_bulk(&bulk, &config, values.data()) == 0;
+    if (!is_requested && mayLackPull(direction)) {
+      config.flags = 0;
+      is_requested = gpiod_line_request_bulk(&bulk, &config, values.data()) == 0;
+    }
+    if (!is_requested) return nullptr;
     int events = -1;
     if (direction == GpioDirection::kInputWithEdges) {
       events = gpiod_line_event_get_fd(gpiod_line_bulk_get_line(&bulk, 0));

@@ -31,15 +31,17 @@ gpiod_line_value valueOf(bool level) {
 }
 
 /// Fails only for values that there are none of, or out of memory.
-void setDirection(gpiod_line_settings* settings, GpioDirection direction, bool level) {
+void setDirection(gpiod_line_settings* settings, GpioDirection direction, bool level,
+                  bool is_pulled) {
   if (direction == GpioDirection::kOutput) {
     gpiod_line_settings_set_direction(settings, GPIOD_LINE_DIRECTION_OUTPUT);
     gpiod_line_settings_set_output_value(settings, valueOf(level));
     return;
   }
   gpiod_line_settings_set_direction(settings, GPIOD_LINE_DIRECTION_INPUT);
-  gpiod_line_settings_set_bias(settings,
-                               level ? GPIOD_LINE_BIAS_PULL_UP : GPIOD_LINE_BIAS_PULL_DOWN);
+  if (is_pulled)
+    gpiod_line_settings_set_bias(settings,
+                                 level ? GPIOD_LINE_BIAS_PULL_UP : GPIOD_LINE_BIAS_PULL_DOWN);
   if (direction == GpioDirection::kInputWithEdges)
     gpiod_line_settings_set_edge_detection(settings, GPIOD_LINE_EDGE_BOTH);
 }
@@ -102,13 +104,21 @@ class ChipV2 final : public GpioChip {
 
   std::unique_ptr<GpioRequest> request(const std::vector<int>& lines, GpioDirection direction,
                                        std::span<const bool> levels) override {
+    auto request = requestLines(lines, direction, levels, true);
+    if (!request && mayLackPull(direction)) request = requestLines(lines, direction, levels, false);
+    return request;
+  }
+
+ private:
+  std::unique_ptr<GpioRequest> requestLines(const std::vector<int>& lines, GpioDirection direction,
+                                            std::span<const bool> levels, bool is_pulled) {
     const Settings settings(gpiod_line_settings_new());
     const LineConfig config(gpiod_line_config_new());
     const RequestConfig ours(gpiod_request_config_new());
     if (!settings || !config || !ours) return nullptr;
     gpiod_request_config_set_consumer(ours.get(), kGpioConsumer);
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      setDirection(settings.get(), direction, levels[i]);
+      setDirection(settings.get(), direction, levels[i], is_pulled);
       const unsigned offset = static_cast<unsigned>(lines[i]);
       if (gpiod_line_config_add_line_settings(config.get(), &offset, 1, settings.get()) != 0)
         return nullptr;
@@ -124,7 +134,6 @@ class ChipV2 final : public GpioChip {
     return std::make_unique<RequestV2>(std::move(request), std::move(events));
   }
 
- private:
   gpiod_chip* chip_;
 };
 

@@ -25,17 +25,10 @@ double fastestOfPairs(const ControllerConfig& controller, const BodyDistances& d
   distances.findNear(pose, reach_m, near);
   using Square = Eigen::Matrix<double, kMaxJoints, kMaxJoints>;
   Square sum = Square::Zero();
-  for (int i = 0; i < near.size; ++i) {
-    NearBodies one;
-    one.size = 1;
-    one.body[0] = near.body[i];
-    const double lacking_m = reach_m - near.body[i].distance_m;
-    if (!(lacking_m > 0.0)) continue;
-    const ScaledVector cost =
-        clearanceCost({reach_m, 1.0}, distances, pose, one, inv_sqrt_weights) / lacking_m;
-    const ScaledVector gradient = distances.gradient(pose, near.body[i]);
-    sum -= cost * gradient.cwiseProduct(inv_sqrt_weights).transpose();
-  }
+  forEachThatCosts(distances, pose, near, reach_m, [&](double share, const NearBody& body) {
+    const ScaledVector gradient = distances.gradient(pose, body).cwiseProduct(inv_sqrt_weights);
+    sum += share / (kClearanceLever_m * kClearanceLever_m) * gradient * gradient.transpose();
+  });
   return Eigen::SelfAdjointEigenSolver<Square>(sum, Eigen::EigenvaluesOnly)
       .eigenvalues()
       .maxCoeff();

@@ -140,7 +140,9 @@ bool mayBeEnsured(const EdsObject& object, const SetupStep& step) {
 }
 
 void checkAccess(const EdsObject& object, const SetupStep& step) {
-  if (step.kind != StepKind::kWrite && !object.isReadable())
+  const bool has_to_read = step.kind == StepKind::kExpect ||
+                           (step.kind == StepKind::kEnsure && step.mask != ~std::uint32_t{0});
+  if (has_to_read && !object.isReadable())
     refuseObject(object.access_at, object, "AccessType", "cannot be read", "ro or rw");
   const bool has_to_write = step.kind != StepKind::kExpect && !mayBeEnsured(object, step) &&
                             step.need < SetupStep::Need::kIfWritable;

@@ -324,6 +324,25 @@ TEST(DriveSetup, WritesOnlyWhatIsNotThere) {
   EXPECT_TRUE(rig.report().is_configured);
 }
 
+TEST(DriveSetup, WritesWhatCannotBeReadWhereAllOfItIsTold) {
+  for (const std::uint32_t code : {0x06010000u, 0x06010001u}) {
+    DriveRig rig;
+    for (const ScriptedDrive::Entry& entry :
+         std::vector<ScriptedDrive::Entry>{{0x60B1, 0}, {0x60B2, 0}, {0x60C2, 1}, {0x60C2, 2}}) {
+      rig.slave.objects[entry] = 77;
+      rig.slave.refused_reads[entry] = code;
+    }
+    rig.configure();
+    EXPECT_TRUE(rig.report().is_configured);
+    EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x60B1, 0})], 0u);
+    EXPECT_EQ(rig.slave.objects[(ScriptedDrive::Entry{0x60C2, 2})], 0xFDu);
+  }
+  DriveRig rig;
+  rig.slave.refused_reads[{0x1400, 1}] = 0x06010001;
+  rig.configure();
+  EXPECT_FALSE(rig.report().is_configured) << "its other bits would be lost";
+}
+
 TEST(DriveSetup, LeavesOutAQuickStopOptionThatThereIsNot) {
   DriveConfig config = test::driveConfig();
   config.has_quick_stop_option = false;

@@ -38,11 +38,13 @@ bool answers() {
   return !fake_chip.is_gone;
 }
 
-bool requestLine(FakeLine& line, Requested as, int level) {
+bool requestLine(FakeLine& line, Requested as, int level, int pull) {
   errno = EBUSY;
   if (line.is_taken || line.requested != Requested::kNo) return false;
   errno = EINVAL;
   if (as == Requested::kEdges && !fake_chip.has_events) return false;
+  if (pull != 0 && fake_chip.refuses_pulls) return false;
+  line.pull = pull;
   line.requested = as;
   if (as == Requested::kOutput) line.level = level;
   return true;

@@ -23,6 +23,7 @@ struct FakeChip {
   bool is_present = true;
   bool is_open = false;
   bool has_events = true;
+  bool refuses_pulls = false;
   bool is_gone = false;  ///< in mid run: all calls fail
   int calls = 0;         ///< that are system calls in a cycle
   std::array<FakeLine, kLines> lines{};
@@ -46,8 +47,8 @@ void unplug(unsigned line);
 bool openFakeChip(const char* name);
 /// A chip that has gone refuses every call.
 bool answers();
-/// False, and errno: taken, or without edges.
-bool requestLine(FakeLine& line, Requested as, int level);
+/// False, and errno: taken, or without edges or resistors.
+bool requestLine(FakeLine& line, Requested as, int level, int pull);
 /// The descriptor of the line with edges.
 int edgeDescriptor();
 /// Up to `count` new levels. Empty, and errno: none, or the descriptor would wait for ever.

@@ -55,11 +55,11 @@ const char* gpiod_line_consumer(gpiod_line* line) {
 int gpiod_line_request_bulk(gpiod_line_bulk* bulk, const gpiod_line_request_config* config,
                             const int* values) {
   for (unsigned i = 0; i < bulk->num_lines; ++i) {
-    FakeLine& line = *bulk->lines[i]->line;
-    if (!requestLine(line, requestedAs(config->request_type), values[i])) return -1;
-    line.pull = (config->flags & GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP) != 0     ? 1
-                : (config->flags & GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN) != 0 ? -1
-                                                                                : 0;
+    const int pull = (config->flags & GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP) != 0     ? 1
+                     : (config->flags & GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN) != 0 ? -1
+                                                                                     : 0;
+    if (!requestLine(*bulk->lines[i]->line, requestedAs(config->request_type), values[i], pull))
+      return -1;
   }
   return 0;
 }

@@ -103,13 +103,12 @@ gpiod_line_request* gpiod_chip_request_lines(gpiod_chip*, gpiod_request_config*,
                                              gpiod_line_config* config) {
   auto* const request = new gpiod_line_request;
   for (const auto& [offset, settings] : config->lines) {
-    if (!requestLine(fake_chip.lines[offset], settings.as, settings.level)) {
+    if (!requestLine(fake_chip.lines[offset], settings.as, settings.level, settings.pull)) {
       const int problem = errno;
       gpiod_line_request_release(request);
       errno = problem;
       return nullptr;
     }
-    fake_chip.lines[offset].pull = settings.pull;
     request->lines.push_back(offset);
   }
   return request;

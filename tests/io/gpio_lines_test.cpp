@@ -165,6 +165,20 @@ TEST(GpioLines, AWireThatComesOffStopsTheArm) {
   }
 }
 
+TEST(GpioLines, AChipThatRefusesToPullIsTakenAsItIs) {
+  for (const bool has_events : {true, false}) {
+    resetFakeChip().has_events = has_events;
+    fake_chip.refuses_pulls = true;
+    drive(2, 1);
+    GpioLines lines(allLines(), kPeriod_s);
+    EXPECT_EQ(lines.seesPulses(), has_events);
+    EXPECT_TRUE(lines.read().enable);
+    EXPECT_EQ(fake_chip.lines[1].pull, 0);
+    drive(1, 1);
+    EXPECT_TRUE(lines.read().emergency_stop);
+  }
+}
+
 TEST(GpioLines, ReleaseAloneIsNoPress) {
   for (const bool is_active_low : {false, true}) {
     resetFakeChip();

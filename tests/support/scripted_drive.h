@@ -32,7 +32,7 @@ class ScriptedDrive {
 
   // What a test may set.
   std::map<Entry, std::uint32_t> refused;  ///< entries whose access is aborted, with the code
-  std::map<Entry, std::uint32_t> refused_writes;
+  std::map<Entry, std::uint32_t> refused_writes, refused_reads;
   std::set<Entry> unanswered;
   bool is_powered = true;
   bool sends_feedback = true;
@@ -127,6 +127,7 @@ class ScriptedDrive {
     if (d[0] == 0x80 || unanswered.count(entry) != 0) return;
     if (refused.count(entry) != 0) return abort(frame, refused[entry]);
     if (objects.count(entry) == 0) return abort(frame, 0x06020000);
+    if (d[0] == 0x40 && refused_reads.count(entry) != 0) return abort(frame, refused_reads[entry]);
     if (d[0] == 0x40) {
       const std::uint32_t v = objects[entry];
       const int size = sizeOf(entry.first);

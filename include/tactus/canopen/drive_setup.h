@@ -36,7 +36,9 @@ struct SetupStep {
   enum class Kind : std::uint8_t {
     kExpect,  ///< read until it holds the value in the bits of the mask, or the time is over
     kWrite,   ///< the value
-    kEnsure,  ///< read, and written back with the value in the bits of the mask unless it is there
+    /// Read, and written back with the value in the bits of the mask unless it is there; only
+    /// written where it cannot be read, and all bits are told.
+    kEnsure,
   };
   Kind kind = Kind::kWrite;
   ObjectEntry entry;
@@ -82,6 +84,8 @@ class DriveSetup {
   void judgeSilence() noexcept;
   void judgeAbort() noexcept;
   void judgeAnswer() noexcept;
+  bool canWriteUnread() const noexcept;
+  void write(std::uint32_t value) noexcept;
   void nextStep() noexcept;
   void fail(std::uint32_t abort_code) noexcept;
 

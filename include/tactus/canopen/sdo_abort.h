@@ -10,6 +10,7 @@ namespace sdo_abort {
 inline constexpr std::uint32_t kTimedOut = 0x05040000;
 inline constexpr std::uint32_t kCommandUnknown = 0x05040001;
 inline constexpr std::uint32_t kAccessUnsupported = 0x06010000;
+inline constexpr std::uint32_t kWriteOnly = 0x06010001;
 inline constexpr std::uint32_t kReadOnly = 0x06010002;
 inline constexpr std::uint32_t kObjectMissing = 0x06020000;
 inline constexpr std::uint32_t kLengthMismatch = 0x06070010;

@@ -41,7 +41,7 @@ class TroubleScript {
 /// late, twice, in wrong order or with wrong bits.
 class FrameTroubles {
  public:
-  /// All that fits on a bus of CAN FD within the longest delay that a scene may have.
+  /// 16 frames a millisecond for as long as the longest delay that a scene may have.
   static constexpr std::size_t kCapacity = 4096;
 
   explicit FrameTroubles(int bus);
