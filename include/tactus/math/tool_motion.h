@@ -42,7 +42,7 @@ static_assert(std::is_trivially_copyable_v<ToolMotionPlan> &&
 /// and as long as what it is told leads on along the same line. From any other motion each axis of
 /// the base frame goes its fastest way, with the same limits. Turns have the limits of their
 /// rotation vector from where they are counted, whose speed is never less than the tool's; that is
-/// anew at rest, and beyond half a turn.
+/// anew at rest, and beyond half a turn. The tool's acceleration may be some three times as much.
 class ToolMotion {
  public:
   /// For ever at this pose.
