@@ -39,8 +39,7 @@ TEST(MoteusSetup, NamesTheRegisterThatKeepsItFromItsSetUp) {
   const Refused all[] = {
       {moteusReply(0, 0.0F, 0.0F, 0, kOtherMap),
        other(moteus_register::kMapVersion, kOtherMap, kMoteusMap)},
-      {withoutMap(moteusReply(0, 0.0F, 0.0F, 0)),
-       other(moteus_register::kMapVersion, 0, kMoteusMap)},
+      {withoutMap(moteusReply(0, 0.0F, 0.0F, 0)), {moteus_register::kMapVersion, 0, 0}},
       {moteusReply(5, 0.0F, 0.0F, 33, kOtherMap),
        other(moteus_register::kMapVersion, kOtherMap, kMoteusMap)},
       {moteusReply(0, 0.0F, 0.0F, 0, kMoteusMap, 1), other(moteus_register::kHome, 1, 2)},
