@@ -48,7 +48,7 @@ class GpioChip {
 /// After a request of inputs that has failed, whether it may succeed without a pull: most drivers
 /// pass over one that they do not have, some refuse it.
 inline bool mayLackPull(GpioDirection direction) noexcept {
-  const bool is_unknown = errno == EINVAL || errno == ENOTSUP || errno == EOPNOTSUPP;
+  const bool is_unknown = errno == EINVAL || errno == ENOTSUP;
   return direction != GpioDirection::kOutput && is_unknown;
 }
 
