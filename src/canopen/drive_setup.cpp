@@ -82,23 +82,19 @@ void DriveSetup::judgeSilence() noexcept {
 }
 
 void DriveSetup::judgeAbort() noexcept {
+  const SetupStep& step = steps_[step_];
   const std::uint32_t code = sdo_.abortCode();
   const bool is_missing = code == sdo_abort::kObjectMissing || code == sdo_abort::kSubindexMissing;
   const bool is_read_only = code == sdo_abort::kReadOnly || code == sdo_abort::kAccessUnsupported;
   const bool is_write_only = code == sdo_abort::kWriteOnly || code == sdo_abort::kAccessUnsupported;
-  if (is_write_only && canWriteUnread()) return write(steps_[step_].value);
+  const bool is_unread = step.kind == SetupStep::Kind::kEnsure && !is_changing_;
+  if (is_write_only && is_unread && step.tellsAllBits()) return write(step.value);
   using Need = SetupStep::Need;
   const Need least = is_missing     ? Need::kIfThere
                      : is_read_only ? Need::kIfWritable
                                     : Need::kIfTaken;
-  if (steps_[step_].need < least) return fail(code);
+  if (step.need < least) return fail(code);
   nextStep();
-}
-
-/// Nothing of what was there is to be kept.
-bool DriveSetup::canWriteUnread() const noexcept {
-  const SetupStep& step = steps_[step_];
-  return step.kind == SetupStep::Kind::kEnsure && step.mask == ~std::uint32_t{0} && !is_changing_;
 }
 
 /// The second half of kEnsure.

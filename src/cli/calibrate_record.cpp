@@ -180,11 +180,12 @@ bool takeZero(const RecordSession& session, Recording& recording) {
 std::string toldSoFar(const RecordSession& session, const std::vector<KnownPush>& pushes) {
   int row = 0;
   const double condition = pushesCondition(pushes, session.shape, &row);
-  const int unchecked = uncheckedPushes(pushes, session.shape);
-  if (condition <= kMaxPushesCondition)
+  if (condition <= kMaxPushesCondition) {
+    const int unchecked = uncheckedPushes(pushes, session.shape);
     return fmt::format("{} pushes, condition {:.2g}: {}\n", pushes.size(), condition,
                        unchecked == 0 ? "enough, more make it better"
                                       : fmt::format("{} of them nothing checks yet", unchecked));
+  }
   return fmt::format("{} pushes, which do not tell {} yet\n", pushes.size(), kWrenchRows[row].name);
 }
 

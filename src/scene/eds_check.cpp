@@ -140,8 +140,8 @@ bool mayBeEnsured(const EdsObject& object, const SetupStep& step) {
 }
 
 void checkAccess(const EdsObject& object, const SetupStep& step) {
-  const bool has_to_read = step.kind == StepKind::kExpect ||
-                           (step.kind == StepKind::kEnsure && step.mask != ~std::uint32_t{0});
+  const bool has_to_read =
+      step.kind == StepKind::kExpect || (step.kind == StepKind::kEnsure && !step.tellsAllBits());
   if (has_to_read && !object.isReadable())
     refuseObject(object.access_at, object, "AccessType", "cannot be read", "ro or rw");
   const bool has_to_write = step.kind != StepKind::kExpect && !mayBeEnsured(object, step) &&

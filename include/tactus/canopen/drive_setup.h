@@ -52,6 +52,9 @@ struct SetupStep {
     kIfTaken,     ///< they may refuse the value for any reason
   };
   Need need = Need::kRequired;
+
+  /// Nothing of what was there is to be kept: an entry that cannot be read may be written.
+  bool tellsAllBits() const noexcept { return mask == ~std::uint32_t{0}; }
 };
 
 using SetupSteps = std::vector<SetupStep>;
@@ -84,7 +87,6 @@ class DriveSetup {
   void judgeSilence() noexcept;
   void judgeAbort() noexcept;
   void judgeAnswer() noexcept;
-  bool canWriteUnread() const noexcept;
   void write(std::uint32_t value) noexcept;
   void nextStep() noexcept;
   void fail(std::uint32_t abort_code) noexcept;

@@ -10,15 +10,13 @@ inline constexpr double kClearanceLever_m = 0.3;  ///< l
 template <typename Take>
 void forEachThatCosts(const BodyDistances& distances, const ChainPose& pose, const NearBodies& near,
                       double reach_m, Take take) {
-  const auto takeNear = [&](double share, const NearBody& body) {
-    if (body.distance_m < reach_m) take(share, body);
-  };
   for (int i = 0; i < near.size; ++i) {
     if (near.body[i].distance_m >= reach_m) continue;
     const NearStretch stretch = distances.stretch(pose, near.body[i]);
     take(1.0 - stretch.share, near.body[i]);
     if (stretch.share == 0.0) continue;
-    for (const NearBody& end : stretch.end) takeNear(0.5 * stretch.share, end);
+    for (const NearBody& end : stretch.end)
+      if (end.distance_m < reach_m) take(0.5 * stretch.share, end);
   }
 }
 
