@@ -15,10 +15,14 @@ constexpr int kStopPeriod_cycles = 5;  ///< between NMT stop commands
 
 void Drive::coast(int missed_cycles) noexcept { stop_watch_.coast(missed_cycles); }
 
-/// Off is what it was before the last commands: one of them may have switched it on since.
+/// Off is what it was before the last commands: one of them may have switched it on since. Hazard:
+/// one that is not heard may still be slowing down, which a reset would end: it would roll on.
 void Drive::release(FrameBatch& out) const noexcept {
   const bool stays_off = report_.is_off && goal_ != DriveGoal::kEnabled;
-  const NmtCommand command = stays_off ? NmtCommand::kResetCommunication : NmtCommand::kResetNode;
+  const bool may_brake = phase_ == Phase::kConfigured && report_.is_silent && !report_.is_cut_off;
+  const NmtCommand command = stays_off   ? NmtCommand::kResetCommunication
+                             : may_brake ? NmtCommand::kStop
+                                         : NmtCommand::kResetNode;
   out.push(nmtFrame({command, config_.node_id}));
 }
 

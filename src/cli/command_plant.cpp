@@ -28,6 +28,7 @@ struct PlantOptions {
 
 Json countersJson(const PlantRunResult& result, const Scene& scene) {
   Json json = {{"stale_setpoints_applied", result.plant.stale_setpoints_applied},
+               {"powers_taken_in_motion", result.plant.powers_taken_in_motion},
                {"frames_refused", result.plant.frames_refused},
                {"frames_not_taken", result.plant.frames_not_taken},
                {"interface_refused", result.interface_refused}};
@@ -37,6 +38,7 @@ Json countersJson(const PlantRunResult& result, const Scene& scene) {
 
 void printCounters(const PlantRunResult& result, const Scene& scene) {
   fmt::print("{:<26}{}\n", "stale setpoints applied", result.plant.stale_setpoints_applied);
+  fmt::print("{:<26}{}\n", "powers taken in motion", result.plant.powers_taken_in_motion);
   fmt::print("{:<26}{}\n", "frames refused by queues", result.plant.frames_refused);
   fmt::print("{:<26}{}\n", "frames not taken", result.plant.frames_not_taken);
   fmt::print("{:<26}{}\n", "refused by interfaces", result.interface_refused);

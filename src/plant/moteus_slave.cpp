@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "tactus/plant/slave_axis.h"
+
 namespace tactus {
 namespace {
 
@@ -140,7 +142,9 @@ std::int64_t MoteusSlave::nextEvent_ns() const noexcept {
 
 void MoteusSlave::move(double dt_s) noexcept {
   if (mode_ == kPositionMode) return follow(dt_s);
-  velocity_ = std::copysign(std::max(0.0, std::abs(velocity_) - kDeceleration * dt_s), velocity_);
+  const double deceleration =
+      hasTorque(powerState()) ? kDeceleration : SlaveAxis::kCoastingDeceleration;
+  velocity_ = std::copysign(std::max(0.0, std::abs(velocity_) - deceleration * dt_s), velocity_);
 }
 
 /// From where it is, or to the position that was commanded, at once.

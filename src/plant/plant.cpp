@@ -18,6 +18,7 @@ constexpr double kFirstMove_periods = 0.25;
 // enough that the module's frames do not end as the daemon reads, where chance picks the sample.
 constexpr double kMoveAfterSync_periods = 0.5;
 constexpr std::int64_t kLongSilence_periods = 100;
+constexpr double kStandstill = 1e-3;  // m/s or rad/s
 
 /// Calls a function with the drive, whatever its kind.
 template <class Node, class Function>
@@ -120,6 +121,7 @@ PowerState Plant::powerState(int joint) const noexcept {
 PlantCounters Plant::counters() const noexcept {
   PlantCounters counters;
   counters.frames_not_taken = frames_not_taken_;
+  counters.powers_taken_in_motion = powers_taken_in_motion_;
   for (const Link& link : links_) counters.frames_refused += link.bus.refused();
   for (const Node& node : drives_)
     counters.stale_setpoints_applied +=
@@ -191,10 +193,18 @@ void Plant::deliver(int bus, const BusDelivery& delivery, std::int64_t t_ns) noe
   if (frame.kind == FrameKind::kData && (is_sync || frame.is_fd)) hearSync(t_ns);
   for (Node& node : drives_) {
     if (node.bus != bus) continue;
-    with(node, [&](auto& drive) { drive.receive(delivery.item, t_ns); });
+    tell(node, delivery.item, t_ns);
     collect(node, t_ns);
   }
   noticeEnabling(t_ns);
+}
+
+void Plant::tell(Node& node, const QueuedFrame& item, std::int64_t t_ns) noexcept {
+  const auto holds = [](const auto& drive) { return hasTorque(drive.powerState()); };
+  const bool held = with(node, holds);
+  with(node, [&](auto& drive) { drive.receive(item, t_ns); });
+  const double speed = with(node, [](const auto& drive) { return std::abs(drive.velocity()); });
+  if (held && !with(node, holds) && speed > kStandstill) ++powers_taken_in_motion_;
 }
 
 void Plant::hearSync(std::int64_t t_ns) noexcept {

@@ -31,6 +31,11 @@ PowerState commanded(PowerState state, std::uint16_t control_word, bool is_reset
   }
 }
 
+bool hasTorque(PowerState state) noexcept {
+  return state == PowerState::kOperationEnabled || state == PowerState::kQuickStopActive ||
+         state == PowerState::kFaultReactionActive;
+}
+
 PowerState atStandstill(PowerState state) noexcept {
   if (state == PowerState::kQuickStopActive) return PowerState::kSwitchOnDisabled;
   if (state == PowerState::kFaultReactionActive) return PowerState::kFault;

@@ -82,7 +82,7 @@ bool SlaveAxis::follows(const ObjectDictionary& objects) const noexcept {
 }
 
 double SlaveAxis::deceleration(const ObjectDictionary& objects) const noexcept {
-  if (state_ != PowerState::kQuickStopActive) return kOwnDeceleration;
+  if (!hasTorque(state_)) return kCoastingDeceleration;
   return objects.get(0x6085) / config_.counts_per_unit;
 }
 

@@ -63,6 +63,7 @@ const InjectionKind kKindsBus[] = {
      .script = Trouble::Kind::kReorder},
     {.name = "frames_corrupted",
      .where = InjectionKind::Where::kBus,
+     .lets_go = true,
      .script = Trouble::Kind::kCorrupt},
     {.name = "frames_doubled",
      .where = InjectionKind::Where::kBus,

@@ -78,15 +78,18 @@ const InjectionKind kKindsDrive[] = {
      .script = Trouble::Kind::kDriveFault},
     {.name = "drive_leaves_operation",
      .where = InjectionKind::Where::kDrive,
+     .lets_go = true,
      .act =
          [](Injection& x, VirtualRobotCell& cell) {
            if (x.t_ms == 0) sendSdo(x, cell, 0x2B, 0x6040, 0, 0);
          }},
     {.name = "node_reset",
      .where = InjectionKind::Where::kDrive,
+     .lets_go = true,
      .act = commandNode<NmtCommand::kResetNode>},
     {.name = "communication_reset",
      .where = InjectionKind::Where::kDrive,
+     .lets_go = true,
      .act = commandNode<NmtCommand::kResetCommunication>},
     {.name = "node_stopped",
      .where = InjectionKind::Where::kDrive,
@@ -100,6 +103,7 @@ const InjectionKind kKindsDrive[] = {
     {.name = "commands_ignored", .where = InjectionKind::Where::kDrive, .send = losesCommands},
     {.name = "velocity_kept",
      .where = InjectionKind::Where::kDrive,
+     .lets_go = true,
      .send =
          [](Injection& x, int bus, CanFrame& f) {
            if (!x.isSetpoint(bus, f)) return true;
@@ -120,6 +124,7 @@ const InjectionKind kKindsDrive[] = {
          }},
     {.name = "runaway",
      .where = InjectionKind::Where::kDrive,
+     .lets_go = true,
      .low = 0.02,
      .high = 0.3,
      .send =

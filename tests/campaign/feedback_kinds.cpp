@@ -56,6 +56,7 @@ const InjectionKind kKindsFeedback[] = {
     {.name = "fault_shown",
      .where = InjectionKind::Where::kDrive,
      .detected_ms = 4,
+     .lets_go = true,
      .receive =
          [](Injection& x, int bus, CanFrame& f) {
            if (x.isFeedback(bus, f)) f.data[0] = 0x08;
@@ -63,6 +64,7 @@ const InjectionKind kKindsFeedback[] = {
     {.name = "off_shown",
      .where = InjectionKind::Where::kDrive,
      .detected_ms = 4,
+     .lets_go = true,
      .receive =
          [](Injection& x, int bus, CanFrame& f) {
            if (x.isFeedback(bus, f)) f.data[0] = 0x40;
@@ -70,6 +72,7 @@ const InjectionKind kKindsFeedback[] = {
     {.name = "switched_on_shown",
      .where = InjectionKind::Where::kDrive,
      .detected_ms = 4,
+     .lets_go = true,
      .receive =
          [](Injection& x, int bus, CanFrame& f) {
            if (x.isFeedback(bus, f)) f.data[0] = 0x33;
@@ -119,6 +122,7 @@ const InjectionKind kKindsFeedback[] = {
          }},
     {.name = "boot_up_message",
      .where = InjectionKind::Where::kDrive,
+     .lets_go = true,
      .act =
          [](Injection& x, VirtualRobotCell& cell) {
            const bool is_due = x.t_ms % (40 * x.period_ms) == 0;

@@ -30,6 +30,7 @@ FrameGate::Passing FrameGate::pass(const SeenFrame& seen, CanFrame& frame) {
       held_ = {seen, frame};
       return {0};
     case kFlipped:
+      has_spoilt_command_ = seen.is_sent;
       flipBit(frame, trouble_->bit);
   }
   return {};

@@ -42,6 +42,7 @@ class FrameGate {
   };
   std::optional<Held> takeHeld();                   ///< what the cycle before kept back
   int troubled_ms() const { return troubled_ms_; }  ///< -1: not yet
+  bool hasSpoiltCommand() const { return has_spoilt_command_; }
   const std::vector<SeenFrame>& seen() const { return seen_; }
 
  private:
@@ -49,7 +50,8 @@ class FrameGate {
   std::optional<Held> held_;
   int passed_ = 0;
   int troubled_ms_ = -1;
-  std::vector<SeenFrame> seen_;  ///< of a run without trouble
+  bool has_spoilt_command_ = false;  ///< a flipped bit of what the daemon sent
+  std::vector<SeenFrame> seen_;      ///< of a run without trouble
 };
 
 }  // namespace tactus::campaign

@@ -25,6 +25,7 @@ struct InjectionKind {
   /// news. 0: not to be told, or not in time.
   int detected_ms = 0;
   bool lasts = false;            ///< to the end of the run
+  bool lets_go = false;          ///< a drive, or is a reason to take its power at once
   bool is_followed = false;      ///< a force: where it is felt while it runs, the arm gives way
   double low = 0.0, high = 0.0;  ///< of its size, either sign: N, m, rad, m/s or rad/s
   void (*input)(Injection&, CycleInput&) = nullptr;

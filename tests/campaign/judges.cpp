@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tactus/plant/slave_axis.h"
+
 namespace tactus::campaign {
 namespace {
 
@@ -142,7 +144,10 @@ void RestJudge::look(const Look& look) {
   const bool is_anew =
       now.mode == kRunning || look.entered(kEnabling) || is_stopping || peak.size() == 0;
   peak = is_anew ? speed : peak.cwiseMax(speed);
-  const JointVector stop_s = peak.cwiseQuotient(look.promise.quick_stop);
+  has_let_go =
+      now.powers_taken > look.before.powers_taken || (has_let_go && !look.entered(kEnabling));
+  const double coasting = has_let_go ? SlaveAxis::kCoastingDeceleration : kNoLimit;
+  const JointVector stop_s = peak.cwiseQuotient(look.promise.quick_stop.cwiseMin(coasting));
   const int stop_ms = static_cast<int>(1e3 * std::min(stop_s.maxCoeff(), kLongStop_s));
   const bool is_moving = speed.maxCoeff() > kRestVelocity;
   const int since_ms = now.mode == kOff ? off_ms : rest_ms;
@@ -219,6 +224,14 @@ void ForceJudge::look(const Look& look) {
     look.complain("force", "the sensor's zero is elsewhere", fmt::format("by {:.2f} N", error_N));
 }
 
+void PowerJudge::look(const Look& look) {
+  held_ms = look.now.is_brake_open ? 0 : held_ms + look.now.t_ms - look.before.t_ms;
+  const bool is_new = look.now.powers_taken > look.before.powers_taken;
+  if (is_new && !look.now.may_let_go && held_ms < look.promise.brake_ms)
+    look.complain("power", fmt::format("a drive lets go in motion in {}", modeName(look.now.mode)),
+                  largest(look.now.velocity));
+}
+
 void Judges::look(const Look& look) {
   limits.look(look);
   stop.look(look);
@@ -231,6 +244,7 @@ void Judges::look(const Look& look) {
   end.look(look);
   stale.look(look);
   force.look(look);
+  power.look(look);
 }
 
 }  // namespace tactus::campaign

@@ -66,10 +66,11 @@ struct BrakeJudge {
 struct RestJudge {
   int rest_ms = 0;  ///< since anything was commanded
   int off_ms = 0;
-  int stopped_ms = 0;    ///< since the task was left
-  int torque_ms = 0;     ///< that drives have in ready
-  JointVector position;  ///< when the arm should have come to rest
-  JointVector peak;      ///< velocity since the task was left: so long takes a quick stop
+  int stopped_ms = 0;       ///< since the task was left
+  int torque_ms = 0;        ///< that drives have in ready
+  bool has_let_go = false;  ///< a drive, while it moved
+  JointVector position;     ///< when the arm should have come to rest
+  JointVector peak;         ///< velocity since the task was left: so long takes a quick stop
   void look(const Look& look);
 };
 
@@ -107,6 +108,12 @@ struct ForceJudge {
   void look(const Look& look);
 };
 
+/// No drive is told to let go while it moves, but where a brake holds it.
+struct PowerJudge {
+  int held_ms = 0;  ///< since the brake was told to close
+  void look(const Look& look);
+};
+
 struct Judges {
   LimitsJudge limits;
   StopJudge stop;
@@ -119,6 +126,7 @@ struct Judges {
   EndJudge end;
   StaleJudge stale;
   ForceJudge force;
+  PowerJudge power;
 
   void look(const Look& look);
 };

@@ -31,6 +31,8 @@ struct Observation {
   double pushed = 0.0;         ///< how far the joint that was moved most by hand is from its place
   int pushed_ms = 0;           ///< for how long it is beyond the tolerance
   unsigned long stale_setpoints = 0;  ///< followed by drives so far
+  unsigned long powers_taken = 0;     ///< of drives that moved, so far
+  bool may_let_go = false;            ///< by a trouble, not by the daemon
 };
 
 }  // namespace tactus::campaign

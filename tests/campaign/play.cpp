@@ -198,6 +198,7 @@ void Play::observePlant() {
   }
   now_.has_torque = !cell_.areDrivesLimp();
   now_.stale_setpoints = cell_.plant.counters().stale_setpoints_applied;
+  now_.powers_taken = cell_.plant.counters().powers_taken_in_motion;
 }
 
 /// When it could first be seen: another trouble of the tactile module, that is over now, hid it. A
@@ -217,12 +218,15 @@ void Play::observeInjections() {
   const int t_ms = now_ms() - 1;  // when it was done
   now_.is_calm = now_.is_free = true;
   now_.has_hand = false;
-  now_.is_late_frame = gate_.troubled_ms() >= 0 && t_ms < gate_.troubled_ms() + kLateFrame_ms;
+  const bool is_frame_new = gate_.troubled_ms() >= 0 && t_ms < gate_.troubled_ms() + kLateFrame_ms;
+  now_.is_late_frame = is_frame_new;
+  now_.may_let_go = gate_.hasSpoiltCommand() && is_frame_new;
   now_.hidden_cause = nullptr;
   now_.pushed = 0.0;
   for (const Injection& x : injections_) {
     const bool is_bus = x.kind->where == InjectionKind::Where::kBus;
     now_.is_late_frame |= is_bus && t_ms >= x.from_ms && t_ms < x.until_ms + kLateFrame_ms;
+    now_.may_let_go |= x.kind->lets_go && t_ms >= x.from_ms && t_ms < x.until_ms + kLateFrame_ms;
     const bool is_hand = x.kind->receive == hand().receive;
     now_.has_hand |= is_hand && t_ms >= x.from_ms && t_ms < x.until_ms + kLastSample_ms;
     if (!x.isAtWork(t_ms)) continue;

@@ -18,6 +18,7 @@ bool mayRun(Mode mode) { return mode == Mode::kRunning || mode == Mode::kEnablin
 
 void RestMeter::look(const Look& look) {
   const Observation& now = look.now;
+  has_let_go_ = has_let_go_ || now.powers_taken > look.before.powers_taken;
   if (now.t_ms > plan_.clear_ms) return;
   mode_ = now.mode;
   fault_ = now.fault;
@@ -34,7 +35,8 @@ void RestMeter::judgeRest(const Look& look) const {
   const Observation& now = look.now;
   if (mayRun(now.mode)) return;
   const double speed = now.velocity.cwiseAbs().maxCoeff();
-  if (speed > kStandstill)
+  if (speed > kStandstill &&
+      !has_let_go_)  // else it rolls on into its brake, which the plant lacks
     look.complain("rest", fmt::format("no rest in {}", modeName(now.mode)),
                   fmt::format("{:.3g}", speed));
   if (fault_ms_ < kOff_ms) return;

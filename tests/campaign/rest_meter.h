@@ -27,6 +27,7 @@ class RestMeter {
   int stop_ms_ = -1;
   int fault_ms_ = 0;
   int rest_ms_ = 0;
+  bool has_let_go_ = false;  ///< a drive, while it moved
 };
 
 }  // namespace tactus::campaign

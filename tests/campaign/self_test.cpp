@@ -177,6 +177,8 @@ std::vector<Harm> harms() {
        [](Observation& o, int ms) { o.t_ms += ms > 10 ? 8001 : 0; }},
       {"stale", "a drive followed an old setpoint", kRun,
        [](Observation& o, int ms) { o.stale_setpoints = ms > 9 ? 1 : 0; }},
+      {"power", "a drive lets go in motion", kStopsAtOnce,
+       [](Observation& o, int ms) { o.powers_taken = ms > 9 ? 1 : 0; }},
       {"force", "the sensor's zero is elsewhere", kRun,
        always([](Observation& o) { o.force_error_N = 2.0; })},
   };

@@ -198,7 +198,10 @@ TEST(DriveStop, OnlyWhatWasSeenOffLosesItsWatchAtTheEnd) {
   rig.enable();
   rig.slave.sends_feedback = false;
   rig.cycles(20, DriveGoal::kQuickStop);
-  EXPECT_EQ(released(rig), std::vector{kResetNode}) << "out of reach";
+  EXPECT_EQ(released(rig), std::vector{kNmtStop}) << "out of reach, and it may still slow down";
+  rig.cycles(kDeadlineCycles + 1, DriveGoal::kQuickStop);
+  EXPECT_TRUE(rig.report().is_cut_off);
+  EXPECT_EQ(released(rig), std::vector{kResetNode});
 }
 
 /// What it says is of before its last commands.

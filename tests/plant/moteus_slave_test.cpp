@@ -109,6 +109,16 @@ TEST_F(MoteusOfNode3, StopsByItselfWithoutCommandsAndOnlyStopLeadsOn) {
   EXPECT_EQ(slave_.mode(), 2);
 }
 
+TEST_F(MoteusOfNode3, RollsOnWhereItIsToldToLetGoInMotion) {
+  run();
+  wait(4);
+  run();
+  wait(1);
+  ask({.kind = MoteusCommand::Kind::kStop});
+  wait(100);
+  EXPECT_NEAR(slave_.velocity(), -0.3, 1e-6);
+}
+
 TEST_F(MoteusOfNode3, AFaultIsClearedByStoppingOnceItsCauseHasGone) {
   DriveTroubles troubles;
   troubles.is_failing = true;

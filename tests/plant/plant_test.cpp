@@ -91,6 +91,29 @@ TEST_F(PlantOfReferenceRobot, MovesAsItsSetpointsSay) {
   }
 }
 
+TEST_F(PlantOfReferenceRobot, CountsDrivesThatAreToldToLetGoWhileTheyMove) {
+  build({});
+  master_->start();
+  for (const int drive : {2, 4}) master_->setVelocity(drive, 0.05);
+  master_->cycles(20);
+  EXPECT_EQ(plant_->counters().powers_taken_in_motion, 0u);
+  master_->control_word = 0x00;
+  master_->cycles(5);
+  EXPECT_EQ(plant_->counters().powers_taken_in_motion, 2u) << "the others stood still";
+  EXPECT_GT(plant_->drive(4).velocity(), 0.04) << "nobody holds it";
+}
+
+TEST_F(PlantOfReferenceRobot, AQuickStopTakesNoPowerInMotion) {
+  build({});
+  master_->start();
+  master_->setVelocity(4, 0.05);
+  master_->cycles(20);
+  master_->control_word = 0x02;
+  master_->cycles(500);
+  EXPECT_EQ(plant_->powerState(4), PowerState::kSwitchOnDisabled);
+  EXPECT_EQ(plant_->counters().powers_taken_in_motion, 0u);
+}
+
 TEST_F(PlantOfReferenceRobot, FeedbackComesTwoCyclesAfterTheSetpointWhateverThePhase) {
   PlantConfig ideal = test::crops9Plant({});
   ideal.drive_lag_s = 0.0;

@@ -324,7 +324,8 @@ TEST_F(DriveOfNode5, StopsQuicklyByItsOwnRampWhateverTheSetpointSays) {
   EXPECT_EQ(drive_.velocity(), 0.0);
 }
 
-TEST_F(DriveOfNode5, ComesToRestWhenDisabled) {
+/// Nobody holds the joint then: the gear's friction alone slows it down.
+TEST_F(DriveOfNode5, RollsOnWhenDisabled) {
   for (const int word : {0x00, 0x06, 0x07}) {
     hear(canFrame(0, {129, 5}));
     configure();
@@ -332,8 +333,10 @@ TEST_F(DriveOfNode5, ComesToRestWhenDisabled) {
     cycle(0x0F, -1000);
     cycle(word, -1000);
     EXPECT_NE(drive_.powerState(), PowerState::kOperationEnabled);
-    EXPECT_NEAR(drive_.velocity(), 1.0 - 0.02, 1e-9);
-    for (int i = 0; i < 50; ++i) cycle(word, -1000);
+    EXPECT_NEAR(drive_.velocity(), 1.0 - 0.001, 1e-9);
+    for (int i = 0; i < 998; ++i) cycle(word, -1000);
+    EXPECT_NEAR(drive_.velocity(), 0.001, 1e-9);
+    for (int i = 0; i < 2; ++i) cycle(word, -1000);
     EXPECT_EQ(drive_.velocity(), 0.0);
   }
 }
@@ -454,7 +457,7 @@ TEST_F(DriveOfNode5, MissesSetpointsWhileSyncAndHeartbeatGoOn) {
   EXPECT_EQ(drive_.objects().get(0x603F), 0x8250u);
   EXPECT_EQ(drive_.powerState(), PowerState::kFaultReactionActive);
   EXPECT_EQ(drive_.nmtState(), NodeState::kOperational);
-  for (int i = 0; i < 50; ++i) drive_.move(0.001);
+  for (int i = 0; i < 101; ++i) drive_.move(0.001);
   EXPECT_EQ(drive_.velocity(), 0.0);
 }
 
@@ -527,20 +530,20 @@ TEST_F(DriveOfNode5, LeavingOperationalWhileEnabledIsAFault) {
     cycle(0x0F, 300);
     hear(canFrame(0, {command, 5}));
     EXPECT_EQ(drive_.powerState(), PowerState::kFaultReactionActive) << command;
-    for (int i = 0; i < 20; ++i) cycle(0x0F, 300);
+    for (int i = 0; i < 61; ++i) cycle(0x0F, 300);
     EXPECT_EQ(drive_.velocity(), 0.0);
     EXPECT_EQ(drive_.powerState(), PowerState::kFault);
   }
 }
 
-TEST_F(DriveOfNode5, WithoutPowerItIsSilentAndComesToRest) {
+TEST_F(DriveOfNode5, WithoutPowerItIsSilentAndRollsToRest) {
   configure();
   write(0x1017, 0, 10, 2);
   enable();
   cycle(0x0F, 100);
   said_.clear();
   drive_.setPowered(false, t_ns_);
-  for (int i = 0; i < 50; ++i) cycle(0x0F, 100);
+  for (int i = 0; i < 101; ++i) cycle(0x0F, 100);
   EXPECT_TRUE(said_.empty());
   EXPECT_EQ(drive_.velocity(), 0.0);
   drive_.setPosition(0.4);

@@ -20,7 +20,7 @@ namespace tactus {
 class MoteusSlave {
  public:
   static constexpr std::int64_t kEnabling_ns = 3'000'000;  ///< in modes 2 to 4
-  static constexpr double kDeceleration = 20.0;            ///< m/s^2 or rad/s^2
+  static constexpr double kDeceleration = 20.0;            ///< with torque, m/s^2 or rad/s^2
 
   /// Switched off.
   MoteusSlave(const DriveConfig& config, double period_s);

@@ -20,6 +20,7 @@ namespace tactus {
 /// What a test asks of the plant after a run.
 struct PlantCounters {
   std::uint64_t stale_setpoints_applied = 0;  ///< older than two periods when the drive took them
+  std::uint64_t powers_taken_in_motion = 0;   ///< drives told to let go while they moved
   std::uint64_t frames_refused = 0;           ///< by a full transmit queue, or in bus-off
   std::uint64_t frames_not_taken = 0;         ///< lost because take() came too late
 };
@@ -97,6 +98,8 @@ class Plant {
   DriveTroubles troublesOf(const Node& node, std::int64_t t_ns) const noexcept;
   void moveBus(int bus, std::int64_t t_ns) noexcept;
   void deliver(int bus, const BusDelivery& delivery, std::int64_t t_ns) noexcept;
+  /// Gives a frame to a drive.
+  void tell(Node& node, const QueuedFrame& item, std::int64_t t_ns) noexcept;
   void hearSync(std::int64_t t_ns) noexcept;
   void give(Link& link, const CanFrame& frame) noexcept;
   static void noteNextEvent(Node& node) noexcept;
@@ -121,6 +124,7 @@ class Plant {
   std::int64_t next_trouble_ns_ = kNever_ns;
   std::int64_t last_sync_ns_;
   std::uint64_t frames_not_taken_ = 0;
+  std::uint64_t powers_taken_in_motion_ = 0;
 };
 
 }  // namespace tactus

@@ -20,6 +20,9 @@ enum class PowerState : std::uint8_t {
 /// rising edge of bit 7.
 PowerState commanded(PowerState state, std::uint16_t control_word, bool is_reset_edge) noexcept;
 
+/// A drive in the other states holds nothing: what moves rolls on.
+bool hasTorque(PowerState state) noexcept;
+
 /// The state that follows once a stop has come to its end.
 PowerState atStandstill(PowerState state) noexcept;
 

@@ -12,8 +12,9 @@ namespace tactus {
 /// Control and target come from the object dictionary, status and actual values go there.
 class SlaveAxis {
  public:
-  /// Without a quick stop the drive comes to rest with this, m/s^2 or rad/s^2.
-  static constexpr double kOwnDeceleration = 20.0;
+  /// Without torque only the gear's friction slows a joint down, m/s^2 or rad/s^2. With torque it
+  /// stops as 6085 says.
+  static constexpr double kCoastingDeceleration = 1.0;
 
   /// Without power.
   explicit SlaveAxis(const DriveConfig& config) : config_(config) {}
