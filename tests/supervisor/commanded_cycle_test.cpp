@@ -336,5 +336,41 @@ TEST(CommandedCycle, RestsTurnedAsAStopHasLeftIt) {
   EXPECT_LT((toolPose(cell, scene).R_AB - rest).norm(), 1e-6);
 }
 
+/// A stream that turns the tool faster than its joints can, about one axis: how far the reference
+/// is from the tool where the stream then leads on, or back.
+double leftAfterATurn(int axis, bool leads_back) {
+  constexpr std::array<const char*, 3> kComponents = {"[x, y, z, rx]", "[x, y, z, ry]",
+                                                      "[x, y, z, rz]"};
+  Scene scene = toldScene({{"simulation.obstacles", "[]"},
+                           {"task.components", kComponents[axis]},
+                           {"task.max_return_speed_rad_per_s", "0.2"},
+                           {"task.wait_beyond_rad", "0.05"}});
+  scene.controller.limits.max_velocity.setConstant(0.02);
+  VirtualRobotCell cell(scene);
+  EXPECT_TRUE(cell.runUntil(Mode::kRunning, 5000));
+  const Pose start = toolPose(cell, scene);
+  std::uint32_t number = 0;
+  const auto turn = [&](double angle_rad) {
+    Pose target = start;
+    target.R_AB = Eigen::AngleAxisd(angle_rad, Vector3::Unit(axis)).toRotationMatrix() * start.R_AB;
+    tell(cell, target, ++number, ToolOrder::Kind::kStream);
+    stepPrepared(cell);
+  };
+  for (int i = 0; i < 1000; ++i) turn(0.3);
+  const CycleRecord held_off = cell.record();
+  EXPECT_GT(std::abs(held_off.wd[3] - held_off.w[3]), 0.02) << "it does not wait";
+  turn(leads_back ? -0.3 : 0.4);
+  stepPrepared(cell);
+  const CycleRecord record = cell.record();
+  return std::abs(record.wd[3] - record.w[3]);
+}
+
+TEST(CommandedCycle, AStreamLeadsBackATurnThatIsHeldOffAboutEachAxis) {
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_GT(leftAfterATurn(axis, false), 0.02) << axis;
+    EXPECT_LT(leftAfterATurn(axis, true), 1e-3) << axis;
+  }
+}
+
 }  // namespace
 }  // namespace tactus
