@@ -53,8 +53,9 @@ ControlClient::ControlClient(const std::string& path) {
 
 Json ControlClient::ask(const Json& request) const {
   std::vector<char> answer(kMaxAnswer);
-  const bool is_sent = socket_.send(request.dump(-1, ' ', false, Json::error_handler_t::replace));
-  const long size = is_sent ? socket_.receive(answer) : -1;
+  // One that has too many clients refuses before it is asked: why has come, though nothing is sent.
+  socket_.send(request.dump(-1, ' ', false, Json::error_handler_t::replace));
+  const long size = socket_.receive(answer);
   if (size <= 0 || static_cast<std::size_t>(size) > answer.size())
     throw RunError("the daemon does not answer");
   const Json json = Json::parse(answer.begin(), answer.begin() + size, nullptr, false);

@@ -23,6 +23,7 @@ namespace tactus {
 namespace {
 
 constexpr int kLook_ms = 50;
+constexpr const char* kTooMany = R"({"done":false,"error":"too many clients"})";
 
 bool hasRuntimeFolder() {
   const char* folder = std::getenv("RUNTIME_DIRECTORY");
@@ -132,11 +133,27 @@ void ControlSocket::acceptAll() {
 void ControlSocket::accept() {
   PacketSocket socket = listening_.accept();
   if (!socket.isOpen()) return;
-  if (clients_.size() < kMaxClients) {
-    clients_.push_back({std::move(socket)});
-  } else {
-    socket.send(R"({"done":false,"error":"too many clients"})");
+  if (makeRoom()) {
+    clients_.push_back({.socket = std::move(socket), .is_extra = clients_.size() >= kMaxClients});
+    return;
   }
+  std::array<char, 1> room;
+  socket.receive(room);  // closed with a request unread, the other side would see that alone
+  socket.send(kTooMany);
+}
+
+/// False: the extra client wants something, which comes first. One that is silent has to go, as the
+/// next may want to hold.
+bool ControlSocket::makeRoom() {
+  if (clients_.size() <= kMaxClients) {  // with places for all that are here
+    for (Client& client : clients_) client.is_extra = false;
+    return true;
+  }
+  const auto extra = std::ranges::find_if(clients_, &Client::is_extra);
+  if (!extra->request.empty() || extra->socket.waiting() > 0) return false;
+  extra->socket.send(kTooMany);
+  clients_.erase(extra);
+  return true;
 }
 
 /// False: it is to be closed.
@@ -151,6 +168,10 @@ bool ControlSocket::hear(Client& client) {
   }
   client.request.assign(room.data(), static_cast<std::size_t>(size));
   client.is_hold = isHold(client.request);
+  if (client.is_extra && clients_.size() > kMaxClients && !client.is_hold) {
+    client.socket.send(kTooMany);
+    return false;
+  }
   client.asker = {.waits = [&client] { return !hasLeft(client.socket); },
                   .is_overtaken = client.overtaken_bytes > 0,
                   .came_after_cycle = came_after_cycle_};

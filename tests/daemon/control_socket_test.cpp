@@ -175,6 +175,74 @@ TEST_F(ControlSocketTest, AHoldOvertakesWhatWaitsInASocketToo) {
   EXPECT_NE(answerTo(streamer).value("error", "").find("expected it to pause"), std::string::npos);
 }
 
+/// As open panels do, and who waits for a change to be kept.
+class CrowdedControlSocket : public ControlSocketTest {
+ protected:
+  CrowdedControlSocket() {
+    runAtStart();
+    for (int i = 0; i < ControlSocket::kMaxClients; ++i) {
+      silent_.push_back(asker());
+      EXPECT_TRUE(silent_.back().send(kShow));
+      EXPECT_EQ(answerTo(silent_.back()).at("done"), true);
+    }
+  }
+
+  static std::string refusal(const ControlClient& client, const Json& request) {
+    try {
+      client.ask(request);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+
+  const ControlSocket socket_{scene_, *link_};
+  std::vector<PacketSocket> silent_;
+};
+
+TEST_F(CrowdedControlSocket, TakesAHoldOfOneMore) {
+  for (int i = 0; i < 3; ++i) {
+    const ControlClient holder(controlPath());
+    EXPECT_EQ(holder.ask({{"do", "hold"}}).at("done"), true);
+    ToolOrder order;
+    EXPECT_TRUE(link_->tool_holds.take(order));
+  }
+}
+
+TEST_F(CrowdedControlSocket, TellsOneMoreWhoWantsAnythingElseWhyNot) {
+  for (const char* request : {kShow, kStream}) {
+    const PacketSocket other = asker();
+    EXPECT_TRUE(other.send(request));
+    EXPECT_EQ(answerTo(other).value("error", ""), "too many clients");
+    EXPECT_EQ(refusal(ControlClient(controlPath()), Json::parse(request)), "too many clients");
+  }
+  ToolOrder order;
+  EXPECT_FALSE(link_->tool_orders.pop(order));
+}
+
+/// Else it would shut out a hold as all the others do.
+TEST_F(CrowdedControlSocket, IsNotShutByOneMoreThatIsSilent) {
+  const ControlClient silent(controlPath());
+  ToolOrder order;
+  for (int i = 0; i < 3; ++i) {
+    const PacketSocket holder = asker();
+    EXPECT_TRUE(holder.send(kHold));
+    EXPECT_EQ(answerTo(holder).at("done"), true);
+    EXPECT_TRUE(link_->tool_holds.take(order));
+  }
+  EXPECT_EQ(refusal(silent, {{"do", "show"}}), "too many clients") << "what it was told before";
+}
+
+TEST_F(CrowdedControlSocket, GivesAPlaceThatIsFreeToWhoWasOneMore) {
+  const ControlClient one_more(controlPath());
+  EXPECT_EQ(one_more.ask({{"do", "hold"}}).at("done"), true);
+  silent_.pop_back();
+  EXPECT_EQ(one_more.ask({{"do", "show"}}).at("done"), true);
+  const ControlClient next(controlPath());
+  EXPECT_EQ(next.ask({{"do", "hold"}}).at("done"), true);
+  EXPECT_EQ(one_more.ask({{"do", "show"}}).at("done"), true) << "it has a place";
+}
+
 TEST_F(ControlSocketTest, LeavesAPathToTheDaemonThatAnswersThere) {
   const ControlSocket socket(scene_, *link_);
   const auto other = std::make_unique<LoopLink>();

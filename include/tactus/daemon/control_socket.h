@@ -24,7 +24,8 @@ std::string controlPath();
 /// The socket is the service manager's, or else lies in RUNTIME_DIRECTORY; without either there is
 /// none. A hold is answered before all that waits, also before what came earlier. Clients are taken
 /// for hostile: at most kMaxClients of them, each as often as kMessagesPerS; what is too long, or
-/// does not take its answer, is closed.
+/// does not take its answer, is closed. One more is heard for a hold alone: those who have all
+/// places may be silent for hours.
 class ControlSocket {
  public:
   static constexpr int kMaxClients = 8;
@@ -42,6 +43,7 @@ class ControlSocket {
     double may_speak_s = 0.0;  ///< on the monotonic clock
     std::string request{};     ///< that waits for its answer
     bool is_hold = false;
+    bool is_extra = false;     ///< came when all places were taken
     long overtaken_bytes = 0;  ///< sent, and not received yet, when a hold was answered
     Asker asker{};
   };
@@ -52,6 +54,7 @@ class ControlSocket {
   void await(std::vector<pollfd>& polled);
   void acceptAll();
   void accept();
+  bool makeRoom();
   bool hear(Client& client);
   void answerOne();
   bool answer(Client& client);

@@ -98,7 +98,10 @@ class Daemon:
         if self._socket is None:
             raise ValueError("the connection is closed, expected a new tactus.Daemon")
         try:
-            self._socket.send(packet)
+            try:
+                self._socket.send(packet)
+            except BrokenPipeError:  # refused before it was asked, and why has come
+                pass
             return self._socket.recv(_MAX_ANSWER)
         except OSError as error:
             if error.errno == errno.EMSGSIZE:  # nothing was sent
