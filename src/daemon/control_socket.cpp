@@ -41,7 +41,7 @@ bool hasLeft(const PacketSocket& socket) noexcept {
   return ::poll(&end, 1, 0) > 0 && (end.revents & POLLHUP) != 0;
 }
 
-bool isHold(const std::string& message) {
+bool isHold(std::string_view message) {
   const Json request = Json::parse(message, nullptr, false);
   return request.is_object() && wishOf(request) == "hold";
 }
@@ -173,10 +173,22 @@ bool ControlSocket::hear(Client& client) {
     return false;
   }
   client.asker = {.waits = [&client] { return !hasLeft(client.socket); },
+                  .hold_comes = [this] { return holdComes(); },
                   .is_overtaken = client.overtaken_bytes > 0,
                   .came_after_cycle = came_after_cycle_};
   client.overtaken_bytes -= std::min(size, client.overtaken_bytes);
   return true;
+}
+
+/// Next of a client, also of one that has connected while a request is answered. None is longer.
+bool ControlSocket::holdComes() {
+  acceptAll();
+  return std::ranges::any_of(clients_, [](const Client& client) {
+    std::array<char, 256> room;
+    const long size = client.socket.peek(room);
+    const bool is_whole = size > 0 && static_cast<std::size_t>(size) <= room.size();
+    return is_whole && isHold({room.data(), static_cast<std::size_t>(size)});
+  });
 }
 
 /// A hold, or else who was answered the longest ago. What had come before the hold, also what has

@@ -42,13 +42,17 @@ const char* stateName(ToolState state) noexcept {
   return "holding";
 }
 
-/// To look how far a way can be gone takes time, in which who asked may have thought better of it.
+constexpr const char* kHoldCame = "a hold has come meanwhile";
+
+/// To look how far a way can be gone takes time, in which who asked may have thought better of it,
+/// and in which no hold is to wait.
 void requireAsker(const Asker& asker) {
   if (asker.waits && !asker.waits()) throw InputError("who asked has left");
+  if (asker.hold_comes && asker.hold_comes()) throw InputError(kHoldCame);
 }
 
 void requireNotOvertaken(const Asker& asker) {
-  if (asker.is_overtaken) throw InputError("a hold has come meanwhile");
+  if (asker.is_overtaken) throw InputError(kHoldCame);
 }
 
 Json vectorJson(const Vector3& v) { return Json::array({v.x(), v.y(), v.z()}); }
@@ -173,6 +177,7 @@ Json ToolRequests::follow(const Json& request, const Asker& asker) {
   Pose from = poseOf(sight_);
   JointVector q = jointsOf(sight_);
   for (const Json& waypoint : *found) {
+    requireAsker(asker);
     const std::string what = fmt::format("waypoint {}", orders.size() + 1);
     const ToolTarget next = asked(what, waypoint, from, orders.empty() ? Kind::kGo : Kind::kGoNext);
     q = reach(what, q, next).q_end;

@@ -40,6 +40,15 @@ PacketSocket open(const std::string& path, int flags) {
   return socket;
 }
 
+/// Whole size of a packet, though the room may be less.
+long receivePacket(int fd, std::span<char> room, int flags) noexcept {
+  long size;
+  do {
+    size = ::recv(fd, room.data(), room.size(), MSG_TRUNC | flags);
+  } while (size < 0 && errno == EINTR);  // that a signal came says nothing of the other side
+  return size;
+}
+
 /// Not of a socket whose process is gone. One whose backlog is full is not.
 bool isListenedAt(const std::string& path, const sockaddr_un& address) {
   const PacketSocket probe = open(path, SOCK_NONBLOCK);
@@ -93,11 +102,11 @@ PacketSocket PacketSocket::accept() const noexcept {
 }
 
 long PacketSocket::receive(std::span<char> room) const noexcept {
-  long size;
-  do {
-    size = ::recv(fd_, room.data(), room.size(), MSG_TRUNC);
-  } while (size < 0 && errno == EINTR);  // that a signal came says nothing of the other side
-  return size;
+  return receivePacket(fd_, room, 0);
+}
+
+long PacketSocket::peek(std::span<char> room) const noexcept {
+  return receivePacket(fd_, room, MSG_PEEK | MSG_DONTWAIT);
 }
 
 long PacketSocket::waiting() const noexcept {

@@ -1,6 +1,8 @@
 #include "tactus/daemon/control_socket.h"
 
 #include <gtest/gtest.h>
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -156,6 +158,33 @@ TEST_F(ControlSocketTest, TakesNothingBehindAHoldThatCameBefore) {
     EXPECT_LT(streamed.at("task").at("number"), held.at("task").at("number"));
   }
   answerTo(follower);
+}
+
+/// Also of whoever connects only then. A machine that is busy may be done with the check first.
+TEST_F(ControlSocketTest, AHoldThatComesWhileAFollowIsCheckedHasItRefused) {
+  const ControlSocket socket(scene_, *link_);
+  runAtStart();
+  Json follow = {{"do", "follow"}, {"waypoints", Json::array()}};
+  for (int i = 0; i < 256; ++i)
+    follow["waypoints"].push_back(
+        {{"to_m", {0, i % 2 == 0 ? 0.05 : -0.05, 0}}, {"relative", true}});
+  bool is_refused = false;
+  for (int attempt = 0; attempt < 10 && !is_refused; ++attempt) {
+    const PacketSocket follower = asker();
+    EXPECT_TRUE(follower.send(follow.dump()));
+    for (int unread = 1; unread != 0; ::usleep(100))
+      ASSERT_EQ(::ioctl(follower.fd(), SIOCOUTQ, &unread), 0);
+    const PacketSocket holder = asker();
+    EXPECT_TRUE(holder.send(kHold));
+    EXPECT_EQ(answerTo(holder).at("done"), true);
+    const std::string refusal = answerTo(follower).value("error", "");
+    is_refused = refusal == "a hold has come meanwhile";
+    EXPECT_TRUE(is_refused || refusal.empty()) << refusal;
+    ToolOrder order;
+    EXPECT_EQ(link_->tool_orders.pop(order), !is_refused);
+    while (link_->tool_orders.pop(order)) continue;
+  }
+  EXPECT_TRUE(is_refused);
 }
 
 /// Of all that had come, and of nothing that comes later.

@@ -347,6 +347,25 @@ TEST_F(ToolRequestsTest, TellsTheToolNothingForWhoHasLeft) {
             true);
 }
 
+/// As many waypoints as there may be take seconds: each is a moment to think better of it.
+TEST_F(ToolRequestsTest, ChecksNoMoreWaypointsOnceAHoldComesOrWhoAskedHasLeft) {
+  const Json there = {{"to_m", {0.95, 0.4, 0.25}}};
+  const Json follow = {{"do", "follow"}, {"waypoints", std::vector<Json>(256, there)}};
+  int asked = 0;
+  const auto isThird = [&] { return ++asked == 3; };
+  const auto refusalOf = [&](const Asker& asker) {
+    asked = 0;
+    const Json answer = Json::parse(requests.answer(follow.dump(), asker));
+    ToolOrder order;
+    EXPECT_FALSE(link.tool_orders.pop(order));
+    return answer.value("error", "");
+  };
+  EXPECT_EQ(refusalOf({.hold_comes = isThird}), "a hold has come meanwhile");
+  EXPECT_EQ(asked, 3);
+  EXPECT_EQ(refusalOf({.waits = [&] { return !isThird(); }}), "who asked has left");
+  EXPECT_EQ(asked, 3);
+}
+
 TEST_F(ToolRequestsTest, RefusesWhileTheArmDoesNotRun) {
   see(false);
   EXPECT_NE(refusal({{"do", "move"}, {"to_m", {0.9, 0.3, 0.3}}}).find("does not run"),

@@ -56,6 +56,7 @@ class ControlSocket {
   void accept();
   bool makeRoom();
   bool hear(Client& client);
+  bool holdComes();
   void answerOne();
   bool answer(Client& client);
 

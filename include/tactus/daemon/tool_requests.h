@@ -16,8 +16,9 @@ namespace tactus {
 
 /// Who asks, as far as the answer depends on it.
 struct Asker {
-  std::function<bool()> waits = nullptr;  ///< still for the answer; nullptr: yes
-  bool is_overtaken = false;              ///< a hold was answered before, though it came later
+  std::function<bool()> waits = nullptr;       ///< still for the answer; nullptr: yes
+  std::function<bool()> hold_comes = nullptr;  ///< waits for the answer to this; nullptr: no
+  bool is_overtaken = false;                   ///< a hold was answered before, though it came later
   /// Of the loop: when the request had not come yet. None: it has come just now.
   std::optional<std::int64_t> came_after_cycle{};
 };

@@ -33,6 +33,8 @@ class PacketSocket {
   /// Bytes of the packet, of which only those that find room are there; 0: the other side has left;
   /// -1: nothing came.
   long receive(std::span<char> room) const noexcept;
+  /// The same, but the packet stays there, and nothing is waited for.
+  long peek(std::span<char> room) const noexcept;
   /// Bytes of all packets that have come, and were not received yet.
   long waiting() const noexcept;
   /// False: it was not taken.
