@@ -147,6 +147,13 @@ void OutputFile::rename(const std::string& from, const std::string& to) {
   path_ = escaped(to);
 }
 
+/// What is no file, as a device, has names elsewhere or none.
+void OutputFile::requireName() const {
+  struct stat now {};
+  if (::fstat(descriptor_, &now) == 0 && S_ISREG(now.st_mode) && now.st_nlink == 0)
+    throw RunError(path_ + ": was removed");
+}
+
 /// A lock of the open file, as it is only looked at: to look disturbs nobody who takes it.
 void OutputFile::showThatItGrows() noexcept {
   struct flock whole {};

@@ -83,11 +83,15 @@ void RunLog::flush() {
     if (t_s_ - looked_s_ < kLookPeriod_s) return;
     looked_s_ = t_s_;
     keepReserve();
+    writer_->requireName();
   });
 }
 
 void RunLog::close() {
-  attempt([this] { writer_->close(); });
+  attempt([this] {
+    writer_->requireName();
+    writer_->close();
+  });
   writer_.reset();
 }
 

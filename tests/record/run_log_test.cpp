@@ -197,6 +197,26 @@ TEST_F(RunLogFiles, AFolderThatVanishesStopsTheLog) {
   log.close();
 }
 
+TEST_F(RunLogFiles, AFileThatIsRemovedStopsTheLog) {
+  RunLog log(scene_, folder_);
+  writeCycles(log, 900);
+  std::filesystem::remove(path("run.ulg"));
+  log.flush();
+  EXPECT_EQ(log.state().stop_reason, "") << "it is looked at each second";
+  writeCycles(log, 200);
+  log.flush();
+  EXPECT_EQ(log.state().stop_reason, path("run.ulg") + ": was removed");
+  log.close();
+}
+
+TEST_F(RunLogFiles, AFileThatIsRemovedJustBeforeTheEndIsNoCompleteLog) {
+  RunLog log(scene_, folder_);
+  writeCycles(log, 10);
+  std::filesystem::remove(path("run.ulg"));
+  log.close();
+  EXPECT_EQ(log.state().stop_reason, path("run.ulg") + ": was removed");
+}
+
 TEST_F(RunLogFiles, AReserveThatIsGoneAtTheStartStopsTheLogAtOnceAndSaysSoOnce) {
   scene_.log.min_free_bytes = 1e15;
   RunLog log(scene_, folder_);

@@ -43,6 +43,9 @@ class OutputFile {
   void rename(const std::string& from, const std::string& to);
   void close();
 
+  /// Throws RunError where the file was removed: what is written then nobody will read.
+  void requireName() const;
+
   /// Until it is closed, or this process ends in whatever way, a GrowingFile sees that more may
   /// come. Where the file system knows no locks it does not, and waits.
   void showThatItGrows() noexcept;

@@ -33,7 +33,7 @@ class RunLog {
   void write(const CycleRecord& record);
 
   /// Hands all that was written to the kernel, so that it survives this process. About once a
-  /// second of the log's time looks at what is left of the disk.
+  /// second of the log's time looks at what is left of the disk, and whether the file is there.
   void flush();
 
   void close();

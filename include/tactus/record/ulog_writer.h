@@ -55,6 +55,9 @@ class UlogWriter {
   /// As OutputFile::rename().
   void rename(const std::string& from, const std::string& to) { file_.rename(from, to); }
 
+  /// As OutputFile::requireName().
+  void requireName() const { file_.requireName(); }
+
   /// Of the log so far, bytes.
   std::uint64_t size() const noexcept { return file_.size(); }
 
