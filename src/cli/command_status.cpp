@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -24,8 +23,6 @@
 namespace tactus {
 namespace {
 
-/// The daemon writes each half second.
-constexpr double kMaxAge_s = 2.0;
 constexpr std::chrono::seconds kWatchPeriod{1};
 
 struct StatusOptions {
@@ -116,7 +113,8 @@ Shown readShown(const std::string& path, bool as_json) {
   try {
     const Json status = Json::parse(json);
     Shown shown;
-    shown.age_s = monotonicTime_s() - numberAt(status, "monotonic_s");
+    status.at("monotonic_s").get_to(shown.age_s);  // throws where there is none
+    shown.age_s = statusAge_s(status);
     shown.is_well = textAt(status, "fault") == faultName(Fault::kNone);
     shown.text = statusText(status);  // also to see that all is there
     if (as_json) shown.text = json;
@@ -131,15 +129,14 @@ bool showStatus(const StatusOptions& options) {
   const bool clears = options.watch && !options.json && ::isatty(STDOUT_FILENO) == 1;
   const std::string path = runtimePath(kStatusName);
   const Shown shown = readShown(path, options.json);
-  // A clock that starts anew may be behind: the file is of before.
-  const bool is_new = shown.age_s >= 0.0 && shown.age_s <= kMaxAge_s;
+  const std::string problem = ageProblem(shown.age_s);
+  const bool is_new = problem.empty();
   if (clears) std::fputs("\033[H\033[J", stdout);
   // The last word is worth knowing to people; a program would take it for that of now.
   if (is_new || !options.json) std::fputs(shown.text.c_str(), stdout);
   if (std::fflush(stdout) != 0) throw RunError("standard output: cannot be written");
   if (is_new) return shown.is_well;
-  throw RunError(fmt::format("{}: no word from the daemon for {:.0f} s", escaped(path),
-                             std::abs(shown.age_s)));
+  throw RunError(fmt::format("{}: {}", escaped(path), problem));
 }
 
 [[noreturn]] void watchStatus(const StatusOptions& options) {

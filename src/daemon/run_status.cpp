@@ -44,6 +44,19 @@ std::string runtimePath(const char* name) {
 
 double monotonicTime_s() noexcept { return 1e-9 * static_cast<double>(now_ns()); }
 
+double statusAge_s(const Json& status) {
+  const auto found = status.is_object() ? status.find("monotonic_s") : status.end();
+  if (found == status.end() || !found->is_number()) return kNoLimit;
+  const double age_s = monotonicTime_s() - found->get<double>();
+  return age_s >= 0.0 ? age_s : kNoLimit;
+}
+
+std::string ageProblem(double age_s) {
+  if (age_s <= kMaxStatusAge_s) return "";
+  if (age_s == kNoLimit) return "is of before this computer started";
+  return fmt::format("no word from the daemon for {:.0f} s", age_s);
+}
+
 Json statusJson(const RunStatus& status, double monotonic_s) {
   Json json = {{"scene", status.scene.name},
                {"variant", status.scene.variant},

@@ -43,7 +43,13 @@ std::string runningLog() {
     throw RunError(fmt::format("{}: {}; a log may be named, too", escaped(path), kNoDaemon));
   if (const std::string refusal = statusRefusal(); !refusal.empty())
     throw RunError(fmt::format("{}: {}", escaped(path), refusal));
-  const std::string log = logOf(readRunStatus());
+  const Json status = readRunStatus();
+  if (status.is_null())
+    throw RunError(fmt::format("{}: not the status of a daemon", escaped(path)));
+  // One that was killed leaves its status. Who followed its log would wait for ever.
+  if (const std::string problem = ageProblem(statusAge_s(status)); !problem.empty())
+    throw RunError(fmt::format("{}: {}; a log may be named, too", escaped(path), problem));
+  const std::string log = logOf(status);
   if (log.empty()) throw RunError(fmt::format("{}: the daemon writes no log", escaped(path)));
   return log;
 }

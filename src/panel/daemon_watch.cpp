@@ -16,16 +16,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{100};
 constexpr std::chrono::milliseconds kAsk{200};
-/// The daemon writes its status each half second, and answers at once.
-constexpr double kMaxAge_s = 2.0;
-
-/// Infinite: nobody says.
-double ageOf_s(const Json& status) {
-  const auto found = status.is_object() ? status.find("monotonic_s") : status.end();
-  if (found == status.end() || !found->is_number()) return kNoLimit;
-  const double age_s = monotonicTime_s() - found->get<double>();
-  return age_s >= 0.0 ? age_s : kNoLimit;  // of before the machine began anew
-}
+/// The daemon answers at once.
+constexpr double kMaxAnswerAge_s = 2.0;
 
 /// Null where there is none.
 Json entry(const Json& object, const char* name) {
@@ -127,9 +119,9 @@ void DaemonWatch::publish(const Json& event) {
 
 void DaemonWatch::look() {
   const Json status = readRunStatus();
-  const double age_s = ageOf_s(status);
+  const double age_s = statusAge_s(status);
   const std::lock_guard lock(mutex_);
-  if (age_s <= kMaxAge_s) followLog(status);
+  if (age_s <= kMaxStatusAge_s) followLog(status);
   LogNews news = log_ ? log_->news() : LogNews{};
   if (news.problem.empty()) news.problem = logStop(status);
   publish(panel_.update(state(status, age_s, news), news));
@@ -148,12 +140,12 @@ void DaemonWatch::followLog(const Json& status) {
 }
 
 bool DaemonWatch::isSaid() const {
-  return !said_.shown.is_null() && monotonicTime_s() - said_.at_s <= kMaxAge_s;
+  return !said_.shown.is_null() && monotonicTime_s() - said_.at_s <= kMaxAnswerAge_s;
 }
 
 /// Why there is no status; empty: there is one.
 std::string DaemonWatch::problem(const Json& status, double age_s) const {
-  if (age_s <= kMaxAge_s) return "";
+  if (age_s <= kMaxStatusAge_s) return "";
   if (const std::string refusal = statusRefusal(); !refusal.empty()) return "its status " + refusal;
   if (isSaid()) return "the daemon writes no status";
   const bool is_of_before = status.is_null() || age_s == kNoLimit;
@@ -161,7 +153,7 @@ std::string DaemonWatch::problem(const Json& status, double age_s) const {
 }
 
 Json DaemonWatch::state(const Json& status, double age_s, const LogNews& news) const {
-  const bool is_fresh = age_s <= kMaxAge_s;
+  const bool is_fresh = age_s <= kMaxStatusAge_s;
   const bool may_be_there = is_fresh || isSaid() || !statusRefusal().empty();
   Json state = {{"run", run_}, {"is_there", may_be_there}, {"problem", problem(status, age_s)}};
   if (is_fresh) state["status"] = shortStatus(status);

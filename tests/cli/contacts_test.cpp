@@ -14,6 +14,7 @@
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/cli/commands.h"
+#include "tactus/daemon/run_status.h"
 #include "tactus/record/run_log.h"
 #include "tactus/run/simulation.h"
 #include "tactus/scene/json.h"
@@ -113,11 +114,16 @@ TEST(Contacts, OfTheDaemonThatRunsAreThoseOfAllItsFiles) {
   const LoggedRun run("whole_arm/crops9_skin_two_links");
   const test::RunFolder folder;
   ASSERT_GE(run.writeFiles(folder), 3);
-  std::ofstream(folder.path() + "/status.json") << Json({{"log", {{"folder", folder.path()}}}});
+  const auto tellThatItRuns = [&] {
+    std::ofstream(folder.path() + "/status.json")
+        << Json({{"monotonic_s", monotonicTime_s()}, {"log", {{"folder", folder.path()}}}});
+  };
   std::ofstream(folder.path() + "/summary.json") << "{}";
   std::string output;
+  tellThatItRuns();
   ASSERT_EQ(test::runCommand(addContactsCommand, {"contacts", "--json"}, output), 0);
   EXPECT_EQ(Json::parse(output), run.contacts());
+  tellThatItRuns();
   EXPECT_EQ(Json(followedContacts({"contacts", "--json", "--follow"})), run.contacts());
 }
 

@@ -13,6 +13,7 @@
 #include "support/shipped_scene.h"
 #include "support/telemetry.h"
 #include "tactus/cli/commands.h"
+#include "tactus/daemon/running_log.h"
 #include "tactus/daemon/telemetry.h"
 #include "tactus/record/run_error.h"
 
@@ -141,7 +142,25 @@ TEST_F(RunStatusFile, AStatusOfTheTimeToComeIsNone) {
   std::ofstream(path()) << jsonText(
       statusJson({scene_, Mode::kRunning, Fault::kNone, description, {}, {}, nullptr},
                  monotonicTime_s() + 60.0));
-  EXPECT_EQ(errorOfRun(), path() + ": no word from the daemon for 60 s") << "before a reboot";
+  EXPECT_EQ(errorOfRun(), path() + ": is of before this computer started");
+}
+
+/// One that was killed leaves its status, and its log that grows no more.
+TEST_F(RunStatusFile, NamesTheLogOfADaemonThatRunsAlone) {
+  const auto said = [&](double age_s) -> std::string {
+    std::ofstream(path()) << Json(
+        {{"monotonic_s", monotonicTime_s() - age_s}, {"log", {{"folder", "/runs/here"}}}});
+    try {
+      return runningLog();
+    } catch (const RunError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(said(0.0), "/runs/here/run.ulg");
+  EXPECT_EQ(said(60.0), path() + ": no word from the daemon for 60 s; a log may be named, too");
+  EXPECT_EQ(said(-60.0), path() + ": is of before this computer started; a log may be named, too");
+  std::ofstream(path()) << "{";
+  EXPECT_THROW(runningLog(), RunError);
 }
 
 TEST_F(RunStatusFile, OtherFilesAreRefused) {

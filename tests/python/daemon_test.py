@@ -357,7 +357,7 @@ class NoDaemon(unittest.TestCase):
         for text, said in ((None, "No such file"), ("{", "not the status"), ("[]", "not the status"),
                            ("{}", "not the status"), ('{"monotonic_s": "a"}', "not the status"),
                            (json.dumps({"monotonic_s": time.monotonic() - 100}), "no word from"),
-                           (json.dumps({"monotonic_s": time.monotonic() + 100}), "no word from")):
+                           (json.dumps({"monotonic_s": time.monotonic() + 100}), "of before this comp")):
             if text is not None:
                 status.write_text(text)
             with self.subTest(text), self.assertRaisesRegex(tactus.RunError, said):

@@ -10,6 +10,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 import xml.etree.ElementTree
@@ -44,13 +45,25 @@ class Scope(unittest.TestCase):
         return program
 
     @classmethod
+    def tell_that_it_runs(cls):
+        """As a daemon does, until the run has ended."""
+        while not (cls.live / "summary.json").exists():
+            (cls.live / "next").write_text(
+                json.dumps({"monotonic_s": time.monotonic(), "log": {"folder": str(cls.live)}}))  # fmt: skip
+            (cls.live / "next").rename(cls.live / "status.json")
+            time.sleep(0.5)
+
+    @classmethod
     def run_live(cls):
         """What each prints; the first contact is over when they begin."""
         path = cls.live / "run.ulg"
         content = cls.log.read_bytes()
         at = int(0.72 * len(content))
         path.write_bytes(content[:at])
-        (cls.live / "status.json").write_text(json.dumps({"log": {"folder": str(cls.live)}}))
+        telling = threading.Thread(target=cls.tell_that_it_runs, daemon=True)
+        telling.start()
+        while not (cls.live / "status.json").exists():
+            time.sleep(0.01)
         followed = ["--follow", "--json", path]
         programs = {
             "normal": cls.start("--trigger", SECOND, *followed),
@@ -77,6 +90,7 @@ class Scope(unittest.TestCase):
         for name, program in programs.items():
             shown[name] = program.communicate(timeout=60)[0]
             assert program.returncode == 0, name
+        telling.join()
         return {name: [json.loads(line) for line in text.splitlines()] for name, text in shown.items()}
 
     def whole(self, trigger, *options):

@@ -61,4 +61,14 @@ inline constexpr const char* kNoDaemon =
 /// CLOCK_MONOTONIC, s.
 double monotonicTime_s() noexcept;
 
+/// The daemon writes its status each half second.
+inline constexpr double kMaxStatusAge_s = 2.0;
+
+/// Of a status, s; infinite: it does not say when it was written, or it is of before this computer
+/// started, when the clock was another.
+double statusAge_s(const Json& status);
+
+/// Why a status of that age is not that of a daemon that runs; empty: it is.
+std::string ageProblem(double age_s);
+
 }  // namespace tactus

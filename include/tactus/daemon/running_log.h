@@ -15,8 +15,8 @@ std::string statusRefusal();
 /// Path of the log that a status names; empty: none.
 std::string logOf(const Json& status);
 
-/// Path of the log that the daemon writes, by its status. Throws RunError: none runs, or it writes
-/// none.
+/// Path of the log that the daemon writes, by its status. Throws RunError: none runs, or has
+/// written for a while, or it writes no log.
 std::string runningLog();
 
 }  // namespace tactus

@@ -122,8 +122,10 @@ class Daemon:
             raise RunError(f"{path}: {error.strerror}") from error
         except (ValueError, KeyError, TypeError) as error:
             raise RunError(f"{path}: not the status of a daemon") from error
-        if not 0.0 <= age_s <= _MAX_STATUS_AGE_S:
-            raise RunError(f"{path}: no word from the daemon for {abs(age_s):.0f} s")
+        if age_s < 0.0:  # the clock was another
+            raise RunError(f"{path}: is of before this computer started")
+        if not age_s <= _MAX_STATUS_AGE_S:
+            raise RunError(f"{path}: no word from the daemon for {age_s:.0f} s")
         return status  # type: ignore[no-any-return]
 
     def show(self) -> dict[str, Any]:
