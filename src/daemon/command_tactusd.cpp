@@ -88,16 +88,21 @@ int runArguments(int argc, char** argv) {
   app.set_version_flag("--version", TACTUS_VERSION);
   bool reloads = false;
   auto* const scene = app.add_option("SCENE", options.scene, "Scene file");
-  app.add_flag("--reload", reloads,
-               "Let the daemon that runs take the gains of its scene file anew, and end")
-      ->excludes(scene);
+  auto* const reload_flag =
+      app.add_flag("--reload", reloads,
+                   "Let the daemon that runs take the gains of its scene file anew, and end")
+          ->excludes(scene);
   app.add_option("-o,--output", options.folder,
                  "Folder for <scene>/run.ulg and <scene>/summary.json; without it no files")
-      ->check(isNamed);
-  app.add_option("--name", options.name, kNameHelp);
+      ->check(isNamed)
+      ->excludes(reload_flag);
+  app.add_option("--name", options.name, kNameHelp)->excludes(reload_flag);
   app.add_option("--duration", options.duration_s, "End after so many seconds of motion")
-      ->check(numberWithin(1e-3, 1e9));
-  app.add_option("--set", options.settings, kSetHelp)->allow_extra_args(false);
+      ->check(numberWithin(1e-3, 1e9))
+      ->excludes(reload_flag);
+  app.add_option("--set", options.settings, kSetHelp)
+      ->allow_extra_args(false)
+      ->excludes(reload_flag);
   try {
     app.parse(argc, argv);
     if (reloads) return reload();

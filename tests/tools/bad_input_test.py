@@ -363,6 +363,15 @@ class BadInput(unittest.TestCase):
         fcntl.flock(held, fcntl.LOCK_UN)
         self.assertEqual(self.run_tactus("simulate", GOOD, *SHORT, "-o", "out").returncode, 0)
 
+    def test_options_of_a_run_beside_reload(self):
+        """They would be passed over."""
+        for options in (["-o", self.folder], ["--name", "a"], ["--duration", "5"], ["--set", "controller.damping=1"],
+                        [GOOD]):  # fmt: skip
+            for arguments in (["--reload", *options], [*options, "--reload"]):
+                result = subprocess.run([TACTUS.with_name("tactusd"), *arguments], capture_output=True, text=True)
+                self.assertEqual(result.returncode, 2, arguments)
+                self.assertIn("excludes", result.stderr)
+
     def test_files_without_a_name(self):
         self.assertEqual(self.run_tactus("simulate", GOOD, *SHORT, "-o", "out").returncode, 0)
         log = f"out/{GOOD.stem}/run.ulg"
