@@ -27,6 +27,7 @@
 namespace tactus {
 namespace {
 
+/// As it is now: who follows a run may make its window wider.
 ScopeScreen ownScreen() {
   ScopeScreen screen;
   const bool is_terminal = ::isatty(STDOUT_FILENO) == 1;
@@ -66,7 +67,6 @@ class Scope {
       : options_(options),
         scene_(std::move(scene)),
         ring_(trigger.condition, trigger.window),
-        screen_(ownScreen()),
         view_{options.log, trigger.condition, options.pre_s, options.post_s, {}} {}
 
   /// True: that was all. has_caught_up: it is to be shown at once, as all that comes later.
@@ -136,7 +136,7 @@ class Scope {
       printJson();
     } else {
       const bool clears = options_.follows && ::isatty(STDOUT_FILENO) == 1;
-      const std::string text = scopeText(view_, screen_);
+      const std::string text = scopeText(view_, ownScreen());
       std::fputs(((clears ? "\033[H\033[2J" : "") + text).c_str(), stdout);
     }
     std::fflush(stdout);
@@ -170,7 +170,6 @@ class Scope {
   const ScopeOptions& options_;
   Scene scene_;
   CaptureRing ring_;
-  ScopeScreen screen_;
   ScopeView view_;
   bool is_live_ = false, has_new_ = false;
   double live_s_ = kNoLimit, shown_s_ = 0.0;
