@@ -24,6 +24,7 @@ HostAndPort split(const std::string& to) {
   if (colon != std::string::npos) place.host = to.substr(0, colon);
   if (place.host.starts_with('[') && place.host.ends_with(']'))
     place.host = place.host.substr(1, place.host.size() - 2);
+  if (place.host == "localhost") place.host = HostAndPort().host;  // may be ::1, where few listen
   return place;
 }
 
