@@ -157,7 +157,8 @@ class Scope(unittest.TestCase):
         self.assertRegex(done.stderr, "^/a+/status.json: File name too long$")
         self.assertEqual(json.loads(done.stdout)["error"] + "\n", done.stderr)
         for arguments in (["--single", "--auto"], ["--keep", "0"], ["--pre", "-1"], ["--post", "nan"],
-                          ["--hysteresis", "-1"]):  # fmt: skip
+                          ["--pre", "nan"], ["--hysteresis", "nan"], ["--holdoff", "nan"],
+                          ["--single", "--normal"], ["--normal", "--auto"], ["--hysteresis", "-1"]):  # fmt: skip
             done = subprocess.run([TACTUS, "scope", *arguments, self.log], capture_output=True)
             self.assertEqual(done.returncode, 2, arguments)
 

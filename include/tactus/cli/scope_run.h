@@ -12,8 +12,8 @@ struct ScopeOptions {
   std::string output;   ///< HTML; empty: none
   double pre_s = 0.3, post_s = 2.0;
   std::optional<double> hysteresis,
-      holdoff_s;  ///< absent: F_th - F_rel without a trigger, else 0; 0
-  bool is_single = false, is_normal = false, is_auto = false;  ///< one at most
+      holdoff_s;                            ///< absent: F_th - F_rel without a trigger, else 0; 0
+  bool is_single = false, is_auto = false;  ///< one at most
   int keep = 5;
   bool follows = false, json = false;
 };
