@@ -262,6 +262,26 @@ class Logs(Scratch):
             said = program("export", self.log, "-o", self.folder / "a.csv").stderr.strip()
             self.assertEqual(str(refused.exception), said)
 
+    def test_have_contacts_of_the_file_that_was_read(self):
+        """Not of one that has its name later, be it by another folder or another run."""
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        os.chdir(self.log.parent)
+        whole = self.log.read_bytes()
+        self.log.write_bytes(whole[:len(whole) // 2])  # of a run that goes on
+        logs = [tactus.read_log("run.ulg") for _ in range(2)]
+        os.chdir(before)
+        self.log.write_bytes(whole)
+        self.assertEqual(logs[0].contacts, json.loads(program("contacts", self.log, "--json").stdout))
+        for duration_s, time_constant_s in ((1, 0.3), (0.1, 0.1)):
+            program("simulate", scene_file("scenario2_estimated"), "-o", self.folder, "--set",
+                    f"simulation.duration_s={duration_s}", "--set", f"controller.time_constant_s={time_constant_s}")
+            with self.assertRaisesRegex(tactus.ConfigError, "^run.ulg:1:1: -: another file than was read, expected"):
+                logs[1].contacts
+        self.log.unlink()
+        with self.assertRaisesRegex(tactus.ConfigError, "No such file"):
+            logs[1].contacts
+
     def test_name_their_scene(self):
         log, scene = tactus.read_log(self.log), tactus.Scene(scene_file("scenario2_estimated"))
         self.assertEqual(log.parameters["controller/damping"], 0.5)

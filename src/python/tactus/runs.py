@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import hashlib
 import json
 import os
 import warnings
@@ -15,6 +17,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._settings import Path, path_bytes, settings
+from .errors import ConfigError
 from .scene import Scene
 
 if TYPE_CHECKING:
@@ -22,6 +25,7 @@ if TYPE_CHECKING:
 
 FAULTS: tuple[str, ...] = _core.FAULTS  #: by the number in the field `fault`
 MODES: tuple[str, ...] = _core.MODES  #: by the number in the field `mode`
+_HEAD_BYTES = 1 << 20  # has what a log tells of its run, and its first cycles
 
 
 class Log(Mapping[str, NDArray[Any]]):
@@ -110,6 +114,8 @@ class LogFile(Log):
     """What read_log() returns."""
 
     def __init__(self, path: Path) -> None:
+        self._file = os.path.abspath(path_bytes(path))  # the folder may be another one later
+        self._head = _head_of(self._file, _HEAD_BYTES)
         (columns, self.is_cut_off, self.part, self.infos, self.parameters, self.sources,
          self.overrides) = _core.read_log(path_bytes(path))
         super().__init__(columns)
@@ -139,9 +145,12 @@ class LogFile(Log):
     def contacts(self) -> list[dict[str, Any]]:
         """Figures of each contact, in the order of their start: `tactus contacts --json`.
 
-        Read from the file when they are first asked for. UserWarning if the log does not begin with
-        its run: a contact at its begin may be older, and counts from there on only."""
-        contacts: list[dict[str, Any]] = json.loads(_core.contacts(path_bytes(self.path)))
+        Read from the file when they are first asked for; ConfigError if another run has taken its place
+        since then. UserWarning if the log does not begin with its run: a contact at its begin may be
+        older, and counts from there on only."""
+        contacts: list[dict[str, Any]] = json.loads(_core.contacts(self._file))
+        if _head_of(self._file, self._head[0]) != self._head:  # behind it, so that none slips in between
+            raise _other_file(os.fsdecode(self.path))
         if self.part > 0:
             warnings.warn(f"{os.fsdecode(self.path)}: begins at {self['t_s'][0]:.3f} s of the run: what was "
                           "before is not in it, nor counts for a contact of then", stacklevel=3)
@@ -149,6 +158,21 @@ class LogFile(Log):
 
     def __repr__(self) -> str:
         return f"<tactus.LogFile {str(self.path)!r}, {self.cycles} cycles>"
+
+
+def _head_of(file: bytes, most: int) -> tuple[int, bytes]:
+    """How many bytes there are at its begin, at most these, and their hash: a log that grows keeps them."""
+    head = b""
+    # Of a pipe they would be lost, and what cannot be read the reader of logs says better.
+    with contextlib.suppress(OSError):
+        if os.path.isfile(file):
+            with open(file, "rb") as log:
+                head = log.read(most)
+    return len(head), hashlib.sha256(head).digest()
+
+
+def _other_file(path: str) -> ConfigError:
+    return ConfigError(f"{path}:1:1: -: another file than was read, expected the same log", path, 1, 1, "-")
 
 
 def simulate(scene: Scene) -> Run:
