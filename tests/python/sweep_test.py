@@ -242,6 +242,12 @@ class BadStudies(Sweeps):
                 (begin + "grid: {controller.damping: {from: 1, to: 11, count: 2}}", r"'11.0' is out of range"),
                 (begin + "grid: {controller.damping: {from: 1, to: 1, count: 2}}", r"1 is not above from, 1"),
                 (begin + "grid: {controller.damping: {from: 0.5, to: .inf, count: 2}}", r"'.inf', expected a f"),
+                (begin + "grid: {controller.damping: {from: 0_1, to: 2, count: 2}}", r":2:35: .*'0_1', expected a f"),
+                (begin + "grid: {controller.damping: {from: '1', to: 2, count: 2}}", r"the text '1', expected a fin"),
+                (begin + "grid: {controller.damping: {from: 1, to: 2, count: '2'}}", r"the text '2', expected a who"),
+                (begin + "grid: {controller.damping: {from: 1, to: 2, count: ٢}}", r"'٢', expected a whole number"),
+                (begin + "limits: {peak_force_N: \"5\"}", r":2:24: limits.peak_force_N: the text '5', expected a f"),
+                (begin + "grid: {a: {from: 1, to: 2, count: 2, whole: 'true'}}", r"the text 'true', expected true or"),
                 (begin + "grid: {controller.damping: {from: 0.5, to: 1, count: 1}}", r"'1', expected a whole"),
                 (begin + "grid: {controller.damping: {from: 0, to: 1, count: 2, scale: log}}", r"scale is log"),
                 (begin + "grid: {controller.damping: {from: 0.7, to: 0.700002, count: 5}}", r"5 values that 6 dig"),
@@ -274,6 +280,11 @@ class BadStudies(Sweeps):
                 (begin + "objective: nothing", r"'nothing', expected one of peak_force_N")):
             with self.subTest(text=text):
                 self.refuse(text, expected)
+
+    def test_are_not_those_with_numbers_as_scenes_take_them(self):
+        for text, number in (("+.5", 0.5), ("5.", 5.0), ("-1.5e-3", -0.0015), ("2E+1", 20.0), ("007", 7.0)):
+            read = study.read_study(self.study(f"scenes: [a]\nlimits: {{peak_force_N: {text}}}\n"))
+            self.assertEqual(read.limits, {"peak_force_N": number})
 
     def test_are_not_those_with_keys_that_begin_alike(self):
         keys = ["a", "ab", "b[1].c", "b[10].c", "b[11].c", "b[1].cd", "c.d", "c.d0", "c.d_e", "b[100].c"]

@@ -6,6 +6,7 @@ import re
 import yaml
 
 LARGEST_FILE = 1 << 20
+NUMBER = r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?"  # as scenes take it
 
 
 class StudyError(Exception):
@@ -73,24 +74,28 @@ class Node:
             raise self.wrong(expected)
         return self.node.value
 
+    def plain(self, expected):
+        """A word without quotes, in which scenes take neither numbers nor flags."""
+        word = self.word(expected)
+        if self.node.style:
+            raise self.error(f"the text '{word}'", expected)
+        return word
+
     def number(self, expected="a finite number"):
-        try:
-            number = float(self.word(expected))
-        except ValueError:
-            raise self.wrong(expected) from None
-        if not math.isfinite(number):
+        text = self.plain(expected)
+        if not re.fullmatch(NUMBER, text) or not math.isfinite(float(text)):
             raise self.wrong(expected)
-        return number
+        return float(text)
 
     def whole(self, lower, upper):
         expected = f"a whole number from {lower} to {upper}"
-        text = self.word(expected)
-        if not re.fullmatch(r"\d{1,18}", text) or not lower <= int(text) <= upper:
+        text = self.plain(expected)
+        if not re.fullmatch(r"[0-9]{1,18}", text) or not lower <= int(text) <= upper:
             raise self.wrong(expected)
         return int(text)
 
     def flag(self):
-        if self.word("true or false") not in ("true", "false"):
+        if self.plain("true or false") not in ("true", "false"):
             raise self.wrong("true or false")
         return self.node.value == "true"
 
