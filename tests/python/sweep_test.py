@@ -231,6 +231,8 @@ class BadStudies(Sweeps):
                 ("scenes: &a [b]\nset: *a", r":2:6: -: an alias, "),
                 (begin + begin, r":2:1: scenes: is there twice, "),
                 (begin + "grid: {controller.damping: [0.5", r"expected YAML"),
+                (begin + "set: {simulation.obstacles[0].x_m: 1}", r":2:27: -: .*got '\[', expected a key with \[ \] in "
+                 "quotes, or on a line of its own"),
                 (begin + "grid: {controller.damping: []}", r":2:28: grid.controller.damping: an empty list, "),
                 (begin + "grid: {controller.damping: [1, 1]}", r"'1' is there twice"),
                 (begin + "grid: {controller.damping: [0.5, 0.7, 0.50]}", r"'0.50' is there twice"),

@@ -142,7 +142,11 @@ def read_node(path):
         node = yaml.compose(text, yaml.SafeLoader)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        raise error_at(path, mark.line, mark.column, "-", error.problem or error.context, "YAML") from error
+        problem = error.problem or error.context or ""
+        # YAML takes them for a list within the braces.
+        is_bracket = problem.endswith("got '['")
+        expected = "a key with [ ] in quotes, or on a line of its own" if is_bracket else "YAML"
+        raise error_at(path, mark.line, mark.column, "-", problem, expected) from error
     except yaml.reader.ReaderError as error:
         before = text[:error.position]
         raise error_at(path, before.count("\n"), len(before) - before.rfind("\n") - 1, "-",
