@@ -22,6 +22,7 @@ import numpy as np
 from common import ROOT, SCENES, TACTUS, Scratch, tactus
 from scipy import stats
 from sweep_common import RUNS, SCENE, Sweeps, rows_of, runs_in, table_of
+from tactus import _sweep
 from tactus._sweep import run
 
 from tactus_sweep import judge, pool, progress, scenes, study, study_page
@@ -206,6 +207,28 @@ class Scenes(unittest.TestCase):
             self.assertIsNotNone(contact["contact_stiffness_N_per_m"])
             contact["contact_stiffness_N_per_m"] = None
         self.assertEqual(figures, run.summary)
+
+
+class Figures(unittest.TestCase):
+    def test_are_those_of_the_summary(self):
+        path = SCENE.with_name("ur5e_contact.yaml")
+        for components in ("[x]", "[x, rz]"):
+            settings = {"simulation.duration_s": "1.5", "task.components": components}
+            scene = tactus.Scene(path, set=settings)
+            row = run(scene._core.sources(), [f"{key}={value}" for key, value in settings.items()])
+            summary = tactus.simulate(scene).summary
+            for name in _sweep.FIGURES:
+                self.assertEqual(row[name], summary.get(name), name)
+            self.assertEqual(row["tcp_rotation_error_max_rad"] is None, components == "[x]")
+
+    def test_of_contacts_are_unknown_where_one_is(self):
+        contact = {"settling_s": 0.5, "time_above_s": 1.0, "swing_N": 0.2}
+        longer = {"settling_s": 0.7, "time_above_s": 0.9, "swing_N": None}
+        for contacts, further, expected in (([], {}, (0, None, None, None)), ([contact], {}, (1, 0.5, 1.0, 0.2)),
+                                            ([contact, longer], {}, (2, 0.7, 1.0, None)),
+                                            ([contact], {"further_contacts": 3}, (4, None, None, None))):
+            figures = _sweep._figures({"contacts": contacts, **further})
+            self.assertEqual(tuple(figures[name] for name in ("contacts", *_sweep.OF_CONTACTS)), expected)
 
 
 class BadStudies(Sweeps):

@@ -25,6 +25,7 @@ Row = dict[str, Any]
 
 # Of a run's summary, and what its contacts have at most.
 FIGURES = ("peak_force_N", "final_force_N", "tcp_error_max_m", "tcp_error_rms_m", "tcp_error_final_m",
+           "tcp_rotation_error_max_rad", "tcp_rotation_error_rms_rad", "tcp_rotation_error_final_rad",
            "peak_joint_speed_squared", "joints_at_limit_cycles", "stiffness_final_N_per_m",
            "stiffness_at_peak_N_per_m")
 OF_CONTACTS = ("settling_s", "time_above_s", "swing_N")
@@ -118,12 +119,19 @@ def run(files: Files, settings: list[str]) -> Row:
 def _figures(summary: dict[str, Any]) -> Row:
     contacts = summary["contacts"]
     figures = {name: summary.get(name) for name in FIGURES}
-    figures["contacts"] = len(contacts)
+    further = summary.get("further_contacts", 0)
+    figures["contacts"] = len(contacts) + further
     for name in OF_CONTACTS:
-        values = [contact[name] for contact in contacts if contact.get(name) is not None]
-        figures[name] = max(values, default=None)
+        values = [contact.get(name) for contact in contacts] + [None] * min(further, 1)
+        figures[name] = _largest(values)
     figures["unsensed_force_N"] = summary.get("unsensed_contact", {}).get("force_N")
     return figures
+
+
+def _largest(values: list[float | None]) -> float | None:
+    """Unknown where one of them is: it may be the largest."""
+    known = [value for value in values if value is not None]
+    return max(known) if known and len(known) == len(values) else None
 
 
 def run_batch(wanted: dict[str, str], jobs: list[tuple[int, Files, list[str]]]) -> list[Row]:
