@@ -38,7 +38,9 @@ def attempt(path, time_constant_s, damping):
     settling_s = max((contact["settling_s"] for contact in run.contacts), default=0.0)
     return {"T": time_constant_s, "d": damping, "margin_deg": margin_deg, "fault": run.fault,
             "peak_N": run.summary["peak_force_N"], "settling_s": settling_s,
-            "tool_mm": 1e3 * run.summary["tcp_error_max_m"]}
+            "tool_mm": 1e3 * run.summary["tcp_error_max_m"],
+            # NaN, where the robot has no collision_capsules to know it by
+            "unsensed_N": run.summary.get("unsensed_contact", {}).get("force_N", float("nan"))}
 
 
 def best(results, min_phase_deg, max_tool_error_mm):
@@ -70,16 +72,20 @@ def main():
     except tactus.ConfigError as error:
         print(error, file=sys.stderr)
         return 1
-    print(f"{'T, s':>6} {'d':>5} {'phase, deg':>10} {'peak, N':>8} {'settles, s':>10} {'tool, mm':>8}")
+    print(f"{'T, s':>6} {'d':>5} {'phase, deg':>10} {'peak, N':>8} {'settles, s':>10} {'tool, mm':>8} "
+          f"{'unsensed, N':>11}")
     for (time_constant_s, damping), one in zip(pairs, results):
         figures = "refused: unstable" if one is None else (
-            f"{one['margin_deg']:10.1f} {one['peak_N']:8.2f} {one['settling_s']:10.2f} {one['tool_mm']:8.1f}"
+            f"{one['margin_deg']:10.1f} {one['peak_N']:8.2f} {one['settling_s']:10.2f} {one['tool_mm']:8.1f} "
+            f"{one['unsensed_N']:11.1f}"
             + (f" {one['fault']}" if one["fault"] else ""))
         print(f"{time_constant_s:6g} {damping:5g} {figures}")
     chosen = best(results, arguments.min_phase_deg, arguments.max_tool_error_mm)
     if chosen is None:
         print("none is fit")
         return 3
+    if chosen["unsensed_N"] > 0.0:
+        print(f"the best pushes with up to {chosen['unsensed_N']:.1f} N where no module is")
     print(f"best: T = {chosen['T']:g} s, d = {chosen['d']:g}")
     return 0
 

@@ -47,6 +47,20 @@ class Tuning(Scratch):
         best = re.fullmatch(r"best: T = (\S+) s, d = (\S+)", done.stdout.splitlines()[-1])
         self.assertEqual(best.groups(), min(peaks, key=peaks.get))
 
+    def test_says_what_the_best_pushes_where_no_module_is(self):
+        post = "post: {foot_m: [1.0, 0.3, 0.2], axis: [0, 0, 1], height_m: 0.7, radius_m: 0.02}"
+        scene = self.file("bare.yaml", f"extends: {SCENES}/whole_arm/crops9_skin_one_link.yaml\n"
+                                       f"simulation:\n  obstacles:\n    - {{{post}, stiffness_N_per_m: 20000}}\n")
+        done = example("tune_stiff_profile.py", scene, "--T", "0.1", "--d", "0.7")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        summary = tactus.simulate(tactus.Scene(scene, set={"controller.damping": 0.7,
+                                                           "controller.time_constant_s": 0.1})).summary
+        pushed = f"{summary['unsensed_contact']['force_N']:.1f}"
+        self.assertGreater(float(pushed), 10)
+        _, row, told, _ = done.stdout.splitlines()
+        self.assertEqual(row.split()[6], pushed)
+        self.assertEqual(told, f"the best pushes with up to {pushed} N where no module is")
+
     def test_finds_none_where_none_is_fit(self):
         done = example("tune_stiff_profile.py", "--T", "0.1", "--d", "0.7", "--max-tool-error-mm", "1")
         self.assertEqual((done.returncode, done.stdout.splitlines()[-1]), (3, "none is fit"))
