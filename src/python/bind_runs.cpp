@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tactus/python/bindings.h"
@@ -46,15 +48,28 @@ py::tuple simulateScene(const Scene& scene) {
   return py::make_tuple(std::move(columns), textOf(summary));
 }
 
+/// What the path's clock lacks at the end of a run to the path's end, or to the run's if that is
+/// before: the reference waited, or the arm went slowly.
+double pathLeft_s(const Scene& scene, double path_time_s) {
+  const long long cycles = std::llround(scene.duration_s / scene.period_s);
+  const double last_s = static_cast<double>(cycles - 1) * scene.period_s;
+  const double end_s = Trajectory(scene.controller.task.trajectory, Pose{}).end_s();
+  return std::max(0.0, std::min(last_s, end_s) - path_time_s);
+}
+
 /// The summary as JSON, of a run that keeps no cycle and has the figures of sweeps alone: half the
 /// time.
 std::string runFigures(const Scene& scene) {
   long long cycles = 0;
-  const auto look = [&](const CycleRecord&) {
+  double path_time_s = 0.0;
+  const auto look = [&](const CycleRecord& record) {
+    path_time_s = record.path_time_s;
     if (++cycles % kCyclesBetweenLooks == 0) lookForSignals();
   };
   const SimulationResult result = simulate(scene, look, FigureSet::kOfSweep);
-  return jsonText(summaryJson(scene, result.figures, result.real_time_factor));
+  Json json = summaryJson(scene, result.figures, result.real_time_factor);
+  json["path_left_s"] = pathLeft_s(scene, path_time_s);
+  return jsonText(json);
 }
 
 /// Of pairs of a name and a number or a text; of one name the last.

@@ -206,7 +206,61 @@ class Scenes(unittest.TestCase):
         for contact in run.summary["contacts"]:
             self.assertIsNotNone(contact["contact_stiffness_N_per_m"])
             contact["contact_stiffness_N_per_m"] = None
+        self.assertEqual(figures.pop("path_left_s"), 0)  # which no summary has
         self.assertEqual(figures, run.summary)
+
+
+class Hidden(Sweeps):
+    """What a force and an error that are good do not tell."""
+
+    def answer(self, text, limits):
+        folder = self.folder / f"out{len(list(self.folder.glob('out*')))}"
+        done = self.sweep(self.study(f"{text}limits: {limits}\n"), folder)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        page = html.unescape((folder / "report.html").read_text())
+        for note in re.findall("(?m)^.* runs within the limits .*$", done.stdout):
+            self.assertIn(f"<p>{note}.</p>", page)
+        return done.stdout, rows_of(folder), page
+
+    def test_is_a_path_that_waits(self):
+        text = f"scenes: [{SCENES}/scenario2_estimated.yaml]\ngrid: {{task.wait_beyond_m: [0.002, 10]}}\n"
+        said, rows, _ = self.answer(text, "{peak_force_N: 10}")
+        run_ = tactus.simulate(tactus.Scene(SCENES / "scenario2_estimated.yaml", set={"task.wait_beyond_m": 0.002}))
+        left_s = float(rows[0]["path_left_s"])
+        self.assertGreater(left_s, 1)
+        self.assertLessEqual(left_s, run_["t_s"][-1] - run_["path_time_s"][-1])
+        self.assertEqual(float(rows[1]["path_left_s"]), 0)
+        self.assertRegex(said, "(?m)^best: task.wait_beyond_m=0.002$")
+        self.assertIn(f"\n1 runs within the limits did not come to the end of their path, up to {left_s:.3g} s of it "
+                      "are left: limit path_left_s\n", said)
+        said, _, _ = self.answer(text, "{peak_force_N: 10, path_left_s: 0}")
+        self.assertRegex(said, "(?m)^best: task.wait_beyond_m=10$")
+        self.assertNotIn("are left", said)
+
+    def test_is_a_module_that_was_lost(self):
+        text = (f"scenes: [{SCENES}/whole_arm/crops9_skin_two_links.yaml]\n"
+                "set: {robot.module_lost: go_on_slowly, simulation.tactile_module.lost_share: 0.3}\n"
+                "grid: {robot.module_lost_speed_share: [0.05]}\n")
+        said, [row], _ = self.answer(text, "{peak_force_N: 10}")
+        self.assertGreater(int(row["module_losses"]), 0)
+        self.assertIn(f"\n1 runs within the limits lost a module, up to {row['module_losses']} times: limit "
+                      "module_losses\n", said)
+        self.assertIn("\n1 runs within the limits did not come to the end of their path, ", said)
+        said, _, _ = self.answer(text, "{module_losses: 0}")
+        self.assertNotIn("lost a module", said)
+
+    def test_is_a_push_where_no_module_is(self):
+        text = (f"scenes: [{SCENES}/whole_arm/crops9_skin_one_link.yaml]\nset:\n"
+                "  simulation.obstacles[0].stiffness_N_per_m: 20000\n"
+                "grid:\n  simulation.obstacles[0].post.foot_m[0]: [1.0]\n"
+                "  simulation.obstacles[0].post.foot_m[1]: [0.3]\n")
+        said, [row], page = self.answer(text, "{peak_force_N: 6}")
+        pushed = float(row["unsensed_force_N"])
+        self.assertIn(f"\n1 runs within the limits push up to {pushed:.4g} N where no module is: limit "
+                      "unsensed_force_N\n", said)
+        for kind in ("front", "best", "worst"):
+            part = page[page.index(f'<table class="{kind}">'):]
+            self.assertIn(f"<td>{pushed:.4g}</td>", part[:part.index("</table>")])
 
 
 class Figures(unittest.TestCase):
@@ -557,7 +611,7 @@ class Judgement(unittest.TestCase):
         plan = types.SimpleNamespace(place=lambda _: (0,), settings=lambda _: [])
         judged = types.SimpleNamespace(path=pathlib.Path("s.yaml"), scenes=[(None, "a.yaml", pathlib.Path("a.yaml"))])
         rows = [{"run": run, "outcome": "completed", "peak_force_N": 1.0, "tcp_error_max_m": 0.01,
-                 "objective": objective} for run, objective in enumerate((1.0, math.inf, 3.0))]
+                 "objective": objective, "is_within": True} for run, objective in enumerate((1.0, math.inf, 3.0))]
         page = "".join(study_page.worst_section(judged, plan, rows))
         self.assertEqual(re.findall(r'<th scope="row">(\d+)</th>', page), ["2", "0", "1"])
         self.assertIn("Objective unknown for 1 runs", page)

@@ -9,6 +9,12 @@ from tactus._sweep import OF_CONTACTS
 from .table import scene_name
 
 FORCE, ERROR = "peak_force_N", "tcp_error_max_m"
+PATH_LEFT, UNSENSED = "path_left_s", "unsensed_force_N"
+# What may be bad of a run whose force and error are good.
+HIDDEN = {PATH_LEFT: "did not come to the end of their path, up to {:.3g} s of it are left",
+          "module_losses": "lost a module, up to {:g} times",
+          UNSENSED: "push up to {:.4g} N where no module is"}
+SHOWN = 10  # of the best, and of the worst
 BINS = 16
 LEAST_RUNS = 8  # for a sensitivity that says something
 
@@ -28,6 +34,14 @@ class Candidate:
     @property
     def worst(self):
         return max(self.runs, key=lambda row: row["objective"])
+
+    @property
+    def path_left_s(self):
+        return largest(self.runs, PATH_LEFT)
+
+    @property
+    def unsensed_N(self):
+        return largest(self.runs, UNSENSED)
 
 
 def completed(row):
@@ -83,11 +97,23 @@ def candidates(plan, rows):
 
 
 def candidate_of(place, runs):
-    def worst(name):
-        return max((math.inf if not completed(row) or row[name] is None else row[name]) for row in runs)
-
-    return Candidate(place, runs, max(row["objective"] for row in runs), worst(FORCE), worst(ERROR),
+    return Candidate(place, runs, max(row["objective"] for row in runs), largest(runs, FORCE), largest(runs, ERROR),
                      all(row["is_within"] for row in runs))
+
+
+def largest(runs, name):
+    """inf where one of them is unknown."""
+    return max((math.inf if not completed(row) or row.get(name) is None else row[name]) for row in runs)
+
+
+def notes(study, rows):
+    """What the study has no limit for, of the runs that keep those that it has."""
+    found = []
+    for name, text in HIDDEN.items():
+        values = [row[name] for row in rows if row["is_within"] and row.get(name)]
+        if values and name not in study.limits:
+            found.append(f"{len(values)} runs within the limits {text.format(max(values))}: limit {name}")
+    return found
 
 
 def front(found):

@@ -126,7 +126,8 @@ def answer_of(study, plan, rows, run_now, folder):
                      "run": best.worst["run"], "set": plan.settings(best.worst["run"]),
                      judge.FORCE: known(best.force_N), judge.ERROR: known(best.error_m),
                      "objective": known(best.objective)},
-            "table": str(folder / table.NAME), "report": str((folder / "report.html").resolve())}
+            "notes": judge.notes(study, rows), "table": str(folder / table.NAME),
+            "report": str((folder / "report.html").resolve())}
 
 
 def known(value):
@@ -136,10 +137,10 @@ def known(value):
 def text_of(answer):
     best = answer["best"]
     lines = [f"{answer['runs']} runs, {answer['run_now']} of them now: {answer['completed']} completed, "
-             f"{answer['within_limits']} within the limits, {answer['faults']} with a fault, {answer['refused']} refused, "
-             f"{answer['failed']} failed"]
+             f"{answer['within_limits']} within the limits, {answer['faults']} with a fault, "
+             f"{answer['refused']} refused, {answer['failed']} failed"]
     if best["objective"] is not None:
         lines.append(f"best: {best['candidate']}" + ("" if best["is_fit"] else " (not within the limits)"))
-    return "\n".join([*lines, f"table: {answer['table']}", f"report: {answer['report']}"])
+    return "\n".join([*lines, *answer["notes"], f"table: {answer['table']}", f"report: {answer['report']}"])
 
 

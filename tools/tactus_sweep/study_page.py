@@ -9,14 +9,15 @@ import matplotlib
 from tactus_report.document import html_page, table
 from tactus_report.figures import BLUE, GRID, RED, as_figure, as_svg, new_figure
 
-from .judge import ERROR, FORCE, candidate_text, candidates, completed, front, sensitivities
+from .judge import (ERROR, FORCE, SHOWN, candidate_of, candidate_text, candidates, completed, front, notes,
+                    sensitivities)
 from .table import scene_name
 
 NAME = "report.html"
-SHOWN = 10
 MAX_DOTS = 2000
 MAX_FRONT_ROWS = 30
 SCENES_OPEN = 3
+FIGURE_HEADS = ["Peak force, N", "TCP error, mm", "Unsensed, N", "Path left, s", "Objective"]
 
 
 def build_page(study, plan, rows):
@@ -43,7 +44,7 @@ def summary(study, plan, rows, found):
                  f"{sum(one.is_fit for one in found)} of {len(found)} candidates keep them.")
     terms = " + ".join(name if weight == 1.0 else f"{weight:g} {name}" for name, weight in study.objective.items())
     text += f" Objective, as small as can be: {terms}. A candidate's figures are the worst of its runs."
-    return f"<p>{html.escape(text)}</p>"
+    return "\n".join(f"<p>{html.escape(text)}</p>" for text in [text, *(f"{note}." for note in notes(study, rows))])
 
 
 def front_figure(found, best):
@@ -68,20 +69,20 @@ def front_figure(found, best):
 
 
 def figures_of(one):
-    return [number(one.force_N), number(1e3 * one.error_m), number(one.objective)]
+    return [number(one.force_N), number(1e3 * one.error_m), number(one.unsensed_N), number(one.path_left_s),
+            number(one.objective)]
 
 
 def front_table(study, plan, best):
     rows = [[candidate_text(study, plan, one.runs[0]), *figures_of(one), "yes" if one.is_fit else "no"]
             for one in best[::max(1, math.ceil(len(best) / MAX_FRONT_ROWS))]]
-    return table(["On the front", "Peak force, N", "TCP error, mm", "Objective", "Within limits"], rows, "front")
+    return table(["On the front", *FIGURE_HEADS, "Within limits"], rows, "front")
 
 
 def best_table(study, plan, found):
     rows = [[candidate_text(study, plan, one.runs[0]), *figures_of(one), "yes" if one.is_fit else "no",
              rerun_line(study, plan, one.worst)] for one in found]
-    return table(["Candidate", "Peak force, N", "TCP error, mm", "Objective", "Within limits",
-                  "Its worst run again"], rows, "best")
+    return table(["Candidate", *FIGURE_HEADS, "Within limits", "Its worst run again"], rows, "best")
 
 
 def worst_section(study, plan, rows):
@@ -91,11 +92,11 @@ def worst_section(study, plan, rows):
     worst = sorted(done, key=lambda row: (math.isinf(row["objective"]), -row["objective"], row["run"]))[:SHOWN]
     if not worst:
         return []
-    cells = [[str(row["run"]), scene_name(study, plan, row), number(row[FORCE]), number(scaled(row[ERROR])),
-              number(row["objective"]), rerun_line(study, plan, row)] for row in worst]
+    cells = [[str(row["run"]), scene_name(study, plan, row), *figures_of(candidate_of(None, [row])),
+              rerun_line(study, plan, row)] for row in worst]
     return [f"<h2>The worst {len(worst)} runs</h2>",
             *([f"<p>Objective unknown for {unknown} runs: they lack a figure of it.</p>"] if unknown else []),
-            table(["Run", "Scene", "Peak force, N", "TCP error, mm", "Objective", "Again"], cells, "worst")]
+            table(["Run", "Scene", *FIGURE_HEADS, "Again"], cells, "worst")]
 
 
 def reasons_section(rows):
@@ -141,10 +142,6 @@ def rerun_line(study, plan, row):
     for setting in plan.settings(row["run"]):
         words += ["--set", setting]
     return shlex.join(words)
-
-
-def scaled(error_m):
-    return None if error_m is None else 1e3 * error_m
 
 
 def number(value, form="{:.4g}"):

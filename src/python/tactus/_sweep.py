@@ -29,7 +29,7 @@ FIGURES = ("peak_force_N", "final_force_N", "tcp_error_max_m", "tcp_error_rms_m"
            "peak_joint_speed_squared", "joints_at_limit_cycles", "stiffness_final_N_per_m",
            "stiffness_at_peak_N_per_m")
 OF_CONTACTS = ("settling_s", "time_above_s", "swing_N")
-ALL_FIGURES = (*FIGURES, "contacts", *OF_CONTACTS, "unsensed_force_N")
+ALL_FIGURES = (*FIGURES, "contacts", *OF_CONTACTS, "module_losses", "path_left_s", "unsensed_force_N")
 
 
 class OtherVersion(Exception):
@@ -124,6 +124,8 @@ def _figures(summary: dict[str, Any]) -> Row:
     for name in OF_CONTACTS:
         values = [contact.get(name) for contact in contacts] + [None] * min(further, 1)
         figures[name] = _largest(values)
+    figures["module_losses"] = len(summary.get("module_losses", [])) + summary.get("further_module_losses", 0)
+    figures["path_left_s"] = summary.get("path_left_s")
     figures["unsensed_force_N"] = summary.get("unsensed_contact", {}).get("force_N")
     return figures
 
