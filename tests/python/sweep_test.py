@@ -19,13 +19,13 @@ import unittest
 from unittest import mock
 
 import numpy as np
-from common import ROOT, SCENES, TACTUS, Scratch, tactus
+from common import ROOT, SCENES, TACTUS, Scratch, program, tactus
 from scipy import stats
 from sweep_common import RUNS, SCENE, Sweeps, rows_of, runs_in, table_of
 from tactus import _sweep
 from tactus._sweep import run
 
-from tactus_sweep import judge, pool, progress, scenes, study, study_page
+from tactus_sweep import check, judge, pool, progress, scenes, study, study_page
 
 
 class Results(Sweeps):
@@ -261,6 +261,43 @@ class Hidden(Sweeps):
         for kind in ("front", "best", "worst"):
             part = page[page.index(f'<table class="{kind}">'):]
             self.assertIn(f"<td>{pushed:.4g}</td>", part[:part.index("</table>")])
+
+
+class Checks(Sweeps):
+    """Of the best, as `tactus check` says it of their values."""
+
+    def test_say_which_are_refused(self):
+        scene, grid = SCENES / "scenario3_estimated.yaml", ("0.01", "0.1")
+        study_ = self.study(f"scenes: [{scene}]\ngrid: {{controller.time_constant_s: [{', '.join(grid)}]}}\n"
+                            "set: {simulation.duration_s: 1}\n"
+                            "disturbances: {draws: 2, keys: {simulation.tactile_module.seed: [1, 2]}}\n")
+        done = self.sweep(study_, self.folder / "out")
+        said = {T: program("check", scene, "--set", f"controller.time_constant_s={T}", "--json") for T in grid}
+        self.assertEqual([answer.returncode for answer in said.values()], [1, 0])
+        reason = said["0.01"].stderr.strip().split(": ", 1)[1]
+        margin = min(loop["phase_margin_deg"] for loop in json.loads(said["0.1"].stdout)["stability"]["loops"])
+        self.assertIn(f"\nbest: controller.time_constant_s=0.01 (refused by tactus check: {reason})\n", done.stdout)
+        page = html.unescape((self.folder / "out/report.html").read_text()).replace("\xa0", " ")
+        part = page[page.index('<table class="best">'):]
+        for T, text in (("0.01", f"refused: {reason}"), ("0.1", f"phase margin {margin:.1f}°")):
+            self.assertRegex(part, rf'<th scope="row">controller.time_constant_s={T}</th>.*<td>{re.escape(text)}</td>')
+        best = json.loads(self.sweep(study_, self.folder / "out", "--json").stdout)["best"]
+        self.assertEqual((best["refusal"], best["phase_margin_deg"]), (reason, None))
+
+    def test_are_of_all_scenes(self):
+        scenes_ = [SCENES / "scenario3_estimated.yaml", SCENE]
+        study_ = self.study(f"scenes: {json.dumps(list(map(str, scenes_)))}\nset: {{simulation.duration_s: 0.1}}\n"
+                            "grid: {controller.time_constant_s: [0.1, 0.02]}\n")
+        read = study.read_study(study_)
+        plan = study.make_plan(read, scenes.load_files(read))
+        rows = [{"run": number, **run(plan.files(number), plan.settings(number))} for number in range(plan.runs)]
+        judge.judge(read, rows)
+        good, bad = sorted(check.check_candidates(read, plan, judge.candidates(plan, rows)),
+                           key=lambda one: one.refusal)
+        margins = [loop["phase_margin_deg"] for scene in scenes_ for loop in tactus.Scene(
+            scene, set={"controller.time_constant_s": 0.1}).check()["stability"]["loops"]]
+        self.assertEqual((good.refusal, good.margin_deg), ("", min(margins)))
+        self.assertRegex(bad.refusal, rf"is unstable .*, in {re.escape(str(scenes_[0]))}$")
 
 
 class Figures(unittest.TestCase):

@@ -11,6 +11,7 @@ from tactus._sweep import identity
 from tactus_report.whole_file import write_whole
 
 from . import judge, results, scenes, stopped_text, table
+from .check import check_candidates
 from .pool import Pool, PoolError
 from .progress import Progress
 from .study import make_plan, read_study
@@ -84,10 +85,13 @@ def sweep(study, plan, arguments):
     rows = [kept.rows[run] for run in range(plan.runs)]
     judge.judge(study, rows)
     write_whole(arguments.output / table.NAME, table.table_text(study, plan, rows))
+    shown = judge.candidates(plan, rows)[:judge.SHOWN]
+    checks = check_candidates(study, plan, shown)
     from . import study_page  # takes a second
 
-    write_whole(arguments.output / study_page.NAME, study_page.build_page(study, plan, rows))
-    return answer_of(study, plan, rows, plan.runs - before, arguments.output)
+    write_whole(arguments.output / study_page.NAME, study_page.build_page(study, plan, rows, checks))
+    return {**answer_of(study, plan, rows, plan.runs - before, arguments.output),
+            "best": best_of(study, plan, shown[0], checks[0])}
 
 
 def compute(plan, kept, arguments, me):
@@ -116,18 +120,20 @@ def make_pool(plan, arguments, me):
 
 
 def answer_of(study, plan, rows, run_now, folder):
-    best = judge.candidates(plan, rows)[0]
     outcomes = [row["outcome"] for row in rows]
     return {"done": True, "runs": plan.runs, "run_now": run_now, "completed": outcomes.count("completed"),
             "refused": outcomes.count("refused"), "failed": outcomes.count("failed"),
             "faults": sum(outcome not in ("completed", "refused", "failed") for outcome in outcomes),
             "within_limits": sum(row["is_within"] for row in rows),
-            "best": {"is_fit": best.is_fit, "candidate": judge.candidate_text(study, plan, best.worst),
-                     "run": best.worst["run"], "set": plan.settings(best.worst["run"]),
-                     judge.FORCE: known(best.force_N), judge.ERROR: known(best.error_m),
-                     "objective": known(best.objective)},
             "notes": judge.notes(study, rows), "table": str(folder / table.NAME),
             "report": str((folder / "report.html").resolve())}
+
+
+def best_of(study, plan, best, check):
+    return {"is_fit": best.is_fit, "candidate": judge.candidate_text(study, plan, best.worst),
+            "run": best.worst["run"], "set": plan.settings(best.worst["run"]),
+            judge.FORCE: known(best.force_N), judge.ERROR: known(best.error_m),
+            "objective": known(best.objective), "phase_margin_deg": check.margin_deg, "refusal": check.refusal or None}
 
 
 def known(value):
@@ -140,7 +146,8 @@ def text_of(answer):
              f"{answer['within_limits']} within the limits, {answer['faults']} with a fault, "
              f"{answer['refused']} refused, {answer['failed']} failed"]
     if best["objective"] is not None:
-        lines.append(f"best: {best['candidate']}" + ("" if best["is_fit"] else " (not within the limits)"))
+        lines.append(f"best: {best['candidate']}" + ("" if best["is_fit"] else " (not within the limits)")
+                     + (f" (refused by tactus check: {best['refusal']})" if best["refusal"] else ""))
     return "\n".join([*lines, *answer["notes"], f"table: {answer['table']}", f"report: {answer['report']}"])
 
 

@@ -20,14 +20,14 @@ SCENES_OPEN = 3
 FIGURE_HEADS = ["Peak force, N", "TCP error, mm", "Unsensed, N", "Path left, s", "Objective"]
 
 
-def build_page(study, plan, rows):
-    """`rows` as judged, by their number."""
+def build_page(study, plan, rows, checks):
+    """`rows` as judged, by their number; `checks` of the best."""
     found = candidates(plan, rows)
     best = front(found)
     body = [f"<h1>Study {html.escape(study.path.stem)}</h1>", summary(study, plan, rows, found),
             "<h2>Peak force against TCP error</h2>", front_figure(found, best), front_table(study, plan, best),
             *sensitivity_section(study, plan, rows),
-            f"<h2>The best {min(SHOWN, len(found))}</h2>", best_table(study, plan, found[:SHOWN]),
+            f"<h2>The best {min(SHOWN, len(found))}</h2>", best_table(study, plan, found, checks),
             *worst_section(study, plan, rows), *reasons_section(rows)]
     return html_page(f"Tactus study {study.path.stem}", body)
 
@@ -79,10 +79,10 @@ def front_table(study, plan, best):
     return table(["On the front", *FIGURE_HEADS, "Within limits"], rows, "front")
 
 
-def best_table(study, plan, found):
-    rows = [[candidate_text(study, plan, one.runs[0]), *figures_of(one), "yes" if one.is_fit else "no",
-             rerun_line(study, plan, one.worst)] for one in found]
-    return table(["Candidate", *FIGURE_HEADS, "Within limits", "Its worst run again"], rows, "best")
+def best_table(study, plan, found, checks):
+    rows = [[candidate_text(study, plan, one.runs[0]), *figures_of(one), "yes" if one.is_fit else "no", check.text,
+             rerun_line(study, plan, one.worst)] for one, check in zip(found, checks)]
+    return table(["Candidate", *FIGURE_HEADS, "Within limits", "Check", "Its worst run again"], rows, "best")
 
 
 def worst_section(study, plan, rows):
