@@ -46,7 +46,7 @@ Scene loadRunningScene(const DaemonArguments& options) {
   constexpr const char* kPurpose = "to run on";
   Scene scene = loadHardwareScene(options.scene, options.settings, kPurpose);
   checkMeasuredStart(scene);
-  if (startsMeasured(scene)) say("waits until the enable line was off and is on");
+  if (hasEnableLine(scene)) say("waits until the enable line was off and is on");
   if (!readsStart(scene)) return scene;
   const std::string start = startText(startAt(scene, readJoints(scene)));
   say("the arm is at start: {}", start);

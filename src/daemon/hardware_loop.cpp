@@ -33,7 +33,7 @@ HardwareLoop::HardwareLoop(const Scene& scene, long long max_task_cycles,
       filter_(filter),
       max_task_cycles_(max_task_cycles),
       buses_(openBuses(*scene.hardware, scene.period_s)),
-      enable_wait_(offCycles(scene), !startsMeasured(scene)),
+      enable_wait_(offCycles(scene)),
       cycle_(scene.controller, *scene.hardware, scene.period_s),
       side_(link) {
   const HardwareConfig& hardware = *scene.hardware;

@@ -117,7 +117,7 @@ constexpr auto kHazards = std::to_array<Hazard>({
     {kUnasked, "the daemon is started, and nobody stands by", Fault::kNone,
      "`Mode.WaitsForTheEnableLine`, `python.mode_model`", "enable line", "waits for it", "",
      "**without such a line the arm moves at once**", "mode `ready`"},
-    {kUnasked, "a restart after a crash, where the scene begins wherever the arm is", Fault::kNone,
+    {kUnasked, "a restart after a crash or a hang, also one with a fault latched", Fault::kNone,
      "`EnableWait.CountsTheLineOnceItWasOff`, `hil.told`", "an enable line that was on before",
      "waits until it was off and is on", "before motion", "who switches has to look",
      "mode `ready`"},

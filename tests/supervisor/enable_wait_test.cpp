@@ -13,8 +13,15 @@ GpioInputs linesWith(bool enable, bool is_valid = true) {
   return lines;
 }
 
+/// As of a daemon that runs.
+EnableWait runningWait(int off_cycles) {
+  EnableWait wait(off_cycles);
+  for (int i = 0; i < off_cycles; ++i) wait.update(linesWith(false));
+  return wait;
+}
+
 TEST(EnableWait, CountsTheLineOnceItWasOff) {
-  EnableWait wait(3, false);
+  EnableWait wait(3);
   for (int i = 0; i < 1000; ++i) EXPECT_FALSE(wait.update(linesWith(true)).enable);
   EXPECT_FALSE(wait.update(linesWith(false, false)).enable);
   EXPECT_FALSE(wait.update(linesWith(true)).enable) << "a chip that fails shows nothing";
@@ -29,7 +36,7 @@ TEST(EnableWait, CountsTheLineOnceItWasOff) {
 
 /// Off and on lets a stopped arm go on; so does no contact that chatters.
 TEST(EnableWait, TakesALineThatFlickersForOff) {
-  EnableWait wait(3, true);
+  EnableWait wait = runningWait(3);
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(wait.update(linesWith(true)).enable);
   for (int off = 1; off <= 2; ++off) {
     for (int i = 0; i < off; ++i) EXPECT_FALSE(wait.update(linesWith(false)).enable);
@@ -41,7 +48,7 @@ TEST(EnableWait, TakesALineThatFlickersForOff) {
 
 /// Which lasts longer than the reading that it begins with.
 TEST(EnableWait, CountsHowLongALineIsOffBeforeItsDebounce) {
-  EnableWait wait(5, true);
+  EnableWait wait = runningWait(5);
   EXPECT_TRUE(wait.update(linesWith(true)).enable);
   EXPECT_FALSE(wait.update(linesWith(false)).enable);
   GpioInputs bouncing = linesWith(false);
@@ -55,7 +62,7 @@ TEST(EnableWait, CountsHowLongALineIsOffBeforeItsDebounce) {
 }
 
 TEST(EnableWait, TellsOfALineThatHasToGoOff) {
-  EnableWait wait(2, false), none(0, true);
+  EnableWait wait(2), none(0);
   EXPECT_TRUE(wait.update(linesWith(true)).must_go_off);
   for (int i = 0; i < 2; ++i) EXPECT_FALSE(wait.update(linesWith(false)).must_go_off);
   EXPECT_FALSE(wait.update(linesWith(true)).must_go_off);
@@ -63,7 +70,7 @@ TEST(EnableWait, TellsOfALineThatHasToGoOff) {
 }
 
 TEST(EnableWait, ChangesNothingElse) {
-  EnableWait waits(3, false), none(0, true);
+  EnableWait waits(3), none(0);
   GpioInputs pressed = linesWith(true);
   pressed.emergency_stop = true;
   EXPECT_TRUE(waits.update(pressed).emergency_stop);

@@ -8,13 +8,13 @@ namespace tactus {
 
 /// An enable line that goes off counts as off at once, but as on again only once it was off for so
 /// many cycles in a row: off and on is how people let a stopped arm go on, and a contact that
-/// chatters is nobody's word. As a program starts, a line that is on says nothing of an arm that
-/// was left anywhere, and a restart after a crash would move it unasked: there, too, it may have to
-/// be off first.
+/// chatters is nobody's word. It has to be off first as a program starts, too: a line that is on is
+/// of before, and a restart after a crash, or after a hang that a fault was latched in, would move
+/// the arm unasked.
 class EnableWait {
  public:
-  EnableWait(int off_cycles, bool counts_at_start)
-      : off_cycles_(off_cycles), left_(counts_at_start ? 0 : off_cycles) {}
+  /// off_cycles: 0 without such a line.
+  explicit EnableWait(int off_cycles) : off_cycles_(off_cycles), left_(off_cycles) {}
 
   /// The lines of this cycle, as they count.
   GpioInputs update(GpioInputs lines) noexcept {

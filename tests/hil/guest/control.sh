@@ -18,9 +18,9 @@ mkdir -p $RUNTIME_DIRECTORY
 start_buses
 write_scene 0.5
 start_plant control $scene
-permit_motion
+permit_start
 tactusd $scene -o "$ROOT/out" 2>"$out/tactusd.txt" & daemon=$!
-wait_for running "$out/tactusd.txt"
+switch_on "$out/tactusd.txt"
 start_watching
 sleep 0.5
 

@@ -34,10 +34,17 @@ e_stop=0 enable=4 brake=8
 # line LINE [LEVEL]: sets or shows it, with the time.
 line() { gpio_poke gpiochip0 "$@"; }
 
-# permit_motion: nobody presses the e-stop, the enable line is on.
-permit_motion() {
+# permit_start: nobody presses the e-stop; the enable line has to be off at first.
+permit_start() {
   line $e_stop 1 >/dev/null
+  line $enable 0 >/dev/null
+}
+
+# switch_on MESSAGES: the enable line, once the daemon waits for it, if it does.
+switch_on() {
+  wait_for 'ready\|running' "$1"
   line $enable 1 >/dev/null
+  wait_for running "$1"
 }
 
 # start_candump FOLDER INTERFACE,FILTER...: to FOLDER/candump.log. To a file of candump's choice,
@@ -59,5 +66,16 @@ run_scene() {
   echo "$1"
   start_plant "$1" "$2"
   tactusd "$2" --duration "$3" -o "$ROOT/out" || fail "$1: tactusd exits with $?"
+  stop_plant
+}
+
+# run_enabled NAME SCENE DURATION_S: likewise, with lines.
+run_enabled() {
+  echo "$1"
+  start_plant "$1" "$2"
+  permit_start
+  tactusd "$2" --duration "$3" -o "$ROOT/out" 2>"$ROOT/out/$1/tactusd.txt" & daemon=$!
+  switch_on "$ROOT/out/$1/tactusd.txt"
+  wait $daemon || fail "$1: tactusd exits with $?"
   stop_plant
 }

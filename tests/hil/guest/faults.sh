@@ -29,7 +29,7 @@ prepare() {
   echo "$1"
   out=$ROOT/out/$1
   start_plant "$1" "$2"
-  permit_motion
+  permit_start
 }
 
 record() {
@@ -39,7 +39,7 @@ record() {
 # begin SCENE [PROGRAM]: until the arm moves. Somebody watches when its brakes close.
 begin() {
   "${2:-tactusd}" "$1" >"$out/stdout.txt" 2>"$out/tactusd.txt" & daemon=$!
-  wait_for running "$out/tactusd.txt"
+  switch_on "$out/tactusd.txt"
   mark brake_before "$(line $brake)"
   line $brake falls >"$out/brake.txt" & watcher=$!
 }

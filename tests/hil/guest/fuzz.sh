@@ -8,10 +8,10 @@ per_second=1000
 
 start_buses
 start_plant in_contact "$scene"
-permit_motion
+permit_start
 start_candump "$out" any,200:780
 tactusd "$scene" -o "$ROOT/out" 2>"$out/tactusd.txt" & daemon=$!
-wait_for running "$out/tactusd.txt"
+switch_on "$out/tactusd.txt"
 sleep 0.3
 
 random_frames 1 1000 $per_second malformed

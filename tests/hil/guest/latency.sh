@@ -28,15 +28,15 @@ end_run() {
 
 never_halt
 start_buses
-permit_motion
-run_scene in_contact "$scene" $((cycles / 1000))
+run_enabled in_contact "$scene" $((cycles / 1000))
 
 # The same beside a client that asks a hundred times a second.
 mkdir -p /tmp/run
 printf 'extends: %s\n' "$scene" >/tmp/asked.yaml
 start_plant asked /tmp/asked.yaml
+permit_start
 RUNTIME_DIRECTORY=/tmp/run tactusd /tmp/asked.yaml --duration $((cycles / 1000)) -o "$ROOT/out" 2>/tmp/asked.txt & daemon=$!
-wait_for running /tmp/asked.txt
+switch_on /tmp/asked.txt
 asking_client $((cycles / 10 - 20)) 10000 '{"do":"show"}' /tmp/run/control || fail "asking_client exits with $?"
 wait $daemon || fail "asked: tactusd exits with $?"
 stop_plant

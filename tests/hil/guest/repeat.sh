@@ -5,5 +5,4 @@
 never_halt
 
 start_buses
-permit_motion
-run_scene in_contact "$ROOT/tests/hil/scenes/in_contact.yaml" 1.5
+run_enabled in_contact "$ROOT/tests/hil/scenes/in_contact.yaml" 1.5

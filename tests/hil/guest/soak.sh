@@ -136,9 +136,10 @@ live() {
   said=/tmp/said.txt
   write_scene 0.5
   start_plant soak $scene
-  permit_motion
+  permit_start
+  : >$said  # of the life before
   tactusd $scene -o /tmp/logs 2>$said & daemon=$!
-  wait_mode running
+  switch_on $said
   sleep 0.5
   resources begins
   for _ in $(seq "$1"); do something; done

@@ -11,9 +11,9 @@ scene=$ROOT/tests/hil/scenes/told.yaml
 mkdir -p $RUNTIME_DIRECTORY
 start_buses
 start_plant told "$scene"
-permit_motion
+permit_start
 tactusd "$scene" -o "$ROOT/out" 2>"$out/tactusd.txt" & daemon=$!
-wait_for running "$out/tactusd.txt"
+switch_on "$out/tactusd.txt"
 sleep 0.2
 
 told arrived tactus move --relative --to -,0.05,0.01 --wait
@@ -90,8 +90,9 @@ wait_for running "$out/home.txt"
 told 'in the posture' tactus move --to-posture --wait
 kill $daemon
 wait $daemon || fail "tactusd exits with $?"
+permit_start
 tactusd "$scene" 2>"$out/begins.txt" & daemon=$!
-wait_for running "$out/begins.txt"
+switch_on "$out/begins.txt"
 kill $daemon
 wait $daemon || fail "tactusd exits with $?"
 stop_plant
