@@ -64,6 +64,11 @@ Json shortStatus(const Json& status) {
   return shown;
 }
 
+std::string textOf(Json event) {
+  event["now_s"] = monotonicTime_s();
+  return event.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace
 
 DaemonWatch::DaemonWatch(EventFeed& feed)
@@ -114,7 +119,7 @@ void DaemonWatch::tellProblem(const std::string& problem) {
 }
 
 void DaemonWatch::publish(const Json& event) {
-  if (!event.is_null()) feed_.publish(event.dump(-1, ' ', false, Json::error_handler_t::replace));
+  if (!event.is_null()) feed_.publish(textOf(event));
 }
 
 void DaemonWatch::look() {
@@ -174,12 +179,14 @@ Json DaemonWatch::state(const Json& status, double age_s, const LogNews& news) c
 
 std::pair<std::string, std::uint64_t> DaemonWatch::all() const {
   const std::lock_guard lock(mutex_);
-  return {panel_.all().dump(-1, ' ', false, Json::error_handler_t::replace), feed_.number()};
+  return {textOf(panel_.all()), feed_.number()};
 }
 
 std::optional<RunStart> DaemonWatch::start() const {
   const std::lock_guard lock(mutex_);
   return log_ ? log_->start() : std::nullopt;
 }
+
+std::string DaemonWatch::signOfLife() { return textOf(Json::object()); }
 
 }  // namespace tactus

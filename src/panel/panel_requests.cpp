@@ -10,6 +10,7 @@
 #include "tactus/daemon/control_client.h"
 #include "tactus/daemon/control_socket.h"
 #include "tactus/daemon/gain_save.h"
+#include "tactus/daemon/run_status.h"
 #include "tactus/record/run_error.h"
 #include "tactus/scene/gain_keys.h"
 #include "tactus/scene/input_error.h"
@@ -19,6 +20,7 @@ namespace tactus {
 namespace {
 
 constexpr int kBadRequest = 400, kRefused = 422, kNoDaemon = 503, kOwnFault = 500;
+constexpr double kMaxLateness_s = 5.0;
 constexpr std::array<std::string_view, 4> kPassedOn = {"set", "undo", "move", "hold"};
 
 PanelAnswer failure(int status, const std::string& error) {
@@ -42,10 +44,27 @@ PanelAnswer answerTo(const std::string& body, const std::function<Json(const Jso
   }
 }
 
-Json ask(const Json& request) {
+std::string wishOf(const Json& request) {
   const auto found = request.find("do");
-  const std::string what =
-      found != request.end() && found->is_string() ? found->get<std::string>() : "";
+  return found != request.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+/// A panel that was stopped, or a tunnel that stood, brings what its page has long given up: the
+/// arm would move later, unasked. What a page knows of the clock is late, too, never early.
+void refuseLate(const Json& request) {
+  const auto asked = request.find("asked_s");
+  const double age_s = asked != request.end() && asked->is_number()
+                           ? monotonicTime_s() - asked->get<double>()
+                           : -kNoLimit;
+  if (age_s > kMaxLateness_s) throw InputError("came late, and nobody waits for it any more");
+  if (!(age_s >= -kMaxLateness_s))
+    throw InputError("asked_s: expected when it was asked, by the clock now_s of the events");
+}
+
+Json ask(Json request) {
+  const std::string what = wishOf(request);
+  if (what != "hold") refuseLate(request);
+  request.erase("asked_s");
   if (what == "save") {
     const SavedGains saved = saveGains(ControlClient(controlPath()));
     return {{"scene", saved.path}, {"written", saved.is_new}};

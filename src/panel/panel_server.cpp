@@ -208,8 +208,9 @@ void PanelServer::Server::stream(httplib::Response& response) {
 bool PanelServer::Server::sendNew(std::uint64_t& number, httplib::DataSink& sink) {
   const EventFeed::Batch batch = feed.wait(number, kSignOfLife);
   number = batch.number;
-  if (batch.is_lost) return false;                         // the page comes again, and gets all
-  if (batch.events.empty()) return sendEvent("{}", sink);  // no comment: pages see none of these
+  if (batch.is_lost) return false;  // the page comes again, and gets all
+  if (batch.events.empty())         // no comment: pages see none of these
+    return sendEvent(DaemonWatch::signOfLife(), sink);
   for (const EventFeed::Event& event : batch.events)
     if (!sendEvent(*event, sink)) return false;
   return true;

@@ -130,6 +130,7 @@ class Rig:
         return {name: answer[name] for name in ("number", "state", "kept", "ordered")}
 
     def do(self, request):
+        request = request | {"asked_s": time.monotonic()}
         status, _, text = self.ask("POST", "/api/do", request, X_Tactus_Token=self.token)
         return status, json.loads(text)
 

@@ -6,13 +6,16 @@ usage: panel_http_test.py TACTUS_PANEL VIRTUAL_DAEMON
 import json
 import pathlib
 import random
+import signal
+import socket
 import sys
+import time
 import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 
-from panel_rig import POST, Rig  # noqa: E402
+from panel_rig import POST, Rig, wait_for  # noqa: E402
 
 DAEMON = pathlib.Path(sys.argv.pop(2)).resolve()
 PANEL = pathlib.Path(sys.argv.pop(1)).resolve()
@@ -133,6 +136,7 @@ class Nonsense(Served):
 
     def test_bodies_that_are_no_request(self):
         def status(body):
+            body = body | {"asked_s": time.monotonic()} if isinstance(body, dict) else body
             return self.rig.ask("POST", "/api/do", body, X_Tactus_Token=self.rig.token)[0]
         for body in ("", "{", "[]", "1", "null", "\x00", "[" * 8000, '{"a":' * 3000, "\u00ff{}"):
             self.assertEqual(status(body.encode("latin-1")), 400, body[:20])
@@ -180,6 +184,58 @@ class Nonsense(Served):
             self.rig.raw(b"".join(chance.choices(words, k=chance.randint(1, 20))), is_half=True)
         self.assertIsNone(self.rig.panel.poll())
         self.assertEqual(self.rig.ask("GET", "/")[0], 200)
+
+
+class Late(Served):
+    """Requests of whom nobody waits for any more."""
+
+    MOVE = {"do": "move", "relative": True, "to_m": [0, 0.01, 0]}
+
+    def order(self):
+        return self.rig.task()["number"]
+
+    def bytes_of(self, request):
+        body = json.dumps(request)
+        return (f"POST /api/do HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+                f"X-Tactus-Token: {self.rig.token}\r\nContent-Length: {len(body)}\r\n\r\n{body}").encode()
+
+    def send_and_leave(self, request):
+        with socket.create_connection(("127.0.0.1", self.rig.port)) as connection:
+            connection.sendall(self.bytes_of(request))
+
+    def test_events_tell_the_clock(self):
+        events = self.rig.events()
+        for event in (next(events), next(events)):
+            self.assertLess(abs(time.monotonic() - event["now_s"]), 5)
+        events.close()
+
+    def test_a_move_that_a_stopped_panel_has_kept_is_not_taken_and_a_hold_is(self):
+        before = self.order()
+        self.rig.panel.send_signal(signal.SIGSTOP)
+        try:
+            asked_s = time.monotonic()
+            for request in (self.MOVE, self.MOVE, {"do": "hold"}):
+                self.send_and_leave(request | {"asked_s": asked_s})
+            time.sleep(6)
+        finally:
+            self.rig.panel.send_signal(signal.SIGCONT)
+        wait_for("a hold", lambda: self.order() > before)
+        time.sleep(1)
+        self.assertEqual((self.order(), self.rig.task()["state"]), (before + 1, "holding"))
+
+    def test_only_what_was_asked_just_now_is_taken_but_a_hold_always(self):
+        for do in (self.MOVE, SET, {"do": "undo"}, {"do": "save"}):
+            for asked_s, reason in ((time.monotonic() - 6, "came late"), (0, "came late"),
+                                    (time.monotonic() + 6, "asked_s"), ("1", "asked_s"), (None, "asked_s")):
+                before = self.rig.show(), self.order()
+                status, _, text = self.rig.ask("POST", "/api/do", do | {"asked_s": asked_s},
+                                               X_Tactus_Token=self.rig.token)  # fmt: skip
+                self.assertEqual(status, 422, (do, asked_s))
+                self.assertIn(reason, json.loads(text)["error"])
+                self.assertEqual((self.rig.show(), self.order()), before)
+        for asked in ({}, {"asked_s": 0}, {"asked_s": None}, {"asked_s": 1e300}, {"asked_s": "x"}):
+            status = self.rig.ask("POST", "/api/do", {"do": "hold"} | asked, X_Tactus_Token=self.rig.token)[0]
+            self.assertEqual(status, 200, asked)
 
 
 if __name__ == "__main__":

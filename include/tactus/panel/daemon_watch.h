@@ -15,13 +15,16 @@
 namespace tactus {
 
 /// Looks at the daemon ten times a second, whether there is one or not: its status, its control
-/// socket and its log. Tells what is new as events.
+/// socket and its log. Tells what is new as events, each with now_s: when by the clock of this
+/// machine.
 class DaemonWatch {
  public:
   explicit DaemonWatch(EventFeed& feed);
 
   /// All that there is, and the number of the newest event in it.
   std::pair<std::string, std::uint64_t> all() const;
+  /// An event of nothing new.
+  static std::string signOfLife();
   /// Of the log that is followed.
   std::optional<RunStart> start() const;
 

@@ -27,7 +27,9 @@ class PanelRequests {
   /// {"values": {KEY: TEXT}}: as GainCheck::check().
   PanelAnswer check(const std::string& body);
 
-  /// What the daemon's socket takes, of set, undo, move and hold; and {"do": "save"}.
+  /// What the daemon's socket takes, of set, undo, move and hold; and {"do": "save"}. With asked_s,
+  /// when it was asked by the clock of DaemonWatch's now_s: what is older than 5 s is refused. A
+  /// hold is always taken.
   static PanelAnswer act(const std::string& body);
 
  private:

@@ -6,6 +6,7 @@ const PATIENCE_MS = 20000;  // the panel itself waits 10 s for the daemon
 const at = (id) => document.getElementById(id);
 let token = "";
 let state = null; // the newest of the panel's events
+let clock = { said_s: NaN, heard_ms: 0 }; // the panel's, as the newest event has told it
 
 function element(name, text = "", className = "") {
   const made = document.createElement(name);
@@ -40,6 +41,9 @@ function takeToken() {
   if (location.hash) history.replaceState(null, "", "/");
   token = sessionStorage.getItem("token") || "";
 }
+
+/** The panel's clock, behind it by what an event takes to come: what is asked looks older, never newer. */
+const now_s = () => clock.said_s + (performance.now() - clock.heard_ms) / 1000;
 
 async function post(path, request) {
   const headers = { "Content-Type": "application/json" };

@@ -158,7 +158,7 @@ function showCheck(answer, hasValues) {
 
 async function act(request, messageId, doneText) {
   show(messageId, "...");
-  const answer = await post("/api/do", request);
+  const answer = await post("/api/do", { ...request, asked_s: now_s() });
   show(messageId, answer.done ? doneText(answer) : withoutPlace(answer.error), answer.done ? "good" : "bad");
   return answer.done;
 }

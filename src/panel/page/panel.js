@@ -42,6 +42,7 @@ function listenWhileSeen() {
 }
 
 function take(event) {
+  clock = { said_s: event.now_s, heard_ms: performance.now() };
   if (event.begins) {
     contacts = [];
     lasting = [];

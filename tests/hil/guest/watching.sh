@@ -37,6 +37,15 @@ post() {
   page $file_and_path --header 'Content-Type: application/json' --post-data "$body" "$@"
 }
 
+# change FILE DO_AND_MORE [OPTION]...: what the panel answers to a change that is asked now.
+change() {
+  file=$1
+  read -r now_s _ </proc/uptime
+  request="{\"asked_s\": $now_s, $2}"
+  shift 2
+  post "$file" /api/do "$request" "$@"
+}
+
 # panel_shows FILE: the first event of all that there is, once the panel has read the log and a record
 # after it, and knows of the contact that lasts.
 panel_shows() {
@@ -58,14 +67,14 @@ work_at_panel() {
   page index.html / || fail "no page"
   page keys.json /api/keys || fail "no keys"
   panel_shows before.txt
-  change='{"values": {"controller.damping": "0.6"}}'
-  post check.json /api/check "$change" || fail "no check: $(cat "$watching/check.json")"
-  change='{"do": "set", "values": {"controller.damping": "0.6"}}'
-  post stranger.json /api/do "$change" && fail "changed without the token"
-  post set.json /api/do "$change" --header "X-Tactus-Token: $token" || fail "the panel sets nothing"
+  damping='"values": {"controller.damping": "0.6"}'
+  post check.json /api/check "{$damping}" || fail "no check: $(cat "$watching/check.json")"
+  set="\"do\": \"set\", $damping"
+  change stranger.json "$set" && fail "changed without the token"
+  change set.json "$set" --header "X-Tactus-Token: $token" || fail "the panel sets nothing"
   sleep 0.3  # the panel asks five times a second
   panel_shows after.txt
-  post undo.json /api/do '{"do": "undo"}' --header "X-Tactus-Token: $token" || fail "nor undoes it"
+  change undo.json '"do": "undo"' --header "X-Tactus-Token: $token" || fail "nor undoes it"
   kill $panel
   wait $panel || fail "tactus panel exits with $?"
 }
