@@ -179,6 +179,7 @@ void PanelServer::Server::answer(const httplib::Request& request, httplib::Respo
   if (is_post && request.path == kWritePath)
     return give(PanelRequests::act(request.body), response);
   if (is_post && request.path == "/api/check") return give(requests.check(request.body), response);
+  if (!is_post && request.path == kWritePath) return give({200, {{"done", true}}}, response);
   if (!is_post && request.path == "/api/keys") return give({200, PanelRequests::keys()}, response);
   if (!is_post && request.path == "/api/events") return stream(response);
   const auto file = std::ranges::find(files, request.path, &PageFile::path);

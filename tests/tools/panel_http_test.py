@@ -174,6 +174,7 @@ class Nonsense(Served):
         for method in ("PUT", "DELETE", "PATCH", "TRACE"):
             self.assertIn(self.rig.ask(method, "/")[0], (400, 405), method)
         self.assertEqual(self.rig.ask("GET", "/api/do")[0], 401)
+        self.assertEqual(self.rig.ask("GET", "/api/do", X_Tactus_Token=self.rig.token)[0], 200)
         self.assertEqual(self.rig.ask("GET", "/api/check")[0], 404)
 
     def test_bytes_by_chance(self):

@@ -290,14 +290,37 @@ class Stories(unittest.TestCase):
             others.append(browser.current_window_handle)
             self.page.open()
         self.page.at("hold").click()
-        wait_for("holding", lambda: self.page.text("move-message") == "Holding.")
-        for other in others:
-            browser.switch_to.window(other)
-            browser.close()
-        browser.switch_to.window(first)
+        wait_for("holding", lambda: self.page.text("hold-message") == "Holding.")
+        self.close_windows(others, first)
         wait_for("life", lambda: not self.page.at("banner").is_displayed())
         self.page.set(DAMPING, "0.61")
         wait_for("what was set", lambda: self.page.runs(DAMPING) == "0.61")
+
+    def close_windows(self, others, first):
+        for other in others:
+            self.page.browser.switch_to.window(other)
+            self.page.browser.close()
+        self.page.browser.switch_to.window(first)
+
+    def test_13_six_windows_beside_each_other_hold_and_set(self):
+        browser, first = self.page.browser, self.page.browser.current_window_handle
+        others = []
+        for _ in range(5):
+            browser.switch_to.new_window("window")
+            others.append(browser.current_window_handle)
+            self.page.open()
+        self.assertFalse(browser.execute_script("return document.hidden"))
+        browser.switch_to.window(first)
+        self.assertFalse(browser.execute_script("return document.hidden"), "all are seen")
+        for window in (first, others[-1]):
+            browser.switch_to.window(window)
+            self.page.at("hold").click()
+            wait_for("holding", lambda: self.page.text("hold-message") == "Holding.", patience_s=5)
+            wait_for("events", lambda: not self.page.at("banner").is_displayed())
+        self.page.set(DAMPING, "0.62" if self.gain(DAMPING) != 0.62 else "0.6")
+        wait_for("sent", lambda: "sent" in self.page.text("message"), patience_s=10)
+        self.close_windows(others, first)
+        wait_for("kept", lambda: self.rig.show()["state"] == "kept")
 
     def test_14_does_not_take_the_last_word_of_a_dead_connection_for_live(self):
         tunnel = Tunnel(self.rig.port)
@@ -311,6 +334,58 @@ class Stories(unittest.TestCase):
         wait_for("no word", lambda: not page.at("banner").is_displayed(), patience_s=20)
         page.set(DAMPING, "0.63")
         wait_for("what was set", lambda: page.runs(DAMPING) == "0.63")
+
+    def test_15_a_page_that_is_one_too_many_says_so_and_can_hold(self):
+        self.page.browser.get("about:blank")
+        streams = [wait_for("a place", self.open_events) for _ in range(8)]
+        draining = [threading.Thread(target=lambda events=events: list(events), daemon=True) for events in streams]
+        for thread in draining:
+            thread.start()
+        self.page.browser.get(self.rig.address)
+        wait_for("the reason", lambda: "8 pages are open already" in self.page.text("banner"))
+        self.assertTrue(self.page.at("hold").is_enabled())
+        self.page.at("hold").click()
+        wait_for("holding", lambda: self.page.text("hold-message") == "Holding.")
+        self.rig.stop_panel()
+        self.rig.start_panel()
+        for thread in draining:
+            thread.join()
+        self.page.address = self.rig.address
+        self.page.open()
+
+    def open_events(self):
+        try:
+            events = self.rig.events()
+            next(events)
+            return events
+        except AssertionError:
+            return None
+
+    def test_16_says_that_a_panel_that_began_anew_takes_no_changes_from_it(self):
+        port = self.rig.port
+        self.rig.stop_panel()
+        wait_for("a word", lambda: "does not answer" in self.page.text("banner"))
+        self.assertTrue(self.page.at("hold").is_displayed())
+        self.rig.start_panel("--port", str(port))
+        wait_for("a word", lambda: "Read only" in self.page.text("banner"))
+        for name in ("set", "undo", "save", "hold", "move"):
+            self.assertFalse(self.page.at(name).is_enabled(), name)
+        self.assertTrue(self.page.at("hold").is_displayed())
+        self.page.address = self.rig.address
+        self.page.open()
+        self.assertTrue(self.page.at("hold").is_enabled())
+
+    def test_17_does_not_carry_out_later_what_it_has_given_up(self):
+        before = self.rig.task()["number"]
+        self.page.browser.execute_script("clock.said_s -= 6; take = () => {};")  # as behind a tunnel that stands
+        self.page.at("y").clear()
+        self.page.at("y").send_keys("0.01")
+        self.page.at("relative").click()
+        self.page.at("move").click()
+        wait_for("a refusal", lambda: "came late" in self.page.text("move-message"))
+        self.assertEqual(self.rig.task()["number"], before)
+        self.page.at("hold").click()
+        wait_for("holding", lambda: self.page.text("hold-message") == "Holding.")
 
 
 class Led(unittest.TestCase):

@@ -2,6 +2,7 @@
 // What all parts of the page share. The scripts are read in the order in which index.html names them.
 
 const PATIENCE_MS = 20000;  // the panel itself waits 10 s for the daemon
+const ROOM_AFTER_MS = 1000;
 
 const at = (id) => document.getElementById(id);
 let token = "";
@@ -47,13 +48,18 @@ const now_s = () => clock.said_s + (performance.now() - clock.heard_ms) / 1000;
 
 async function post(path, request) {
   const headers = { "Content-Type": "application/json" };
+  const sent = token;
   if (token) headers["X-Tactus-Token"] = token;
+  const room = setTimeout(makeRoom, request.do === "hold" ? 0 : ROOM_AFTER_MS);
   try {
     const body = JSON.stringify(request);
     const signal = AbortSignal.timeout(PATIENCE_MS);
     const answer = await fetch(path, { method: "POST", headers, body, signal });
+    if (answer.status === 401) forgetToken(sent);
     return await answer.json();
   } catch {
     return { done: false, error: "the panel does not answer" };
+  } finally {
+    clearTimeout(room);
   }
 }

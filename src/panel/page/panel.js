@@ -5,6 +5,7 @@ const SILENT_MS = 5000;  // the panel says something every two seconds
 
 let source = null;
 let heard_ms = 0;
+let refusal = ""; // why there are no events
 
 function listen() {
   if (source || document.hidden) return;
@@ -15,12 +16,65 @@ function listen() {
     take(JSON.parse(message.data));
   };
   source.onerror = () => {
+    if (source.readyState !== EventSource.CLOSED) refusal = "";
     showBanner();
     if (source.readyState !== EventSource.CLOSED) return;
     source = null;
+    askForRefusal();
     setTimeout(listen, 2000);
   };
-  source.onopen = showBanner;
+  source.onopen = () => {
+    refusal = "";
+    showBanner();
+    checkToken();
+  };
+}
+
+/** Events that are refused do not say why. */
+async function askForRefusal() {
+  const asking = new AbortController();
+  setTimeout(() => asking.abort(), SILENT_MS);
+  try {
+    const answer = await fetch("/api/events", { signal: asking.signal });
+    refusal = answer.ok ? "" : (await answer.json()).error;
+  } catch {
+    refusal = "";
+  }
+  asking.abort();  // they are told by now
+  showBanner();
+}
+
+/** Pages that are seen may take all six connections of a browser: what waits for one comes before the events. */
+function makeRoom() {
+  if (!source) return;
+  source.close();
+  source = null;
+  listen();
+}
+
+/** Before Hold is needed: a panel that began anew has another one. */
+async function checkToken() {
+  if (!token) return;
+  const headers = { "X-Tactus-Token": token };
+  try {
+    const answer = await fetch("/api/do", { headers, signal: AbortSignal.timeout(PATIENCE_MS) });
+    if (answer.status === 401) forgetToken(headers["X-Tactus-Token"]);
+  } catch {
+    // the events tell that nobody answers
+  }
+}
+
+function forgetToken(refused) {
+  if (token !== refused) return;
+  token = "";
+  sessionStorage.removeItem("token");
+  showAnew();
+}
+
+function showAnew() {
+  if (state) return showState();
+  showBanner();
+  showHold();
 }
 
 /** Behind a tunnel whose other end is gone a connection stays as it was. */
@@ -62,7 +116,8 @@ function showBanner() {
   const parts = [];
   const isDeaf = !source || source.readyState !== EventSource.OPEN;
   const isGone = state && !state.is_there;
-  if (isDeaf) parts.push("The panel does not answer; this page tries again.");
+  if (isDeaf && refusal) parts.push(sentence(refusal), "This page tries again.");
+  else if (isDeaf) parts.push("The panel does not answer; this page tries again.");
   else if (state && state.problem) parts.push(sentence(state.problem));
   if (isGone && !isDeaf) parts.push("This page goes on when there is one again.");
   if (!isDeaf && !isGone && state && state.control_problem)
@@ -102,16 +157,17 @@ function showState() {
 
 async function begin() {
   takeToken();
+  showHold();
   addEventListener("hashchange", () => {
     takeToken();
-    if (state) showState();
+    showAnew();
   });
   at("gains-form").addEventListener("submit", set);
   at("move-form").addEventListener("submit", move);
   at("undo").addEventListener("click", () => act({ do: "undo" }, "message", (answer) => `Change ${answer.number} sent, back to what was kept before.`));
   at("save").addEventListener("click", () => act({ do: "save" }, "message", (answer) =>
     answer.written ? `${answer.scene} written, as it was is ${answer.scene}~.` : `${answer.scene} has all that runs.`));
-  at("hold").addEventListener("click", () => act({ do: "hold" }, "move-message", () => "Holding."));
+  at("hold").addEventListener("click", hold);
   at("to-posture").addEventListener("click", goToPosture);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     drawForce();

@@ -12,13 +12,31 @@ function taskText(task) {
   return task.posture && task.posture.is_there ? `${text}; in the posture` : text;
 }
 
+let held = 0; // number of the last hold of this page
+
+function hold() {
+  act({ do: "hold" }, "hold-message", (answer) => {
+    held = answer.task.number;
+    return "Holding.";
+  });
+}
+
+/** Where nobody knows of a task, the daemon itself says whether it holds. */
+function showHold() {
+  const task = state && state.task;
+  const isTrajectory = Boolean(state && state.gains && !task);
+  at("hold").hidden = !token && !task;
+  at("hold").disabled = !token || isTrajectory;
+  if (task && task.number > held && at("hold-message").className === "good") show("hold-message", "");
+}
+
 function showTask() {
   const task = state.task;
   const isTold = Boolean(task);
-  at("hold").hidden = !isTold;
+  showHold();
   at("move-form").hidden = !isTold;
   at("to-posture").hidden = !isTold || !task.posture;
-  for (const button of ["hold", "move", "to-posture"]) at(button).disabled = !token || !isTold || !task.is_running;
+  for (const button of ["move", "to-posture"]) at(button).disabled = !token || !isTold || !task.is_running;
   show("task-state", isTold ? taskText(task) : state.gains ? "The task is a trajectory: nobody tells the tool where to go." : "", "note");
   at("task-state").dataset.state = isTold ? task.state : "";
 }
