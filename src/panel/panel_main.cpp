@@ -1,8 +1,11 @@
 #include <fmt/format.h>
+#include <malloc.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -22,12 +25,24 @@ namespace tactus {
 namespace {
 
 constexpr int kUsualPort = 8470;
+constexpr rlim_t kMaxMemory = rlim_t{1} << 30;  ///< bytes of addresses; some 300 MB are in use
 
 sigset_t stopSignals() {
   sigset_t signals;
   sigemptyset(&signals);
   for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
   return signals;
+}
+
+/// The HTTP library takes a line of any length, from anybody. Who sends a longer one ends the
+/// panel, and takes no memory from the daemon. Before threads start, each of which might have an
+/// arena.
+void limitMemory() {
+  mallopt(M_ARENA_MAX, 2);
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = std::min(limit.rlim_cur, kMaxMemory);
+  ::setrlimit(RLIMIT_AS, &limit);
 }
 
 /// Behind the #: a browser tells that nobody.
@@ -44,6 +59,7 @@ void printAddress(const PanelPlace& place, int port, const std::string& token) {
 }
 
 void serve(const PanelPlace& place) {
+  limitMemory();
   const sigset_t signals = stopSignals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // of all threads that come
   signal(SIGPIPE, SIG_IGN);                       // a page that has gone

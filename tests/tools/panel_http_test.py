@@ -3,6 +3,7 @@
 
 usage: panel_http_test.py TACTUS_PANEL VIRTUAL_DAEMON
 """
+import contextlib
 import json
 import pathlib
 import random
@@ -185,6 +186,20 @@ class Nonsense(Served):
             self.rig.raw(b"".join(chance.choices(words, k=chance.randint(1, 20))), is_half=True)
         self.assertIsNone(self.rig.panel.poll())
         self.assertEqual(self.rig.ask("GET", "/")[0], 200)
+
+    def test_a_line_without_an_end(self):
+        def resident_kB():
+            status = pathlib.Path(f"/proc/{self.rig.panel.pid}/status").read_text()
+            return int(status.partition("VmRSS:")[2].split()[0]) if "VmRSS:" in status else 0
+        most_kB = 0
+        with socket.create_connection(("127.0.0.1", self.rig.port)) as connection, contextlib.suppress(OSError):
+            for _ in range(1500):
+                connection.sendall(b"a" * (1 << 20))
+                most_kB = max(most_kB, resident_kB())
+        self.assertLess(most_kB, 1 << 20)
+        self.rig.stop_panel()  # it has ended, and nothing else
+        self.rig.show()
+        self.rig.start_panel()
 
 
 class Late(Served):
