@@ -54,12 +54,11 @@ Json gainsNow(const LogNews& news, const Json& ordered) {
   return now;
 }
 
-/// What a page shows of the status.
+/// What a page shows of the status: with more that changes, each page is told all of it each time.
 Json shortStatus(const Json& status) {
   Json shown = Json::object();
   for (const char* name :
-       {"scene", "variant", "mode", "fault", "description", "waits_for", "remedy", "missed_cycles",
-        "dropped_records", "motion", "modules_lost", "log"})
+       {"scene", "variant", "mode", "fault", "description", "waits_for", "remedy", "modules_lost"})
     if (status.contains(name)) shown[name] = status.at(name);
   return shown;
 }

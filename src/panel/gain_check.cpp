@@ -50,13 +50,7 @@ Scene withSettings(const Scene& scene, const std::vector<Override>& settings) {
 void addMargins(const Scene& scene, Json& answer) {
   answer["margin_deg"] = finiteOrNull(phaseMargin_deg(scene));
   const std::optional<StabilityReport> report = checkStability(scene);
-  if (!report) return;
-  for (const LoopReport& loop : report->loops)
-    answer["loops"].push_back(
-        {{"name", loop.name},
-         {"phase_margin_deg", finiteOrNull(loop.phaseMargin_deg())},
-         {"largest_ratio", finiteOrNull(loop.margins.largest_stiffness_ratio)}});
-  answer["warnings"] = report->warnings;
+  if (report) answer["warnings"] = report->warnings;
 }
 
 }  // namespace
@@ -84,7 +78,6 @@ Json GainCheck::check(const std::optional<RunStart>& start, const Json& shown, c
                  {"margin_deg", nullptr},
                  {"running_deg", finiteOrNull(running_deg_)},
                  {"least_deg", finiteOrNull(least_deg_)},
-                 {"loops", Json::array()},
                  {"warnings", Json::array()},
                  {"waits_for_free", false}};
   try {

@@ -80,7 +80,6 @@ class Panel(unittest.TestCase):
         self.assertTrue(state["is_there"])
         self.assertEqual(state["problem"] + state["control_problem"] + state["log_problem"], "")
         self.assertEqual(state["status"]["mode"], "running")
-        self.assertEqual(state["status"]["missed_cycles"], 0)
         self.assertEqual(state["gains"]["ordered"]["controller.damping"], 0.5)
         self.assertGreater(len(before["lasting"]), 0)
         self.assertGreater(max(before["force"]["high"][0]), 1.2)

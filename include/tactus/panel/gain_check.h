@@ -19,7 +19,6 @@ class GainCheck {
   ///   - margin_deg: the phase margin; null: none can be computed, or needs none; and running_deg
   ///     of the gains as they are ordered,
   ///   - least_deg: below which a change is refused,
-  ///   - loops: each with name, phase_margin_deg, and the ratio c_e/c up to which it is stable,
   ///   - warnings, and waits_for_free: begins at the next moment without contact.
   /// Throws InputError if the scene that runs is not to be had.
   Json check(const std::optional<RunStart>& start, const Json& shown, const Json& values);
