@@ -37,7 +37,7 @@ void addScopeCommand(CLI::App& app, int& exit_code) {
   CLI::Option* const single =
       command->add_flag("--single", options->is_single, "End after the first trigger");
   CLI::Option* const normal =
-      command->add_flag("--normal", std::string("Show each trigger (default)"));
+      command->add_flag("--normal")->description("Show each trigger (default)");
   CLI::Option* const automatic = command->add_flag(
       "--auto", options->is_auto, "Show also what there is where no trigger comes");
   single->excludes(normal)->excludes(automatic);
