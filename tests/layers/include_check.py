@@ -37,7 +37,7 @@ LAYERS = {
     "cli": ({"commission", "run", "daemon", "doctor", "record", "supervisor", "scene", "io", "rt", "analysis", "plant",
              "canopen", "sim", "control", "math"}, {"Eigen", "CLI", "fmt", "nlohmann"}),
     "panel": ({"daemon", "record", "supervisor", "scene", "control", "math"},
-              {"Eigen", "CLI", "fmt", "nlohmann"}),
+              {"Eigen", "CLI", "fmt", "malloc.h", "nlohmann"}),
     "python": ({"run", "record", "scene", "control", "math"},
                {"Eigen", "cxxabi.h", "fmt", "nlohmann", "pybind11"}),
     "bench": ({"cli", "run", "record", "supervisor", "scene", "analysis", "sim", "control", "math"},
