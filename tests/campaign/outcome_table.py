@@ -19,9 +19,10 @@ core. A test (`python.campaign_table`) repeats a sample of these runs and compar
 Each run goes on after what the tables show: when the arm should be at rest the user switches the enable line off
 and on, the arm runs for 0.7 s if it may, and is stopped. Judges look at every cycle of all that
 (`tests/campaign/judges.h`): setpoints within limits, zero where nothing may move, brakes closed, drives without
-torque, no start without the line, nothing faster than undisturbed when the arm goes on. *Comes to* is where it
-stands when the user comes, with the fault that is latched and its reaction; several, with how many runs, where it
-depends on the phase, the joint or the bus. *Rest* is the longest time from where the arm left *running* (or, of a
+torque, none told to let go in motion before its brake holds (but for one that says that it boots, or moves on
+though it was told to stop), no start without the line, nothing faster than undisturbed when the arm goes on. *Comes
+to* is where it stands when the user comes, with the fault that is latched and its reaction; several, with how many
+runs, where it depends on the phase, the joint or the bus. *Rest* is the longest time from where the arm left *running* (or, of a
 trouble before it ran, the trouble's beginning) to where no drive moves any more; a retreat may take 1.5 s of it.
 """
 MODE_HEAD = """
