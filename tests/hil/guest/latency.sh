@@ -15,8 +15,9 @@ latency() {
 # run_meanwhile SCENE NAME: a daemon that moves, in the background.
 run_meanwhile() {
   start_plant "$2" "$1"
+  permit_start
   tactusd "$1" -o "$ROOT/out" 2>"/tmp/$2.txt" & daemon=$!
-  wait_for running "/tmp/$2.txt"
+  switch_on "/tmp/$2.txt"
   sleep 0.1
 }
 
