@@ -225,8 +225,9 @@ void Play::observeInjections() {
   now_.pushed = 0.0;
   for (const Injection& x : injections_) {
     const bool is_bus = x.kind->where == InjectionKind::Where::kBus;
-    now_.is_late_frame |= is_bus && t_ms >= x.from_ms && t_ms < x.until_ms + kLateFrame_ms;
-    now_.may_let_go |= x.kind->lets_go && t_ms >= x.from_ms && t_ms < x.until_ms + kLateFrame_ms;
+    const bool is_new = t_ms >= x.from_ms && t_ms < x.until_ms + kLateFrame_ms;
+    now_.is_late_frame |= is_bus && is_new;
+    now_.may_let_go |= x.kind->lets_go && is_new;
     const bool is_hand = x.kind->receive == hand().receive;
     now_.has_hand |= is_hand && t_ms >= x.from_ms && t_ms < x.until_ms + kLastSample_ms;
     if (!x.isAtWork(t_ms)) continue;

@@ -35,8 +35,8 @@ void RestMeter::judgeRest(const Look& look) const {
   const Observation& now = look.now;
   if (mayRun(now.mode)) return;
   const double speed = now.velocity.cwiseAbs().maxCoeff();
-  if (speed > kStandstill &&
-      !has_let_go_)  // else it rolls on into its brake, which the plant lacks
+  // One that has let go rolls on into its brake, which the plant lacks.
+  if (speed > kStandstill && !has_let_go_)
     look.complain("rest", fmt::format("no rest in {}", modeName(now.mode)),
                   fmt::format("{:.3g}", speed));
   if (fault_ms_ < kOff_ms) return;

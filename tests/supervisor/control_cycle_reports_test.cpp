@@ -214,7 +214,7 @@ TEST(CycleReports, DrivesHoldForAMomentAtTheEnd) {
   VirtualRobotCell cell = movingCell(scene);
   cell.input.stop_requested = true;
   int cycles = 0;
-  for (; cycles < 1000 && !cell.isAnyDrive({PowerState::kSwitchedOn}); ++cycles) cell.step();
+  for (; cycles < 1000 && !cell.isAnyDrive(PowerState::kSwitchedOn); ++cycles) cell.step();
   EXPECT_GE(cycles, 20);
   EXPECT_LE(cycles, 26);
 }

@@ -147,6 +147,15 @@ class Rig:
         finally:
             connection.close()
 
+    def open_events(self):
+        """Events, with the first one read; None: no place is free."""
+        try:
+            events = self.events()
+            next(events)
+            return events
+        except AssertionError:
+            return None
+
 
 def wait_for(what, condition, patience_s=PATIENCE_S):
     """The first value that is true."""

@@ -94,22 +94,21 @@ class VirtualRobotCell {
     input.lines.enable = true;
   }
 
-  bool isAnyDrive(std::initializer_list<PowerState> states) const {
-    for (int joint = 0; joint < joints_; ++joint) {
-      const PowerState state = plant.powerState(joint);
-      if (std::find(states.begin(), states.end(), state) != states.end()) return true;
-    }
+  bool isAnyDrive(PowerState state) const {
+    for (int joint = 0; joint < joints_; ++joint)
+      if (plant.powerState(joint) == state) return true;
     return false;
   }
 
   /// No drive of the plant has a torque.
   bool areDrivesLimp() const {
-    return !isAnyDrive({PowerState::kOperationEnabled, PowerState::kQuickStopActive,
-                        PowerState::kFaultReactionActive});
+    for (int joint = 0; joint < joints_; ++joint)
+      if (hasTorque(plant.powerState(joint))) return false;
+    return true;
   }
 
   /// No drive of the plant has power.
-  bool areDrivesOff() const { return areDrivesLimp() && !isAnyDrive({PowerState::kSwitchedOn}); }
+  bool areDrivesOff() const { return areDrivesLimp() && !isAnyDrive(PowerState::kSwitchedOn); }
 
   ControlCycle cycle;
   Plant plant;

@@ -284,18 +284,23 @@ class Stories(unittest.TestCase):
 
     def test_13_pages_behind_others_leave_them_the_connections(self):
         # A browser has six to a server; commands need one, too.
-        browser, first = self.page.browser, self.page.browser.current_window_handle
-        others = []
-        for _ in range(7):
-            browser.switch_to.new_window("tab")
-            others.append(browser.current_window_handle)
-            self.page.open()
+        first, others = self.open_others(7, "tab")
         self.page.at("hold").click()
         wait_for("holding", lambda: self.page.text("hold-message") == "Holding.")
         self.close_windows(others, first)
         wait_for("life", lambda: not self.page.at("banner").is_displayed())
         self.page.set(DAMPING, "0.61")
         wait_for("what was set", lambda: self.page.runs(DAMPING) == "0.61")
+
+    def open_others(self, count, kind):
+        """The page that was there, and those that show the same now."""
+        browser, first = self.page.browser, self.page.browser.current_window_handle
+        others = []
+        for _ in range(count):
+            browser.switch_to.new_window(kind)
+            others.append(browser.current_window_handle)
+            self.page.open()
+        return first, others
 
     def close_windows(self, others, first):
         for other in others:
@@ -304,12 +309,8 @@ class Stories(unittest.TestCase):
         self.page.browser.switch_to.window(first)
 
     def test_13_six_windows_beside_each_other_hold_and_set(self):
-        browser, first = self.page.browser, self.page.browser.current_window_handle
-        others = []
-        for _ in range(5):
-            browser.switch_to.new_window("window")
-            others.append(browser.current_window_handle)
-            self.page.open()
+        browser = self.page.browser
+        first, others = self.open_others(5, "window")
         self.assertFalse(browser.execute_script("return document.hidden"))
         browser.switch_to.window(first)
         self.assertFalse(browser.execute_script("return document.hidden"), "all are seen")
@@ -341,7 +342,7 @@ class Stories(unittest.TestCase):
 
     def test_15_a_page_that_is_one_too_many_says_so_and_can_hold(self):
         self.page.browser.get("about:blank")
-        streams = [wait_for("a place", self.open_events) for _ in range(8)]
+        streams = [wait_for("a place", self.rig.open_events) for _ in range(8)]
         draining = [threading.Thread(target=lambda events=events: list(events), daemon=True) for events in streams]
         for thread in draining:
             thread.start()
@@ -356,14 +357,6 @@ class Stories(unittest.TestCase):
             thread.join()
         self.page.address = self.rig.address
         self.page.open()
-
-    def open_events(self):
-        try:
-            events = self.rig.events()
-            next(events)
-            return events
-        except AssertionError:
-            return None
 
     def test_16_says_that_a_panel_that_began_anew_takes_no_changes_from_it(self):
         port = self.rig.port

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import json
 import math
@@ -98,10 +99,8 @@ class Daemon:
         if self._socket is None:
             raise ValueError("the connection is closed, expected a new tactus.Daemon")
         try:
-            try:
+            with contextlib.suppress(BrokenPipeError):  # refused before it was asked, and why has come
                 self._socket.send(packet)
-            except BrokenPipeError:  # refused before it was asked, and why has come
-                pass
             return self._socket.recv(_MAX_ANSWER)
         except OSError as error:
             if error.errno == errno.EMSGSIZE:  # nothing was sent
